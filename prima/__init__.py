@@ -1,0 +1,61 @@
+"""PRIMA: two robot applications written as XML documents, mediated into one robot.
+
+The package's interface is loaded when it is used; see :mod:`prima.api`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from prima.api import (
+        Difference,
+        Document,
+        DocumentError,
+        Loaded,
+        Problem,
+        RunError,
+        Transcript,
+        UsageError,
+        diff,
+        documents_folder,
+        explain,
+        explain_row,
+        load,
+        load_scenario,
+        read,
+        rehearse,
+        replay,
+        validate,
+    )
+
+__version__ = "1.0.0"
+
+__all__ = [
+    "Difference",
+    "Document",
+    "DocumentError",
+    "Loaded",
+    "Problem",
+    "RunError",
+    "Transcript",
+    "UsageError",
+    "diff",
+    "documents_folder",
+    "explain",
+    "explain_row",
+    "load",
+    "load_scenario",
+    "read",
+    "rehearse",
+    "replay",
+    "validate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in __all__:
+        from prima import api
+
+        return getattr(api, name)
+    raise AttributeError(f"module 'prima' has no attribute {name!r}")

@@ -1,0 +1,369 @@
+"""The package's interface: load, validate, rehearse, read, replay, diff, explain.
+
+The command line does nothing that is not here. These functions open files;
+everything below them works on text and values.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from prima.codes import CODES
+from prima.errors import DocumentError, Place, Problem, RunError, UsageError, did_you_mean
+from prima.interpreter.checks import check_commands
+from prima.interpreter.elements import Document
+from prima.interpreter.reader import read_document
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.markup.check import check_root
+from prima.markup.reader import MAX_BYTES, parse, too_large
+from prima.messages import Record
+from prima.scheduler.selection import policy_named
+from prima.sim.scenario import read_robot, read_scenario, read_world
+from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.transcript.diff import Difference, compare
+from prima.transcript.lines import finished, line, read_lines
+from prima.transcript.measures import Summary, summarize
+from prima.transcript.table import Row, format_rows, make_rows
+
+VERSION = "1.0.0"
+
+
+def read_file(path: str | Path) -> bytes:
+    """Read a document's bytes, up to the limit.
+
+    Raises:
+        DocumentError: the file is larger than any document may be.
+        UsageError: it cannot be read.
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+            if len(data) > MAX_BYTES:
+                size = Path(path).stat().st_size
+                raise too_large(str(path), max(size, len(data)))
+            return data
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    except ValueError:
+        raise UsageError(f"{path!r} is not a file's name.") from None
+
+
+def load(path: str | Path) -> Document:
+    """Load an application.
+
+    Raises:
+        DocumentError: with all problems, if any is an error.
+        UsageError: the file cannot be read.
+    """
+    document, problems = read_document(str(path), read_file(path))
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return document
+
+
+@dataclass(slots=True)
+class Loaded:
+    """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
+
+    cast: object
+    files: dict[str, str]
+    problems: list[Problem] = field(default_factory=list)
+
+
+def validate(paths: Iterable[str | Path]) -> list[Problem]:
+    """Give all problems of documents of any kind; a scenario's also those of what it names.
+
+    Raises:
+        UsageError: a file cannot be read.
+    """
+    problems: list[Problem] = []
+    for path in paths:
+        problems += _validate_one(str(path))
+    return sorted(set(problems))
+
+
+def _validate_one(path: str) -> list[Problem]:
+    data = read_file(path)
+    try:
+        root, _ = parse(path, data)
+        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
+        if vocabulary is DIALOGUE:
+            return read_document(path, data)[1]
+        if vocabulary is WORLD:
+            read_world(path, data)
+        elif vocabulary is ROBOT:
+            read_robot(path, data)
+        else:
+            return load_scenario(path).problems
+    except DocumentError as error:
+        return error.problems
+    return []
+
+
+def load_scenario(path: str | Path) -> Loaded:
+    """Load a scenario with its world, robot and applications.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+        UsageError: the scenario's file cannot be read.
+    """
+    from prima.sim.rehearsal import Cast, check_cast
+
+    path = Path(path)
+    data = read_file(path)
+    scenario = read_scenario(str(path), data)
+    files = {path.name: _digest(data)}
+    problems: list[Problem] = []
+
+    def related(name: str, place: Place) -> tuple[str, bytes] | None:
+        target = path.parent / name
+        try:
+            content = read_file(target)
+        except UsageError as error:
+            message = str(error).removeprefix(f"{target}: ")
+            problems.append(Problem(place, "error", "no-such-file", f'"{name}" {message}'))
+        except DocumentError as error:
+            problems.extend(error.problems)
+        else:
+            files[name] = _digest(content)
+            return str(target), content
+        return None
+
+    documents = []
+    for src, _, node in scenario.applications:
+        found = related(src, node.attribute_place("src"))
+        try:
+            if found is not None:
+                document, noted = read_document(*found)
+                problems += noted
+                documents.append(document)
+        except DocumentError as error:
+            problems += error.problems
+    world = robot = None
+    try:
+        found = related(scenario.world, scenario.node.attribute_place("world"))
+        world = read_world(*found) if found else None
+    except DocumentError as error:
+        problems += error.problems
+    try:
+        found = related(scenario.robot, scenario.node.attribute_place("robot"))
+        robot = read_robot(*found) if found else None
+    except DocumentError as error:
+        problems += error.problems
+    try:
+        policy_named(scenario.policy)
+    except UsageError as error:
+        place = scenario.node.attribute_place("policy")
+        problems.append(Problem(place, "error", "bad-value", str(error)))
+    if robot is not None:
+        for document in documents:
+            problems += check_commands(document, robot.commands)
+    if world is None or robot is None or len(documents) < len(scenario.applications):
+        raise DocumentError(problems)
+    cast = Cast(scenario, documents, world, robot)
+    problems += check_cast(cast, str(path))
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(set(problems))
+    return Loaded(cast, files, sorted(set(problems)))
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+@dataclass(slots=True)
+class Transcript:
+    """Records of a run, times in seconds, with the views that people want of them."""
+
+    records: list[Record]
+    name: str = ""
+    failures: list[str] = field(default_factory=list)
+    """Applications that ended by an error, as ``NAME: what``."""
+    outcome: str = ""
+    """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+
+    def rows(self) -> list[Row]:
+        """The rows of the table."""
+        return make_rows(self.records)
+
+    def table(self, why: bool = False) -> str:
+        """The table as text; with ``why``, each row with the rule that put it there."""
+        return format_rows(self.rows(), why)
+
+    def summary(self) -> Summary:
+        """What can be counted in it."""
+        return summarize(self.records)
+
+    def dumps(self) -> str:
+        """The transcript as JSON lines."""
+        made = ({**record, "time": record["time"] * 1000} for record in self.records)
+        return "".join(line(record) for record in made)
+
+
+Sink = Callable[[str], object]
+
+
+def rehearse(
+    scenario: str | Path | Loaded,
+    policy: str | None = None,
+    bound: int | None = None,
+    sink: Sink | None = None,
+) -> Transcript:
+    """Run a scenario in simulation.
+
+    Args:
+        scenario: its path, or what :func:`load_scenario` gave.
+        policy: ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``;
+            by default the scenario's own.
+        bound: rule E4's bound on loops of a feedback Command.
+        sink: is given each line of the transcript as soon as it is made.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: no such policy or file.
+    """
+    from prima.sim.rehearsal import Cast, Rehearsal
+
+    loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
+    cast = loaded.cast
+    assert isinstance(cast, Cast)
+    name = policy or cast.scenario.policy
+    rehearsal = Rehearsal(cast, policy_named(name), bound)
+    head: Record = {
+        "time": 0,
+        "phase": "run",
+        "actor": "mediator",
+        "data": {
+            "version": VERSION,
+            "scenario": cast.scenario.id,
+            "policy": name,
+            "bound": bound,
+            "applications": [doc.id for doc in cast.documents],
+            "files": loaded.files,
+        },
+    }
+    made = Transcript([], cast.scenario.id)
+    _keep(made, [head], sink)
+    for records in rehearsal.run():
+        _keep(made, records, sink)
+    made.failures = list(rehearsal.session.failures)
+    made.outcome = rehearsal.outcome
+    return made
+
+
+def _keep(transcript: Transcript, records: Iterable[Record], sink: Sink | None) -> None:
+    for record in records:
+        transcript.records.append(finished(record))
+        if sink is not None:
+            sink(line(record))
+
+
+def read(path: str | Path) -> Transcript:
+    """Read a transcript.
+
+    Raises:
+        UsageError: it cannot be read, or is none; the line is named.
+    """
+    try:
+        with Path(path).open(encoding="utf-8") as stream:
+            records = list(read_lines(str(path), stream))
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
+    return Transcript(records, str(path))
+
+
+def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
+    """Run a transcript's inbound records again, without a world: the result is the same.
+
+    Raises:
+        UsageError: the scenario's files are not those of the transcript.
+        DocumentError: documents are wrong.
+    """
+    from prima.replay import replay_records
+    from prima.sim.rehearsal import Cast
+
+    loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
+    cast = loaded.cast
+    assert isinstance(cast, Cast)
+    head = transcript.records[0]
+    if head["phase"] != "run":
+        raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
+    for name, digest in head["data"].get("files", {}).items():
+        if name in loaded.files and loaded.files[name] != digest:
+            raise UsageError(f"{name} is not the file that the transcript was made with.")
+    records = replay_records(transcript.records, cast.documents, cast.robot.commands)
+    return Transcript([finished(record) for record in records], transcript.name)
+
+
+def diff(before: Transcript, after: Transcript) -> Difference:
+    """Compare two transcripts by behaviour."""
+    difference = compare(before.rows(), after.rows())
+    difference.before, difference.after = before.summary(), after.summary()
+    return difference
+
+
+def explain(code: str) -> str:
+    """Say what a problem's code means.
+
+    Raises:
+        UsageError: there is no such code.
+    """
+    if code not in CODES:
+        raise UsageError(f'There is no code "{code}". {did_you_mean(code, CODES)}'.rstrip())
+    return CODES[code]
+
+
+def explain_row(transcript: Transcript, number: int) -> str:
+    """Say why a row of a transcript's table came where it did.
+
+    Raises:
+        UsageError: there is no such row.
+    """
+    rows = transcript.rows()
+    if not 0 <= number < len(rows):
+        raise UsageError(f"There is no row {number}; the rows are 0 to {len(rows) - 1}.")
+    row = rows[number]
+    lines = [f"Row {number}, {row.time:.3f} s: {row.app} {row.what}".rstrip()]
+    if row.source:
+        lines.append(f"Requested at {row.source}.")
+    base = row.behavior.partition(".")[0]
+    for record in transcript.records:
+        if record["time"] > row.time:
+            break
+        about = (record.get("behavior") or "").partition(".")[0] == base and bool(base)
+        if about and record["phase"] == "request":
+            flag = ", reactive" if record.get("reactive") else ""
+            lines.append(
+                f"{record['time']:.3f} s: requested as {base} ({record['priority']} priority{flag})."
+            )
+        elif about and record["phase"] == "hold":
+            lines.append(
+                f"{record['time']:.3f} s: held back by {record['by']} (rule {record['rule']})."
+            )
+        elif about and record["phase"] == "resume":
+            lines.append(f"{record['time']:.3f} s: its stream {record['tree']} resumes (rule C2).")
+        elif record.get("winner") == row.behavior and record["phase"] == "decision":
+            lost = ", ".join(record["losers"]) or "nobody"
+            lines.append(
+                f"{record['time']:.3f} s: selected by rule {record['rule']} before {lost}"
+                f" ({record['losers_count']} in all)."
+            )
+    return "\n".join(lines)
+
+
+def documents_folder() -> Path:
+    """The folder of the demo documents that come with the package."""
+    inside = Path(__file__).parent / "documents"
+    return inside if inside.is_dir() else Path(__file__).parent.parent / "documents"
+
+
+__all__ = [
+    "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Transcript",
+    "UsageError", "diff", "documents_folder", "explain", "explain_row", "load", "load_scenario",
+    "read", "rehearse", "replay", "validate",
+]  # fmt: skip

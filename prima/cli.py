@@ -1,0 +1,326 @@
+"""The command line: it alone prints, sets exit codes and catches everything.
+
+Exit codes: 0 fine; 1 problems found, or transcripts differ; 2 wrong usage or
+unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from prima import __version__
+from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
+
+POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
+WATCHDOG_SECONDS = 5.0
+"""How long one evaluation of a document's script may hold the process up."""
+
+
+class Commands(click.Group):
+    """Commands with a suggestion for a misspelt one."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find a command, or say which one was probably meant."""
+        name = args[0] if args else ""
+        if name and not name.startswith("-") and self.get_command(ctx, name) is None:
+            hint = did_you_mean(name, self.list_commands(ctx))
+            raise click.UsageError(f'There is no command "{name}". {hint}'.rstrip(), ctx)
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="prima")
+def cli() -> None:
+    """Mediate robot applications written as XML documents.
+
+    \b
+    prima validate documents/fa/follow.xml
+    prima run documents/scenarios/follow-during-navigation.xml
+    """
+
+
+_format = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json"]),
+    default="text",
+    help="What to print.",
+)
+
+
+def _coloured() -> bool:
+    return sys.stdout.isatty() and "NO_COLOR" not in os.environ
+
+
+def _print(text: str) -> None:
+    click.echo(text, nl=not text.endswith("\n"), color=_coloured())
+
+
+def _problem_data(problem: Problem) -> dict[str, Any]:
+    return {
+        "file": problem.place.file,
+        "line": problem.place.line,
+        "column": problem.place.column,
+        "severity": problem.severity,
+        "code": problem.code,
+        "message": problem.message,
+        "remedy": problem.remedy,
+    }
+
+
+@cli.command()
+@click.argument("files", nargs=-1, required=True, type=click.Path())
+@_format
+def validate(files: tuple[str, ...], form: str) -> None:
+    """Check documents of any kind: applications, worlds, robots, scenarios.
+
+    All problems of every file are printed, each with its place and what to write
+    instead. Exit code 1 if any is an error, 2 if a file cannot be read.
+
+    \b
+    prima validate documents/fa/*.xml documents/ea/*.xml
+    """
+    from prima import api
+
+    problems: list[Problem] = []
+    unread: list[str] = []
+    for name in files:
+        try:
+            problems += api.validate([name])
+        except UsageError as error:
+            unread.append(str(error))
+    if form == "json":
+        _print(json.dumps([_problem_data(one) for one in problems], ensure_ascii=False, indent=2))
+    else:
+        for problem in problems:
+            _print(str(problem))
+    for message in unread:
+        click.echo(f"prima: {message}", err=True)
+    errors = sum(problem.severity == "error" for problem in problems)
+    if form == "text" and not unread:
+        warnings = len(problems) - errors
+        counts = f"{errors} errors, {warnings} warnings" if problems else "no problems"
+        click.echo(f"{len(files)} files: {counts}", err=True)
+    if unread or errors:
+        sys.exit(2 if unread else 1)
+
+
+@cli.command()
+@click.argument("scenario", type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Write the transcript here as JSON lines.")
+@click.option("--policy", help=f"The mediator's policy: {POLICIES}.")
+@click.option(
+    "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
+)
+@click.option("--why", is_flag=True, help="Print the rule that put each row there.")
+@_format
+def run(
+    scenario: str, output: str | None, policy: str | None, bound: int | None, why: bool, form: str
+) -> None:
+    """Run a scenario in simulation and print the mediated transcript.
+
+    With -o the transcript is written as JSON lines while the run goes on, and
+    only a summary is printed. Exit code 3 if the run ended by an error or a limit.
+
+    \b
+    prima run documents/scenarios/follow-during-navigation.xml -o mediated.jsonl
+    """
+    from prima import api
+
+    loaded = api.load_scenario(scenario)
+    for problem in loaded.problems:
+        click.echo(str(problem), err=True)
+    _start_watchdog()
+    if output is not None:
+        transcript = _run_into(output, lambda sink: api.rehearse(loaded, policy, bound, sink))
+        click.echo(f"{output}: {_outline(transcript)}", err=True)
+    elif form == "json":
+        transcript = api.rehearse(loaded, policy, bound, lambda text: sys.stdout.write(text))
+    else:
+        transcript = api.rehearse(loaded, policy, bound)
+        _print(transcript.table(why))
+    for failure in transcript.failures:
+        click.echo(f"prima: {failure}", err=True)
+    if transcript.outcome == "limit":
+        raise RunError("the run made more records than a run may.")
+    if transcript.failures:
+        sys.exit(3)
+
+
+def _run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
+    """Run with the transcript written line by line, so that nothing is lost on the way."""
+    try:
+        stream = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
+    except OSError as error:
+        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+    with stream:
+        try:
+            return rehearse(stream.write)
+        except OSError as error:
+            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+
+
+def _outline(transcript: Transcript) -> str:
+    summary = transcript.summary()
+    return (
+        f"{len(transcript.records)} records of {summary.seconds:.1f} s,"
+        f" {summary.streams_broken} streams broken, {summary.reactions} reactions"
+        f" after {summary.reaction_mean:.2f} s on average"
+    )
+
+
+def _start_watchdog() -> None:
+    """End the process when a script escapes the engine's own limits (exit code 3).
+
+    The engine lets go of the interpreter lock while it evaluates, so this thread
+    runs even if an evaluation never comes back. What was written is on disk.
+    """
+    import threading
+    import time
+
+    from prima.interpreter.expressions import Engine
+
+    def watch() -> None:
+        seen, since = -1, time.monotonic()
+        while True:
+            time.sleep(0.25)
+            count = Engine.evaluations
+            if count % 2 == 0 or count != seen:
+                seen, since = count, time.monotonic()
+            elif time.monotonic() - since > WATCHDOG_SECONDS:
+                message = "prima: a document's script does not come back; the run is ended.\n"
+                os.write(2, message.encode())
+                os._exit(3)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+@cli.command()
+@click.argument("transcript", type=click.Path())
+@click.option("--why", is_flag=True, help="Print the rule that put each row there.")
+def show(transcript: str, why: bool) -> None:
+    """Print a transcript as the table that people read.
+
+    \b
+    prima show mediated.jsonl --why
+    """
+    from prima import api
+
+    _print(api.read(transcript).table(why))
+
+
+@cli.command()
+@click.argument("before", type=click.Path())
+@click.argument("after", type=click.Path())
+@_format
+def diff(before: str, after: str, form: str) -> None:
+    """Compare two transcripts by behaviour: moved, added, lost, split, changed, delayed.
+
+    Exit code 0 if they are alike, 1 if they differ.
+
+    \b
+    prima diff mediated.jsonl fifo.jsonl
+    """
+    from prima import api
+    from prima.transcript.diff import difference_data, format_difference
+
+    difference = api.diff(api.read(before), api.read(after))
+    if form == "json":
+        _print(json.dumps(difference_data(difference), ensure_ascii=False, indent=2))
+    else:
+        _print(format_difference(difference, _coloured()))
+    if difference.differs:
+        sys.exit(1)
+
+
+@cli.command()
+@click.argument("transcript", type=click.Path())
+@click.argument("scenario", type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Write the replayed transcript here.")
+def replay(transcript: str, scenario: str, output: str | None) -> None:
+    """Run a transcript's inbound events again and check that the same comes out.
+
+    \b
+    prima replay mediated.jsonl documents/scenarios/follow-during-navigation.xml
+    """
+    from prima import api
+
+    original = api.read(transcript)
+    again = api.replay(original, scenario)
+    if output is not None:
+        _run_into(output, lambda write: (write(again.dumps()), again)[1])
+    same = again.dumps() == original.dumps()
+    click.echo("the same, byte for byte" if same else "the replay differs", err=True)
+    if not same:
+        sys.exit(1)
+
+
+@cli.command()
+@click.argument("what")
+@click.argument("row", type=int, required=False)
+def explain(what: str, row: int | None) -> None:
+    """Explain a problem's CODE, or why a ROW of a transcript came where it did.
+
+    \b
+    prima explain undeclared-variable
+    prima explain mediated.jsonl 16
+    """
+    from prima import api
+
+    if row is None and not os.path.exists(what):
+        _print(api.explain(what))
+    elif row is None:
+        raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
+    else:
+        _print(api.explain_row(api.read(what), row))
+
+
+def main() -> None:
+    """Run the command line; every way out has its exit code and no traceback."""
+    try:
+        code = cli.main(standalone_mode=False)
+        sys.stdout.flush()
+        sys.exit(code if isinstance(code, int) else 0)
+    except DocumentError as error:
+        for problem in error.problems:
+            click.echo(str(problem), err=True)
+        code = 1
+    except UsageError as error:
+        click.echo(f"prima: {error}", err=True)
+        code = 2
+    except RunError as error:
+        click.echo(f"prima: {error}", err=True)
+        code = 3
+    except click.ClickException as error:
+        error.show()
+        code = 2
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("prima: interrupted", err=True)
+        code = 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    except MemoryError:
+        click.echo("prima: out of memory", err=True)
+        code = 3
+    except Exception as error:
+        if "PRIMA_DEBUG" in os.environ:
+            raise
+        click.echo(
+            f"prima: this is a defect of prima: {type(error).__name__}: {error}."
+            " Please report it; PRIMA_DEBUG=1 shows where.",
+            err=True,
+        )
+        code = 3
+    sys.exit(code)

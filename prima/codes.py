@@ -1,0 +1,74 @@
+"""What each problem's code means, for ``prima explain CODE``."""
+
+from __future__ import annotations
+
+CODES: dict[str, str] = {
+    "not-xml": "The file is not well-formed XML: a tag is not closed, a quote is missing, or it is"
+    " no XML at all. The place says where reading stopped; the mistake is there or before.",
+    "encoding": "Documents are read as UTF-8, UTF-16, ASCII, ISO-8859-1 or -15, Windows-1252,"
+    " Shift_JIS or EUC-JP. Save the file as UTF-8, which needs no declaration.",
+    "too-large": "Files are read up to a limit on bytes, elements and attributes, so that nobody's"
+    " file can exhaust the machine.",
+    "too-deep": "Elements may be nested to a limit. Divide the document into forms and subdialogs.",
+    "doctype": "A DOCTYPE may name an external identifier, which is never fetched, but declare"
+    " nothing itself: declarations are how XML is made to eat memory.",
+    "entity": "Documents declare no entities. Only &amp; &lt; &gt; &quot; &apos; and character"
+    " numbers are known.",
+    "wrong-root": "The namespace is right but the root element is another one.",
+    "wrong-namespace": "The namespace tells what kind of document it is. An application begins with"
+    ' <prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="...">.',
+    "unknown-element": "The language has no such element. Nothing in a document is silently ignored.",
+    "misplaced-element": "The element exists, but not where it stands; the message says where it may.",
+    "stray-text": "Text stands where the language has no place for it. What the robot is to say"
+    " stands in <speak> or another Command that speaks.",
+    "unknown-attribute": "The element has no such attribute. Nothing is silently ignored.",
+    "missing-attribute": "The element needs an attribute that is not there.",
+    "missing-element": "The element needs a child that is not there.",
+    "bad-value": "An attribute's text is not of the attribute's kind: a time has its unit (2s,"
+    " 500ms), a number is written in digits, and so on.",
+    "out-of-range": "A number is greater or smaller than the attribute or argument allows.",
+    "exclusive": "Two attributes say the same thing in different ways; keep one.",
+    "schema": "The document does not fit its XML Schema.",
+    "duplicate-id": "Two things have one id, so that nobody could tell which is meant.",
+    "duplicate-name": "Two items of a form have one name: they would share their variable.",
+    "duplicate-element": "The element may be there only once.",
+    "duplicate-answer": "Two options of a field say the same, folded for case and punctuation.",
+    "no-form": "An application is made of forms, its states; it begins with the first.",
+    "no-such-form": "A goto, subdialog or link names a form that is not there.",
+    "no-such-item": "A name is used that no item of the form has.",
+    "no-such-rule": "A grammar names a rule that it does not have.",
+    "no-such-name": "A scenario or map names a place, thing, sensor, device or application that the"
+    " world, robot or scenario does not have.",
+    "no-such-argument": "A Command is given an argument that the robot's profile does not name.",
+    "no-such-file": "A scenario names a file that cannot be read. Paths are relative to the"
+    " scenario's own folder.",
+    "no-answer": "A field without options, grammar or type takes no answer: the user could never"
+    " leave it.",
+    "empty-answer": "An option that holds nothing to say can never be said.",
+    "nothing-to-say": "A Command that speaks has no text.",
+    "empty": "The element holds nothing.",
+    "after-else": "Nothing but content may stand after <else>: it takes all that is left.",
+    "unreachable": "No goto, link or subdialog leads to the form, so its content never runs.",
+    "dead-end": "The form has no goto, exit, return, link or handler: once in it, the application"
+    " waits for ever. That may be meant; if it is over there, say so with <exit/>.",
+    "dead-content": "What stands behind a goto, return or exit is never reached.",
+    "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
+    " form item, <foreach> or <script> declares. At run time that is error.semantic.",
+    "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
+    " stopped.",
+    "fa-only": "Additional arguments (thesis Table 4.1) are for an FA, whose developer knows the"
+    " robot. An EA runs on any robot.",
+    "not-in-unit": "A unit is one piece that nothing breaks (rule U4). A Command that works in"
+    " loops is many pieces, and one that leaves the user must be able to wait for him.",
+    "now-inside": "A Command wanted now cancels what the application does on its devices; inside a"
+    " par, seq or iu it can only stand first.",
+    "long-unit": "While a unit runs the robot reacts to nothing on its devices. Divide what it says"
+    " into pieces at semantic breakpoints (thesis 4.5).",
+    "shared-device": "Branches of a par that need one device cannot run at once: they run one after"
+    " the other, in document order (rule U3).",
+    "endless": "The Command goes on for ever, and the state handles no event that could end it;"
+    " another application's equal behaviours may starve (rule E4).",
+    "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
+    " time the application gets error.unsupported.COMMAND, which it may handle.",
+}
+"""Code to explanation."""

@@ -1,0 +1,344 @@
+"""The Command types of the thesis's Table 4.2 as data: the words applications ask in.
+
+Nothing here acts. The interpreter's elements, the mediator's rules and the
+robot's controllers all read this one table; a robot profile may add rows to a
+copy of it (thesis 5.3 (6)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+from prima.errors import did_you_mean, one_of
+from prima.values import Value, read_value
+
+DEVICES = (
+    "human-detection",
+    "locomotion",
+    "localization",
+    "speaker",
+    "speech-recognition",
+    "neck",
+    "arm",
+)
+"""The devices every robot profile may name (Table 4.2); a profile adds its own."""
+
+LOOP_MS = 500
+"""How long one loop of a feedback Command lasts unless the profile says otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """A motion argument: its kind, bounds (in the kind's unit) and meaning."""
+
+    kind: str
+    doc: str
+    low: float | None = None
+    high: float | None = None
+    default: Value | None = None
+    required: bool = False
+    choice: str = ""
+    """Arguments sharing a ``choice`` name exclude each other; one of them is needed."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandType:
+    """A row of Table 4.2."""
+
+    name: str
+    title: str
+    doc: str
+    devices: frozenset[str]
+    feedback: bool = False
+    leaves: bool = False
+    engages: bool = False
+    text: Literal["none", "optional", "required"] = "none"
+    now: bool = False
+    arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+    extra: frozenset[str] = frozenset()
+    """Additional arguments that the robot's maker offers to an FA (Table 4.1)."""
+
+    @property
+    def priority(self) -> int:
+        """1 (high) or 0 (low): leaving Commands rank below all others (rule K2)."""
+        return 0 if self.leaves else 1
+
+    def occupied(self, text: str | None) -> frozenset[str]:
+        """Devices that a Command of this type occupies; speech adds the speaker."""
+        return self.devices | {"speaker"} if text else self.devices
+
+
+def _row(
+    name: str,
+    title: str,
+    devices: str,
+    doc: str,
+    *,
+    marks: str = "",
+    text: Literal["none", "optional", "required"] = "none",
+    **arguments: Argument,
+) -> CommandType:
+    return CommandType(
+        name=name,
+        title=title,
+        doc=doc,
+        devices=frozenset(devices.split()),
+        feedback="feedback" in marks,
+        leaves="leaves" in marks,
+        engages="engages" in marks,
+        now="now" in marks,
+        text=text,
+        arguments=MappingProxyType(
+            {key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()}
+        ),
+    )
+
+
+_TOWARD = Argument("id", "a place or thing of the world's map", choice="direction")
+_X = Argument("number", "metres east on the world's map", -1000, 1000, required=True)
+_Y = Argument("number", "metres north on the world's map", -1000, 1000, required=True)
+_HEADING = Argument("number", "degrees counter-clockwise from east", -360, 360)
+_ANGLE = Argument("number", "degrees to turn, counter-clockwise positive", -360, 360)
+_DRIVE = "locomotion localization"
+
+
+def _choice(argument: Argument) -> Argument:
+    return Argument(argument.kind, argument.doc, argument.low, argument.high, choice="direction")
+
+
+TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
+    {
+        row.name: row
+        for row in (
+            _row(
+                "active-sensing-human",
+                "Active Sensing Human",
+                "human-detection locomotion localization",
+                "Stands still until the camera recognises the human; when patience has run out"
+                " it turns the camera's angle and tries again. Says its text when it starts and"
+                " when it resumes.",
+                marks="feedback engages",
+                text="optional",
+                patience=Argument(
+                    "duration", "how long to look before turning", 1000, 600000, default=10000
+                ),
+            ),
+            _row(
+                "face-human",
+                "Face Human",
+                "human-detection locomotion",
+                "Turns the body to face the human.",
+                marks="engages",
+            ),
+            _row(
+                "q-and-a",
+                "Q&A",
+                "speaker speech-recognition",
+                "Asks, then listens for the answer: one Atomic Behavior. Written as a field.",
+                marks="engages",
+                text="optional",
+                timeout=Argument(
+                    "duration", "how long to wait for an answer", 0, 600000, default=5000
+                ),
+                bargein=Argument(
+                    "boolean", "whether the user may answer before the question ends", default=True
+                ),
+            ),
+            _row(
+                "tracking-human",
+                "Tracking Human",
+                "human-detection locomotion",
+                "Follows the human at a distance until something else happens.",
+                marks="feedback engages",
+                distance=Argument("number", "metres to keep", 0.3, 5, default=1.0),
+            ),
+            _row(
+                "face-human-and-speak",
+                "Face Human and Speak",
+                "human-detection locomotion speaker",
+                "Turns to face the human and says its text.",
+                marks="engages",
+                text="required",
+            ),
+            _row(
+                "turn-and-speak",
+                "Turn and Speak",
+                "locomotion localization speaker",
+                "Turns by an angle or toward a place and says its text.",
+                text="required",
+                angle=_choice(_ANGLE),
+                toward=_TOWARD,
+            ),
+            _row(
+                "set-direction",
+                "Set Direction",
+                _DRIVE,
+                "Turns to a heading of the map or toward a place.",
+                heading=_choice(_HEADING),
+                toward=_TOWARD,
+            ),
+            _row(
+                "turn",
+                "Turn",
+                "locomotion",
+                "Turns the body by an angle.",
+                angle=Argument("number", _ANGLE.doc, -360, 360, required=True),
+            ),
+            _row(
+                "set-speed-and-time",
+                "Set Speed and Time",
+                "locomotion",
+                "Drives at a speed for a time.",
+                speed=Argument("number", "metres a second, backward negative", -2, 2, default=0.0),
+                turn_speed=Argument("number", "degrees a second", -180, 180, default=0.0),
+                time=Argument("duration", "for how long", 1, 60000, required=True),
+            ),
+            _row(
+                "stop-moving",
+                "Stop Moving",
+                "locomotion",
+                "Stops the body; it is requested now by nature and cancels what the same"
+                " application's streams wanted of the same devices.",
+                marks="now",
+            ),
+            _row("speak", "Speak", "speaker", "Says its text.", text="required"),
+            _row(
+                "move-head",
+                "Move Head",
+                "neck",
+                "Moves the head.",
+                pan=Argument("number", "degrees to the left", -180, 180, default=0.0),
+                tilt=Argument("number", "degrees upward", -90, 90, default=0.0),
+            ),
+            _row(
+                "point-by-hand",
+                "Point by Hand",
+                "arm",
+                "Points with the hand, toward a place or at an angle to the body.",
+                angle=Argument(
+                    "number", "degrees from the body's front", -180, 180, choice="direction"
+                ),
+                toward=_TOWARD,
+            ),
+            _row(
+                "gesture",
+                "Gesture",
+                "arm neck",
+                "Plays a gesture that the robot knows by name.",
+                name_=Argument("id", "the gesture's name in the robot profile", required=True),
+            ),
+            _row(
+                "topological-move",
+                "Topological Move",
+                _DRIVE,
+                "Goes to a place along the ways of the world's map.",
+                marks="feedback leaves",
+                to=Argument("id", "a place of the world's map", required=True),
+            ),
+            _row(
+                "set-position",
+                "Set Position",
+                _DRIVE,
+                "Goes to a position of the map.",
+                marks="feedback leaves",
+                x=_X,
+                y=_Y,
+            ),
+            _row(
+                "set-position-and-direction",
+                "Set Position and Direction",
+                _DRIVE,
+                "Goes to a position of the map and turns to a heading there.",
+                marks="feedback leaves",
+                x=_X,
+                y=_Y,
+                heading=Argument("number", _HEADING.doc, -360, 360, required=True),
+            ),
+        )
+    }
+)
+"""The 17 Command types by name."""
+
+
+def check_argument(name: str, argument: Argument, value: object) -> Value:
+    """Give ``value`` as the argument's Python value.
+
+    Text is read as an attribute would be; a number given for a time counts
+    seconds.
+
+    Raises:
+        ValueError: with a sentence about the argument, for the author.
+    """
+    shown = f'{name} "{value}"'
+    if isinstance(value, str):
+        try:
+            result = read_value(argument.kind, value)
+        except ValueError as error:
+            raise ValueError(f"{shown} {error}") from None
+    elif argument.kind == "boolean" and isinstance(value, bool):
+        result = value
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{shown} is not a {argument.kind}.")
+    elif argument.kind == "duration":
+        result = round(value * 1000) if abs(value) < 1e9 else -1
+    elif argument.kind == "number":
+        result = float(value)
+    elif argument.kind == "id" and value == int(value):
+        result = str(int(value))
+    else:
+        raise ValueError(f"{shown} is not a {argument.kind}.")
+    if isinstance(result, int | float) and not isinstance(result, bool):
+        _check_range(shown, argument, result)
+    return result
+
+
+def _check_range(shown: str, argument: Argument, value: float) -> None:
+    low, high = argument.low, argument.high
+    if not ((low is None or value >= low) and (high is None or value <= high)):
+        unit = " ms" if argument.kind == "duration" else ""
+        raise ValueError(f"{shown} is out of range: {low:g} to {high:g}{unit}.")
+
+
+def check_arguments(
+    row: CommandType, text: str | None, given: Mapping[str, object]
+) -> dict[str, Value]:
+    """Give all arguments of a Command with defaults filled in (rule E3).
+
+    Raises:
+        ValueError: unknown, missing, contradicting or out-of-range arguments, or
+            a text missing or too much.
+    """
+    if row.text == "required" and not text:
+        raise ValueError(f"{row.name} has nothing to say.")
+    if row.text == "none" and text:
+        raise ValueError(f"{row.name} cannot say anything.")
+    values: dict[str, Value] = {}
+    for name, value in given.items():
+        argument = row.arguments.get(name)
+        if argument is None:
+            hint = did_you_mean(name, row.arguments)
+            raise ValueError(f'{row.name} has no argument "{name}". {hint}'.rstrip())
+        values[name] = check_argument(name, argument, value)
+    problem = missing_argument(row, values)
+    if problem:
+        raise ValueError(problem)
+    for name, argument in row.arguments.items():
+        if name not in values and argument.default is not None:
+            values[name] = argument.default
+    return values
+
+
+def missing_argument(row: CommandType, given: Iterable[str]) -> str:
+    """Say which argument ``row`` still needs, or which two exclude each other."""
+    names = set(given)
+    for name, argument in row.arguments.items():
+        if argument.required and name not in names:
+            return f'{row.name} needs "{name}".'
+    choices = {name for name, argument in row.arguments.items() if argument.choice}
+    if choices and len(choices & names) != 1:
+        some = "only one of" if choices & names else "one of"
+        return f"{row.name} needs {some} {one_of(choices)}."
+    return ""

@@ -1,0 +1,80 @@
+"""What can go wrong, divided by who broke the rule.
+
+The *author* of a document gets a list of :class:`Problem`, all at once, inside
+a :class:`DocumentError`. Whoever called the program wrongly, or named something
+that cannot be read or written, gets a :class:`UsageError`. A run that had to be
+given up is a :class:`RunError`. What a robot or a service does wrong is no
+exception at all but an event that a document can handle; what the programmer
+does wrong is an assertion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Literal
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """Where something stands: a file, and a line and column counted from 1.
+
+    Columns count characters, not bytes.
+    """
+
+    file: str
+    line: int = 1
+    column: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Problem:
+    """One thing wrong in a document, with what to write instead where that is known."""
+
+    place: Place
+    severity: Severity
+    code: str
+    message: str
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        remedy = f" {self.remedy}" if self.remedy else ""
+        return f"{self.place}: {self.severity}: {self.message}{remedy} [{self.code}]"
+
+
+class PrimaError(Exception):
+    """The root of every error that the package raises on purpose."""
+
+
+class DocumentError(PrimaError):
+    """Documents are wrong; ``problems`` says all of it, in document order."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = sorted(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class UsageError(PrimaError):
+    """The caller asked for something that is not there or makes no sense."""
+
+
+class RunError(PrimaError):
+    """A run was ended by an error or a limit; what it had recorded is kept."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
+    nearest = get_close_matches(word, sorted(known), n=1, cutoff=0.6)
+    return f'Did you mean "{nearest[0]}"?' if nearest else ""
+
+
+def one_of(words: Iterable[str]) -> str:
+    """Join words for a message: ``a, b or c``."""
+    *head, last = sorted(words) or [""]
+    return f"{', '.join(head)} or {last}" if head else last

@@ -1,0 +1,1 @@
+"""One interpreter for each document: the Form Interpretation Algorithm, without I/O or clock."""

@@ -1,0 +1,701 @@
+"""From nodes to values: reads attributes, and says what is wrong with each value."""
+
+from __future__ import annotations
+
+from prima.commands import TABLE_4_2, check_argument, missing_argument
+from prima.errors import Problem
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Block,
+    Clear,
+    CommandTemplate,
+    Declare,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Filled,
+    Foreach,
+    Form,
+    Goto,
+    GroupTemplate,
+    Handler,
+    If,
+    Item,
+    Link,
+    Log,
+    Prompt,
+    Reprompt,
+    Return,
+    Run,
+    Script,
+    SendOut,
+    StepTemplate,
+    Subdialog,
+    Text,
+    Throw,
+    Unit,
+    Watch,
+    all_acts,
+    run_commands,
+)
+from prima.interpreter.grammar import (
+    Answers,
+    Choice,
+    Grammar,
+    Part,
+    Reference,
+    Sequence,
+    Tag,
+    Words,
+    fold,
+)
+from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.values import read_value
+
+LONGEST_MS = 60_000
+
+
+class Builder:
+    """Builds a document; what is wrong is collected in ``problems``, and building goes on."""
+
+    def __init__(self, root: Node) -> None:
+        self.root = root
+        self.problems: list[Problem] = []
+        self.lang = root.get("xml:lang", "en")
+        self._unnamed = 0
+
+    # Reading attributes -----------------------------------------------------
+
+    def problem(
+        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+    ) -> None:
+        """Note a problem at an element or at the value of one of its attributes."""
+        place = node.attribute_place(attribute) if attribute in node.attributes else node.place
+        self.problems.append(Problem(place, "error", code, message, remedy))
+
+    def value(self, node: Node, name: str, kind: str, default: Json) -> Json:
+        """An attribute as a value of its kind, within its bounds."""
+        text = node.attributes.get(name)
+        if text is None:
+            return default
+        try:
+            value = read_value(kind, text)
+        except ValueError:
+            return default  # the schema's problem, told already
+        for item in DIALOGUE.elements[node.key].attributes:
+            if item.name == name and isinstance(value, int | float):
+                if (item.low is not None and value < item.low) or (
+                    item.high is not None and value > item.high
+                ):
+                    self.problem(
+                        node, "out-of-range", f'{name} "{text}" is out of range.', attribute=name
+                    )
+        return value
+
+    def expression(self, node: Node, name: str = "expr") -> Expression | None:
+        """An attribute as an expression, if it is there."""
+        code = node.attributes.get(name)
+        return None if code is None or not code.strip() else Expression(code, node, name)
+
+    def either(self, node: Node, name: str, default: str = "") -> str | Expression:
+        """An attribute, or the expression in NAME-expr; never both."""
+        found = self.expression(node, f"{name}-expr")
+        if found is None:
+            return node.get(name, default)
+        if name in node.attributes:
+            self.exclusive(node, name, f"{name}-expr")
+        return found
+
+    def exclusive(self, node: Node, first: str, second: str) -> None:
+        """Note that two attributes exclude each other."""
+        message = f'<{node.tag}> has both "{first}" and "{second}".'
+        self.problem(node, "exclusive", message, "Keep one of them.", second)
+
+    def text(self, node: Node) -> Text:
+        """Text with values in it, white space folded."""
+        parts: Text = []
+        for item in node.content:
+            if isinstance(item, str):
+                folded = " ".join(item.split())
+                if folded:
+                    lead = " " if item[:1].isspace() and parts else ""
+                    parts.append(lead + folded + (" " if item[-1:].isspace() else ""))
+                elif parts and item:
+                    parts.append(" ")
+            elif item.tag == "value":
+                expr = self.expression(item)
+                if expr is not None:
+                    parts.append(expr)
+        if parts and isinstance(parts[-1], str):
+            parts[-1] = parts[-1].rstrip()
+        return [part for part in parts if part != ""]
+
+    def params(self, node: Node) -> list[tuple[str, str | Expression]]:
+        """The param children."""
+        found: list[tuple[str, str | Expression]] = []
+        for child in node.all("param"):
+            expr = self.expression(child)
+            if expr is not None and "value" in child.attributes:
+                self.exclusive(child, "value", "expr")
+            elif expr is None and "value" not in child.attributes:
+                self.problem(child, "missing-attribute", "<param> needs a value or an expr.")
+            found.append((child.get("name"), expr or child.get("value")))
+        return found
+
+    def names(self, node: Node) -> list[str]:
+        """The namelist attribute."""
+        return node.get("namelist").split()
+
+    # The document -------------------------------------------------------------
+
+    def document(self) -> Document:
+        """Build the whole application."""
+        root = self.root
+        forms: dict[str, Form] = {}
+        for node in root.all("form"):
+            name = node.get("id")
+            if name in forms:
+                self.problem(
+                    node, "duplicate-id", f'There are two forms "{name}".', "Rename one.", "id"
+                )
+            forms.setdefault(name, self.form(node))
+        if not forms:
+            self.problem(
+                root, "no-form", "The application has no form.", "Write at least one <form>."
+            )
+        return Document(
+            id=root.get("id"),
+            kind=root.get("kind"),
+            lang=self.lang,
+            file=root.source.file,
+            forms=forms,
+            handlers=self.handlers(root),
+            links=self.links(root),
+            watches=self.watches(root),
+            setup=self.setup(root),
+            properties=self.properties(root),
+            node=root,
+        )
+
+    def form(self, node: Node) -> Form:
+        """A form."""
+        form = Form(
+            id=node.get("id"),
+            items=self.items(node),
+            handlers=self.handlers(node),
+            links=self.links(node),
+            watches=self.watches(node),
+            setup=self.setup(node),
+            filled=self.filleds(node),
+            properties=self.properties(node),
+            node=node,
+        )
+        return form
+
+    def setup(self, node: Node) -> list[Declare | Script]:
+        """Variables and scripts, in document order."""
+        found: list[Declare | Script] = []
+        for child in node.all("var", "script"):
+            found.append(self.declare(child) if child.tag == "var" else self.script(child))
+        return found
+
+    def declare(self, node: Node) -> Declare:
+        """A var."""
+        name = node.get("name")
+        if "." in name:
+            self.problem(
+                node,
+                "bad-value",
+                f'name "{name}" has a dot.',
+                "Declare it in its own scope.",
+                "name",
+            )
+        return Declare(name, self.expression(node), node)
+
+    def script(self, node: Node) -> Script:
+        """A script."""
+        code = "".join(item for item in node.content if isinstance(item, str))
+        return Script(Expression(code, node, ""), node)
+
+    def properties(self, node: Node) -> dict[str, Json]:
+        """Properties by name, as values."""
+        found: dict[str, Json] = {}
+        for child in node.all("property"):
+            name = child.get("name")
+            if name in PROPERTIES:
+                try:
+                    found[name] = read_value(PROPERTIES[name], child.get("value"))
+                except ValueError as error:
+                    self.problem(
+                        child,
+                        "bad-value",
+                        f'{name} "{child.get("value")}" {error}',
+                        attribute="value",
+                    )
+        return found
+
+    def handlers(self, node: Node) -> list[Handler]:
+        """Handlers in document order."""
+        found = []
+        for child in node.all(*HANDLERS):
+            events = child.get("event").split() if child.tag == "on" else [child.tag]
+            reactive = child.attributes.get("reactive")
+            found.append(
+                Handler(
+                    events=[event.rstrip(".") for event in events],
+                    cond=self.expression(child, "cond"),
+                    count=self.value(child, "count", "integer", 1),
+                    reactive=None if reactive is None else reactive == "true",
+                    content=self.content(child),
+                    node=child,
+                )
+            )
+        return found
+
+    def links(self, node: Node) -> list[Link]:
+        """Links in document order."""
+        found = []
+        for child in node.all("link"):
+            if ("next" in child.attributes) == ("event" in child.attributes):
+                self.problem(child, "missing-attribute", "<link> needs either next or event.")
+            grammars = [self.grammar(item) for item in child.all("grammar")]
+            if len(grammars) != 1:
+                self.problem(child, "missing-element", "<link> needs one <grammar>.")
+            for grammar in grammars[:1]:
+                found.append(Link(child.get("next")[1:], child.get("event"), grammar, child))
+        return found
+
+    def watches(self, node: Node) -> list[Watch]:
+        """Watches in document order."""
+        return [
+            Watch(child.get("name"), Expression(child.get("when"), child, "when"), child)
+            for child in node.all("watch")
+        ]
+
+    # Form items ---------------------------------------------------------------
+
+    def items(self, node: Node) -> list[Item]:
+        """The form items of a form or a unit."""
+        made: list[Item] = []
+        for child in node.nodes:
+            match child.tag:
+                case "block":
+                    block = Block(*self.item(child), content=self.content(child))
+                    made.append(block)
+                case "field":
+                    made.append(self.field(child))
+                case "subdialog":
+                    made.append(self.subdialog(child))
+                case "iu" if child.key == "iu-items":
+                    made.append(self.unit(child))
+        return made
+
+    def item(
+        self, node: Node
+    ) -> tuple[str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node]:
+        """What all form items have."""
+        name = node.get("name")
+        if not name:
+            self._unnamed += 1
+            name = f"$item{self._unnamed}"
+        handlers = self.handlers(node) if node.tag != "block" else []
+        return (
+            name,
+            self.expression(node),
+            self.expression(node, "cond"),
+            handlers,
+            self.properties(node),
+            node,
+        )
+
+    def field(self, node: Node) -> Field:
+        """A field, with all that it takes as an answer."""
+        prompts = [
+            Prompt(
+                text=self.text(child),
+                count=self.value(child, "count", "integer", 1),
+                cond=self.expression(child, "cond"),
+                timeout=self.value(child, "timeout", "duration", None),
+                bargein=self.value(child, "bargein", "boolean", None),
+                node=child,
+            )
+            for child in node.all("prompt")
+        ]
+        answers = Answers(type=node.get("type"))
+        for child in node.all("option"):
+            said = self.text_only(child)
+            if not fold(said):
+                self.problem(child, "empty-answer", "This option has nothing to say.")
+            elif fold(said) in answers.options:
+                self.problem(
+                    child, "duplicate-answer", f'"{said}" is an option of this field already.'
+                )
+            answers.options.setdefault(fold(said), child.get("value", said))
+        answers.grammars = [self.grammar(child) for child in node.all("grammar")]
+        if not (answers.options or answers.grammars or answers.type):
+            self.problem(
+                node,
+                "no-answer",
+                f'The field "{node.get("name")}" takes no answer at all.',
+                "Give it options, a grammar or a type.",
+            )
+        return Field(
+            *self.item(node),
+            prompts=prompts,
+            answers=answers,
+            filled=self.filleds(node),
+            lang=self.lang,
+        )
+
+    @staticmethod
+    def text_only(node: Node) -> str:
+        """The element's own text."""
+        return node.text
+
+    def subdialog(self, node: Node) -> Subdialog:
+        """A subdialog."""
+        return Subdialog(
+            *self.item(node),
+            form=node.get("src")[1:],
+            params=self.params(node),
+            filled=self.filleds(node),
+        )
+
+    def unit(self, node: Node) -> Unit:
+        """A unit around form items; its devices are those of everything in it."""
+        unit = Unit(*self.item(node), items=self.items(node))
+        unit.longest = self.value(node, "longest", "duration", LONGEST_MS)
+        devices: frozenset[str] = frozenset()
+        for item in unit.items:
+            if isinstance(item, Field):
+                devices |= TABLE_4_2["q-and-a"].devices
+        for command in unit_commands(unit):
+            self.in_unit(command)
+            row = TABLE_4_2.get(command.type)
+            if row is not None:
+                devices |= row.occupied("x" if command.text else None)
+        unit.devices = devices
+        return unit
+
+    def in_unit(self, command: CommandTemplate) -> None:
+        """U4: no feedback Command and none that leaves the user may be in a unit."""
+        row = TABLE_4_2.get(command.type)
+        if row is not None and (row.feedback or row.leaves):
+            why = "leaves the user" if row.leaves else "works in a feedback loop"
+            message = f"<{command.type}> {why}; it cannot stand in a unit."
+            self.problem(command.node, "not-in-unit", message, "Move it out of the <iu>.")
+
+    def filleds(self, node: Node) -> list[Filled]:
+        """Filled elements."""
+        return [
+            Filled(child.get("mode", "all"), self.names(child), self.content(child), child)
+            for child in node.all("filled")
+        ]
+
+    # Grammars -----------------------------------------------------------------
+
+    def grammar(self, node: Node) -> Grammar:
+        """An SRGS grammar of rules, or of one expansion."""
+        grammar = Grammar()
+        rules = node.all("rule")
+        for rule in rules:
+            name = rule.get("id")
+            if name in grammar.rules:
+                self.problem(rule, "duplicate-id", f'There are two rules "{name}".', attribute="id")
+            grammar.rules[name] = self.expansion(rule)
+        if rules:
+            grammar.root = node.get("root", rules[0].get("id"))
+            if node.text:
+                self.problem(
+                    node, "stray-text", "This grammar has rules; its own text counts for nothing."
+                )
+        else:
+            grammar.root = "root"
+            grammar.rules["root"] = self.expansion(node)
+        if grammar.root not in grammar.rules:
+            self.problem(
+                node, "no-such-rule", f'There is no rule "{grammar.root}".', attribute="root"
+            )
+            grammar.rules[grammar.root] = Choice([])
+        self.check_references(node, grammar)
+        return grammar
+
+    def check_references(self, node: Node, grammar: Grammar) -> None:
+        """Every ruleref names a rule."""
+        for child in node.nodes:
+            name = child.get("uri")[1:]
+            if child.tag == "ruleref" and name not in grammar.rules:
+                self.problem(child, "no-such-rule", f'There is no rule "{name}".', attribute="uri")
+                grammar.rules[name] = Choice([])
+            self.check_references(child, grammar)
+
+    def expansion(self, node: Node) -> Part:
+        """The expansion that an element holds."""
+        parts: list[Part] = []
+        for item in node.content:
+            if isinstance(item, str):
+                if fold(item):
+                    parts.append(Words(fold(item)))
+                continue
+            match item.tag:
+                case "one-of":
+                    parts.append(Choice([self.expansion(child) for child in item.all("item")]))
+                case "item":
+                    parts.append(self.expansion(item))
+                case "ruleref":
+                    parts.append(Reference(item.get("uri")[1:]))
+                case "tag":
+                    parts.append(Tag(item.text))
+        low, high = self.repeat(node)
+        return Sequence(parts, low, high)
+
+    def repeat(self, node: Node) -> tuple[int, int]:
+        """The repeat attribute of an item: n, m-n or m-."""
+        text = node.get("repeat", "1") or "1"
+        low, dash, high = text.partition("-")
+        if not (
+            low.isdigit() and len(low) < 4 and (not high or (high.isdigit() and len(high) < 4))
+        ):
+            self.problem(
+                node,
+                "bad-value",
+                f'repeat "{text}" is not of the form 2, 0-1 or 1-.',
+                attribute="repeat",
+            )
+            return 1, 1
+        return int(low), int(high) if high else (999 if dash else int(low))
+
+    # Content ----------------------------------------------------------------------
+
+    def content(self, node: Node) -> list[Act]:
+        """Executable content; Commands that follow one another become one run."""
+        return self.acts([child for child in node.nodes if child.key not in ("param", "value")])
+
+    def acts(self, nodes: list[Node]) -> list[Act]:
+        """Executable content from some of an element's children."""
+        made: list[Act] = []
+        sequence: list[Node] = []
+        for node in nodes:
+            if node.tag in ACTING:
+                # A Command wanted now begins a run of its own: what stands before it comes first.
+                if sequence and self.is_now(node):
+                    made.append(self.run(sequence))
+                    sequence = []
+                sequence.append(node)
+                continue
+            if sequence:
+                made.append(self.run(sequence))
+                sequence = []
+            act = self.act(node)
+            if act is not None:
+                made.append(act)
+        if sequence:
+            made.append(self.run(sequence))
+        return made
+
+    @staticmethod
+    def is_now(node: Node) -> bool:
+        """Whether a Command is wanted now."""
+        row = TABLE_4_2.get(node.tag)
+        return node.get("order") == "now" or (row is not None and row.now)
+
+    def run(self, nodes: list[Node]) -> Run:
+        """Commands that follow one another, flattened into steps."""
+        steps: list[StepTemplate] = []
+        self.sequence(nodes, (), steps)
+        return Run(steps, nodes[0])
+
+    def sequence(
+        self, nodes: list[Node], after: tuple[int, ...], steps: list[StepTemplate]
+    ) -> tuple[int, ...]:
+        """Add steps one after another; gives what whatever follows has to wait for."""
+        for node in nodes:
+            if node.tag == "par":
+                ends: list[int] = []
+                for branch in node.nodes:
+                    ends += self.sequence([branch], after, steps)
+                after = tuple(ends) or after
+            elif node.tag == "seq":
+                after = self.sequence(node.nodes, after, steps)
+            elif node.tag == "iu":
+                group = self.group(node)
+                if group.steps:
+                    steps.append(StepTemplate(group, after))
+                    after = (len(steps) - 1,)
+            else:
+                if steps and self.is_now(node):
+                    self.problem(
+                        node,
+                        "now-inside",
+                        f"<{node.tag}> is wanted now; it cannot stand in a <{'par'}>, <seq> or <iu>"
+                        " behind others.",
+                        "Put it first.",
+                    )
+                steps.append(StepTemplate(self.command(node), after))
+                after = (len(steps) - 1,)
+        return after
+
+    def group(self, node: Node) -> GroupTemplate:
+        """A unit around Commands."""
+        steps: list[StepTemplate] = []
+        self.sequence(node.nodes, (), steps)
+        for command in run_commands(steps):
+            self.in_unit(command)
+        if not steps:
+            self.problem(node, "empty", "This <iu> holds no Command.")
+        return GroupTemplate(steps, self.value(node, "longest", "duration", LONGEST_MS), node)
+
+    def command(self, node: Node) -> CommandTemplate:
+        """A Command element."""
+        name = node.get("type") if node.tag == "command" else node.tag
+        row = TABLE_4_2.get(name)
+        args: dict[str, Json | Expression] = {}
+        for key, text in node.attributes.items():
+            if key in ("order", "type") and (row is None or key not in row.arguments):
+                continue
+            bare = key.removesuffix("-expr")
+            argument = row.arguments.get(bare) if row else None
+            if argument is None:
+                continue
+            if bare != key:
+                if bare in node.attributes:
+                    self.exclusive(node, bare, key)
+                args[bare] = Expression(text, node, key)
+                continue
+            try:
+                args[bare] = check_argument(bare, argument, text)
+            except ValueError as error:
+                if "out of range" in str(error):
+                    self.problem(node, "out-of-range", str(error), attribute=key)
+        content = self.text(node) or None
+        if row is not None and not any(
+            item.required and name not in args for name, item in row.arguments.items()
+        ):
+            missing = missing_argument(row, args)
+            if missing:
+                self.problem(node, "missing-attribute", missing)
+        if row is not None and row.text == "required" and content is None:
+            self.problem(
+                node,
+                "nothing-to-say",
+                f"<{node.tag}> has nothing to say.",
+                "Write its text inside it.",
+            )
+        params = self.params(node)
+        if params and self.root.get("kind") == "ea" and node.tag != "command":
+            self.problem(
+                node.all("param")[0],
+                "fa-only",
+                "Additional arguments are for an FA alone: an EA does not know the robot.",
+                "Remove the <param>.",
+            )
+        return CommandTemplate(
+            type=name,
+            args=args,
+            text=content,
+            now=node.get("order") == "now",
+            extra=params,
+            handlers=self.handlers(node),
+            node=node,
+            lang=self.lang,
+        )
+
+    def act(self, node: Node) -> Act | None:
+        """One element of executable content that is no Command."""
+        match node.tag:
+            case "var":
+                return self.declare(node)
+            case "script":
+                return self.script(node)
+            case "assign":
+                return Assign(node.get("name"), Expression(node.get("expr"), node), node)
+            case "clear":
+                return Clear(self.names(node), node)
+            case "if":
+                return self.condition(node)
+            case "foreach":
+                array = Expression(node.get("array"), node, "array")
+                return Foreach(node.get("item"), array, self.content(node), node)
+            case "log":
+                text = self.text(node)
+                expr = self.expression(node)
+                return Log(node.get("label"), [*text, *([expr] if expr else [])], node)
+            case "throw":
+                return Throw(self.either(node, "event"), self.either(node, "message"), node)
+            case "goto":
+                return self.goto(node)
+            case "return":
+                return Return(self.names(node), node.get("event"), node)
+            case "exit":
+                return Exit(node)
+            case "reprompt":
+                return Reprompt(node)
+            case "send":
+                return self.send(node)
+        return None
+
+    def condition(self, node: Node) -> If:
+        """An if, divided by its elseif and else."""
+        branches: list[tuple[Expression | None, list[Act]]] = []
+        cond: Expression | None = Expression(node.get("cond"), node, "cond")
+        part: list[Node] = []
+        for child in node.nodes:
+            if child.tag not in ("elseif", "else"):
+                part.append(child)
+                continue
+            if cond is None:
+                self.problem(
+                    child, "after-else", f"<{child.tag}> stands after <else>.", "<else> comes last."
+                )
+            branches.append((cond, self.acts(part)))
+            part = []
+            cond = Expression(child.get("cond"), child, "cond") if child.tag == "elseif" else None
+        branches.append((cond, self.acts(part)))
+        return If(branches, node)
+
+    def goto(self, node: Node) -> Goto:
+        """A goto, to a form or to an item."""
+        form, item = self.either(node, "next"), self.either(node, "nextitem")
+        if bool(form) == bool(item):
+            self.problem(node, "missing-attribute", "<goto> needs either next or nextitem.")
+        if isinstance(form, str):
+            form = form.removeprefix("#")
+        return Goto(form or None, item or None, node)
+
+    def send(self, node: Node) -> SendOut:
+        """A send, to a service or to the application itself."""
+        to = self.either(node, "to")
+        event = node.get("event")
+        if bool(to) == bool(event):
+            self.problem(node, "missing-attribute", "<send> needs either to or event.")
+        if to and ("delay" in node.attributes or "delay-expr" in node.attributes):
+            self.problem(
+                node,
+                "exclusive",
+                "Only an event to the application itself has a delay.",
+                "Remove it.",
+                "delay",
+            )
+        delay = self.expression(node, "delay-expr") or self.value(node, "delay", "duration", 0)
+        return SendOut(to, event, delay, self.params(node), node)
+
+
+def unit_commands(unit: Unit) -> list[CommandTemplate]:
+    """All Commands in a unit, those of its fields' and its own handlers included."""
+    found: list[CommandTemplate] = []
+    contents: list[list[Act]] = [handler.content for handler in unit.handlers]
+    for item in unit.items:
+        contents += [handler.content for handler in item.handlers]
+        if isinstance(item, Block):
+            contents.append(item.content)
+        elif isinstance(item, Field):
+            contents += [part.content for part in item.filled]
+    for content in contents:
+        for act in all_acts(content):
+            if isinstance(act, Run):
+                found += run_commands(act.steps)
+    return found

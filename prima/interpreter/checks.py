@@ -1,0 +1,477 @@
+"""Meaning: what a document says that cannot be so, beyond what its schema can tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from functools import lru_cache
+from typing import Any
+
+from prima.commands import TABLE_4_2, CommandType
+from prima.errors import Place, Problem, Severity, did_you_mean
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Block,
+    Clear,
+    CommandTemplate,
+    Declare,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Filled,
+    Foreach,
+    Form,
+    Goto,
+    GroupTemplate,
+    Return,
+    Run,
+    Script,
+    StepTemplate,
+    Subdialog,
+    Unit,
+    all_acts,
+    all_items,
+    run_commands,
+)
+from prima.interpreter.expressions import (
+    ScriptError,
+    check_expression,
+    check_script,
+    declared_names,
+    free_names,
+    plain_context,
+)
+from prima.markup.tree import Node
+
+LONG_UNIT_MS = 20_000
+"""A unit whose speech alone takes longer than this cannot be reacted in."""
+MS_A_LETTER = 70
+
+
+def check_document(document: Document) -> list[Problem]:
+    """All problems of meaning in a document."""
+    checker = Checker(document)
+    checker.check()
+    return checker.problems
+
+
+def check_commands(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
+    problems = []
+    for command in document_commands(document):
+        if command.type not in commands:
+            known = command.type in TABLE_4_2
+            message = (
+                f"This robot cannot do {command.type}; it throws error.unsupported.{command.type}."
+                if known
+                else f'This robot has no Command "{command.type}".'
+            )
+            hint = "" if known else did_you_mean(command.type, commands)
+            severity: Severity = "warning" if known else "error"
+            problems.append(
+                Problem(command.node.place, severity, "unsupported-command", message, hint)
+            )
+            continue
+        for name, _ in command.extra:
+            row = commands[command.type]
+            if name not in row.extra and name not in row.arguments:
+                message = f'This robot\'s {command.type} has no additional argument "{name}".'
+                hint = did_you_mean(name, row.extra | set(row.arguments))
+                problems.append(
+                    Problem(command.node.place, "error", "no-such-argument", message, hint)
+                )
+    return problems
+
+
+def document_commands(document: Document) -> Iterator[CommandTemplate]:
+    """Every Command of a document."""
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            if isinstance(act, Run):
+                yield from run_commands(act.steps)
+
+
+@lru_cache(maxsize=1)
+def _context() -> Any:
+    return plain_context()
+
+
+class Checker:
+    """Goes through a document once for each kind of mistake."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.problems: list[Problem] = []
+        self.shared = self._setup_names(document.setup)
+
+    def note(
+        self,
+        node: Node,
+        code: str,
+        message: str,
+        remedy: str = "",
+        attribute: str = "",
+        severity: Severity = "error",
+    ) -> None:
+        """Note a problem at an element or an attribute's value."""
+        place = node.attribute_place(attribute) if attribute in node.attributes else node.place
+        self.problems.append(Problem(place, severity, code, message, remedy))
+
+    def check(self) -> None:
+        """Check everything."""
+        self._targets()
+        self._reachable()
+        self._names()
+        self._expressions()
+        self._commands()
+        self._after_goto()
+
+    # States -------------------------------------------------------------------
+
+    def _form(self, name: str, node: Node, attribute: str) -> None:
+        forms = self.document.forms
+        if name not in forms:
+            message = f'There is no form "{name}" to go to.'
+            self.note(node, "no-such-form", message, did_you_mean(name, forms), attribute)
+
+    def _targets(self) -> None:
+        for form, content, _ in self.document.contents():
+            for act in all_acts(content):
+                if isinstance(act, Goto):
+                    self._goto(act, form)
+        for form in self.document.forms.values():
+            for item in all_items(form.items):
+                if isinstance(item, Subdialog):
+                    self._form(item.form, item.node, "src")
+        links = [*self.document.links, *(x for f in self.document.forms.values() for x in f.links)]
+        for link in links:
+            if link.form:
+                self._form(link.form, link.node, "next")
+
+    def _goto(self, act: Goto, form: Form | None) -> None:
+        if isinstance(act.form, str):
+            self._form(act.form, act.node, "next")
+        if isinstance(act.item, str):
+            items = (
+                all_items(form.items)
+                if form
+                else [item for one in self.document.forms.values() for item in all_items(one.items)]
+            )
+            names = {item.name for item in items}
+            if act.item not in names:
+                message = f'There is no form item "{act.item}" to go to.'
+                self.note(
+                    act.node, "no-such-item", message, did_you_mean(act.item, names), "nextitem"
+                )
+
+    def _leads(self, form: Form | None) -> tuple[set[str], bool]:
+        """Forms that content of a form (or the document's) leads to, and whether it can end."""
+        targets: set[str] = set()
+        ends = False
+        for owner, content, _ in self.document.contents():
+            if owner is not form:
+                continue
+            for act in all_acts(content):
+                if isinstance(act, Goto) and act.form is not None:
+                    targets |= {act.form} if isinstance(act.form, str) else set(self.document.forms)
+                ends = ends or isinstance(act, Exit | Return)
+        links = self.document.links if form is None else form.links
+        targets |= {link.form for link in links if link.form}
+        if form is not None:
+            targets |= {i.form for i in all_items(form.items) if isinstance(i, Subdialog)}
+        return targets, ends
+
+    def _reachable(self) -> None:
+        forms = self.document.forms
+        if not forms:
+            return
+        everywhere, everywhere_ends = self._leads(None)
+        reached: set[str] = set()
+        waiting = [next(iter(forms)), *sorted(everywhere)]
+        while waiting:
+            name = waiting.pop()
+            if name in reached or name not in forms:
+                continue
+            reached.add(name)
+            waiting += sorted(self._leads(forms[name])[0])
+        for name, form in forms.items():
+            if name not in reached:
+                self.note(
+                    form.node, "unreachable", f'Nothing leads to the form "{name}".',
+                    "Go to it from somewhere, or remove it.", "id", "warning",
+                )  # fmt: skip
+            targets, ends = self._leads(form)
+            throws = any(
+                type(act).__name__ == "Throw"
+                for owner, content, _ in self.document.contents()
+                if owner is form
+                for act in all_acts(content)
+            )
+            if not (targets or ends or throws or everywhere or everywhere_ends) and name in reached:
+                self.note(
+                    form.node, "dead-end", f'The form "{name}" can never be left.',
+                    "If the application is over here, write <exit/>.", "id", "warning",
+                )  # fmt: skip
+
+    # Names --------------------------------------------------------------------
+
+    @staticmethod
+    def _setup_names(setup: Iterable[Declare | Script]) -> set[str]:
+        names: set[str] = set()
+        for act in setup:
+            names |= {act.name} if isinstance(act, Declare) else declared_names(act.code.code)
+        return names
+
+    def _names(self) -> None:
+        for form in self.document.forms.values():
+            seen: set[str] = set()
+            for item in all_items(form.items):
+                if item.name in seen:
+                    message = f'The form "{form.id}" has two items named "{item.name}".'
+                    self.note(item.node, "duplicate-name", message, "Rename one.", "name")
+                seen.add(item.name)
+            inputs = {i.name for i in all_items(form.items) if isinstance(i, Field | Subdialog)}
+            own = [
+                f
+                for i in all_items(form.items)
+                if isinstance(i, Field | Subdialog)
+                for f in i.filled
+            ]
+            for filled in [*form.filled, *own]:
+                self._namelist(filled, filled.names, inputs, "field")
+
+    def _namelist(
+        self, holder: Filled | Clear, names: list[str], known: set[str], what: str
+    ) -> None:
+        for name in names:
+            if name not in known:
+                message = f'There is no {what} "{name}".'
+                self.note(
+                    holder.node, "no-such-item", message, did_you_mean(name, known), "namelist"
+                )
+
+    def known_in(self, form: Form | None) -> set[str]:
+        """All variables that content of a form may see; without a form, of any form."""
+        forms = [form] if form is not None else list(self.document.forms.values())
+        known = set(self.shared)
+        for one in forms:
+            known |= self._setup_names(one.setup)
+            for item in all_items(one.items):
+                known |= {item.name, f"{item.name}$"}
+        for owner, content, _ in self.document.contents():
+            if form is None or owner is form or owner is None:
+                known |= self._content_names(content)
+        for other in self.document.forms.values():
+            for item in all_items(other.items):
+                if isinstance(item, Subdialog) and (form is None or item.form == form.id):
+                    known |= {name for name, _ in item.params}
+        return known
+
+    @staticmethod
+    def _content_names(content: list[Act]) -> set[str]:
+        names: set[str] = set()
+        for act in all_acts(content):
+            if isinstance(act, Declare):
+                names.add(act.name)
+            elif isinstance(act, Script):
+                names |= declared_names(act.code.code)
+            elif isinstance(act, Foreach):
+                names.add(act.item)
+        return names
+
+    # Expressions --------------------------------------------------------------
+
+    def _expressions(self) -> None:
+        document = self.document
+        every = self.known_in(None)
+        for part in (document.setup, document.watches):
+            self._walk(part, self.shared, every)
+        self._walk(document.handlers, every, every)
+        for form in document.forms.values():
+            known = self.known_in(form)
+            for piece in (form.setup, form.watches, form.handlers, form.filled, form.items):
+                self._walk(piece, known, every)
+
+    def _walk(self, value: object, known: set[str], every: set[str]) -> None:
+        """Find every expression in values and check it."""
+        if isinstance(value, Expression):
+            self._expression(value, known)
+        elif isinstance(value, Script):
+            self._script(value, known)
+        elif isinstance(value, list | tuple):
+            for part in value:
+                self._walk(part, known, every)
+        elif isinstance(value, dict):
+            self._walk(list(value.values()), known, every)
+        elif is_dataclass(value) and not isinstance(value, Node):
+            self._variables(value, known)
+            for entry in fields(value):
+                if entry.name != "node":
+                    self._walk(getattr(value, entry.name), known, every)
+
+    def _variables(self, value: object, known: set[str]) -> None:
+        if isinstance(value, Assign):
+            head = value.name.split(".")
+            name = (
+                head[1]
+                if head[0] in ("document", "dialog", "application") and head[1:]
+                else head[0]
+            )
+            if name not in known:
+                self._undeclared(value.node, name, known, "name")
+        elif isinstance(value, Clear | Return):
+            for name in value.names:
+                if name not in known:
+                    self._undeclared(value.node, name, known, "namelist")
+
+    def _undeclared(self, node: Node, name: str, known: set[str], attribute: str) -> None:
+        shown = {word for word in known if not word.startswith("$")}
+        remedy = did_you_mean(name, shown) or f'Declare it: <var name="{name}"/>.'
+        message = f'The variable "{name}" is not declared.'
+        self.note(node, "undeclared-variable", message, remedy, attribute)
+
+    def _place_in(self, expr: Expression, line: int, column: int) -> Place:
+        """The place inside an expression where its compiler stopped."""
+        start = expr.node.attribute_place(expr.attribute) if expr.attribute else expr.node.place
+        if not expr.attribute or line < 1:
+            return start
+        ahead = start.column - 1 if line == 1 else 0
+        return Place(start.file, start.line + line - 1, max(ahead + column, 1))
+
+    def _expression(self, expr: Expression, known: set[str]) -> None:
+        if self._compiles(expr, check_expression):
+            for name in sorted(free_names(expr.code) - known):
+                self._undeclared(expr.node, name, known, expr.attribute)
+
+    def _script(self, act: Script, known: set[str]) -> None:
+        if self._compiles(act.code, check_script):
+            for name in sorted(free_names(act.code.code) - known):
+                message = f'The script uses "{name}", which nothing declares.'
+                self.note(act.node, "undeclared-variable", message, severity="warning")
+
+    def _compiles(self, expr: Expression, check: Callable[[Any, str], None]) -> bool:
+        try:
+            check(_context(), expr.code)
+        except ScriptError as error:
+            shown = " ".join(expr.code.split())
+            shown = shown if len(shown) <= 60 else shown[:57] + "..."
+            message = f'"{shown}" is not ECMAScript: {error}.'
+            place = self._place_in(expr, error.line, error.column)
+            self.problems.append(Problem(place, "error", "bad-expression", message))
+            return False
+        return True
+
+    # Commands -----------------------------------------------------------------
+
+    def _commands(self) -> None:
+        for form, content, _ in self.document.contents():
+            for act in all_acts(content):
+                if isinstance(act, Run):
+                    self._branches(act.steps)
+                    self._endless(act.steps, form)
+                    self._long_units(act.steps)
+        for form in self.document.forms.values():
+            for item in all_items(form.items):
+                if isinstance(item, Unit):
+                    self._long_unit(item.node, self._unit_text(item))
+
+    def _branches(self, steps: list[StepTemplate]) -> None:
+        """U3: branches of a par that share a device run one after the other."""
+        for index, step in enumerate(steps):
+            for other in steps[index + 1 :]:
+                if not self._parallel(steps, index, steps.index(other)):
+                    continue
+                both = _devices(step) & _devices(other)
+                if both:
+                    node = other.what.node
+                    message = (
+                        f"This branch shares {', '.join(sorted(both))} with another:"
+                        " they run one after the other."
+                    )
+                    self.note(node, "shared-device", message, severity="warning")
+                    return
+
+    @staticmethod
+    def _parallel(steps: list[StepTemplate], first: int, second: int) -> bool:
+        """Whether neither of two steps waits for the other."""
+        waiting, seen = [second], set()
+        while waiting:
+            index = waiting.pop()
+            if index == first:
+                return False
+            if index not in seen:
+                seen.add(index)
+                waiting += steps[index].after
+        return True
+
+    def _endless(self, steps: list[StepTemplate], form: Form | None) -> None:
+        """E4: a feedback Command without an end of its own, in a state without handlers."""
+        for command in run_commands(steps):
+            if command.type != "tracking-human" or form is None:
+                continue
+            ways = [*form.handlers, *self.document.handlers, *form.links, *self.document.links]
+            if not ways:
+                message = "tracking-human never ends by itself, and this state handles no event."
+                self.note(
+                    command.node, "endless", message,
+                    'Handle an event: <on event="touch"><goto .../></on>.', severity="warning",
+                )  # fmt: skip
+
+    def _long_units(self, steps: list[StepTemplate]) -> None:
+        for step in steps:
+            if isinstance(step.what, GroupTemplate):
+                text = sum(_letters(command.text) for command in run_commands(step.what.steps))
+                self._long_unit(step.what.node, text)
+
+    def _long_unit(self, node: Node, letters: int) -> None:
+        lasts = letters * MS_A_LETTER
+        if lasts > LONG_UNIT_MS:
+            message = f"This unit speaks for about {lasts // 1000} s: no reaction can break in."
+            self.note(node, "long-unit", message, "Divide it (thesis 4.5).", severity="warning")
+
+    @staticmethod
+    def _unit_text(unit: Unit) -> int:
+        letters = 0
+        for item in unit.items:
+            if isinstance(item, Field):
+                letters += sum(_letters(prompt.text) for prompt in item.prompts[:1])
+            elif isinstance(item, Block):
+                for act in all_acts(item.content):
+                    if isinstance(act, Run):
+                        letters += sum(_letters(one.text) for one in run_commands(act.steps))
+        return letters
+
+    def _after_goto(self) -> None:
+        """Content behind a goto, return or exit is never reached."""
+        for _, content, _ in self.document.contents():
+            self._dead(content)
+
+    def _dead(self, content: list[Act]) -> None:
+        for index, act in enumerate(content):
+            if isinstance(act, Goto | Return | Exit) and index + 1 < len(content):
+                node = content[index + 1].node
+                message = f"<{node.tag}> stands behind <{act.node.tag}> and is never reached."
+                self.note(node, "dead-content", message, severity="warning")
+                return
+            for branch in getattr(act, "branches", ()):
+                self._dead(branch[1])
+            if isinstance(act, Foreach):
+                self._dead(act.content)
+
+
+def _devices(step: StepTemplate) -> frozenset[str]:
+    commands = (
+        run_commands(step.what.steps) if isinstance(step.what, GroupTemplate) else [step.what]
+    )
+    devices: frozenset[str] = frozenset()
+    for command in commands:
+        row = TABLE_4_2.get(command.type)
+        if row is not None:
+            devices |= row.occupied("x" if command.text else None)
+    return devices
+
+
+def _letters(text: Any) -> int:
+    return sum(len(part) for part in text or () if isinstance(part, str))

@@ -1,0 +1,337 @@
+"""Executable content: each kind of element in a short method (VoiceXML 5.3)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Clear,
+    CommandTemplate,
+    Declare,
+    Exit,
+    Expression,
+    Foreach,
+    Goto,
+    GroupTemplate,
+    If,
+    Log,
+    Reprompt,
+    Return,
+    Run,
+    Script,
+    SendOut,
+    StepTemplate,
+    Text,
+    Throw,
+    all_items,
+)
+from prima.interpreter.expressions import Engine, Scope, ScriptError
+from prima.interpreter.frame import (
+    Abandoned,
+    Content,
+    Fiber,
+    GoBack,
+    GoForm,
+    GoItem,
+    GoOut,
+    Thrown,
+)
+from prima.markup.tree import Node
+from prima.messages import Command, Group, Json, Notice, Say, Step
+from prima.values import read_value
+
+if TYPE_CHECKING:
+    from prima.interpreter.form import Interpreter
+
+MAX_TEXT = 4000
+"""Characters that a Command may say."""
+MAX_REPEATS = 10_000
+"""Elements that a foreach goes through."""
+
+
+class Executor:
+    """Runs content for one application."""
+
+    def __init__(self, owner: Interpreter) -> None:
+        self.owner = owner
+        self.engine: Engine = owner.engine
+
+    def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
+        """The scopes that content sees, outermost first."""
+        frame = fiber.frame
+        return (self.owner.application, frame.document, frame.dialog, fiber.local)
+
+    # Expressions --------------------------------------------------------------
+
+    def failure(self, error: ScriptError, expr: Expression) -> Thrown:
+        """``error.semantic`` with the place of the expression that failed."""
+        place = where(expr)
+        message = f"{place}: {expr.code.strip()[:80]}: {error}"
+        return Thrown(self.owner.internal("error.semantic", message), place)
+
+    def evaluate(self, expr: Expression, fiber: Fiber) -> Json:
+        """An expression's value as plain data."""
+        try:
+            return self.engine.value(expr.code, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, expr) from None
+
+    def condition(self, expr: Expression, fiber: Fiber) -> bool:
+        """An expression as a condition."""
+        try:
+            return self.engine.condition(expr.code, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, expr) from None
+
+    def text(self, parts: Text, fiber: Fiber) -> str:
+        """Text with its values filled in."""
+        said: list[str] = []
+        for part in parts:
+            if isinstance(part, str):
+                said.append(part)
+                continue
+            try:
+                said.append(self.engine.text(part.code, self.scopes(fiber)))
+            except ScriptError as error:
+                raise self.failure(error, part) from None
+        return " ".join("".join(said).split())
+
+    def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
+        """A value, or the value of an expression."""
+        return self.evaluate(value, fiber) if isinstance(value, Expression) else value
+
+    def named(self, params: list[tuple[str, str | Expression]], fiber: Fiber) -> dict[str, Json]:
+        """Params as plain data by name."""
+        return {name: self.plain(value, fiber) for name, value in params}
+
+    def declare(self, act: Declare, scope: Scope, fiber: Fiber) -> None:
+        """Declare a variable in a scope (VoiceXML 5.3.1)."""
+        if act.expr is None:
+            self.engine.unset(scope, act.name)
+            return
+        try:
+            self.engine.assign(scope, act.name, act.expr.code, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, act.expr) from None
+
+    def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
+        """Run a script; what it declares belongs to the scope."""
+        try:
+            self.engine.script(act.code.code, scope, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, act.code) from None
+
+    # Content ------------------------------------------------------------------
+
+    def run(self, content: list[Act], fiber: Fiber) -> Content:
+        """Run content in document order; waits where Commands have to end (O4)."""
+        for act in content:
+            self.owner.count_step(act.node)
+            if isinstance(act, Run):
+                yield from self.commands(act, fiber)
+            elif isinstance(act, If):
+                yield from self.branch(act, fiber)
+            elif isinstance(act, Foreach):
+                yield from self.foreach(act, fiber)
+            else:
+                self.simple(act, fiber)
+
+    def simple(self, act: Act, fiber: Fiber) -> None:
+        """Content that takes no time."""
+        match act:
+            case Assign():
+                self.assign(act, fiber)
+            case Declare():
+                self.declare(act, fiber.local, fiber)
+            case Script():
+                self.script(act, fiber.local, fiber)
+            case Clear():
+                self.clear(act, fiber)
+            case Goto():
+                self.goto(act, fiber)
+            case Throw():
+                name = str(self.plain(act.event, fiber))
+                message = str(self.plain(act.message, fiber) or "")
+                raise Thrown(self.owner.internal(name, message), source(act.node))
+            case Return():
+                raise GoBack(act.names, act.event)
+            case Exit():
+                raise GoOut()
+            case Reprompt():
+                fiber.frame.reprompt = True
+            case Log():
+                label = f"{act.label}: " if act.label else ""
+                said = label + self.text(act.text, fiber)
+                self.owner.actions.append(Say("log", said, source(act.node)))
+            case SendOut():
+                self.send(act, fiber)
+            case _:
+                raise AssertionError(act)
+
+    def assign(self, act: Assign, fiber: Fiber) -> None:
+        """Give a declared variable a value; innermost scope first (VoiceXML 5.3.2)."""
+        name, prefix = act.name, ""
+        scopes = dict(
+            zip(("application", "document", "dialog", "local"), self.scopes(fiber), strict=True)
+        )
+        head, dot, tail = name.partition(".")
+        if dot and head in scopes:
+            prefix, name = head, tail
+        chosen = [scopes[prefix]] if prefix else list(reversed(scopes.values()))
+        head, dot, tail = name.partition(".")
+        try:
+            scope = next((scope for scope in chosen if self.engine.has(scope, head)), None)
+            if scope is None:
+                raise ScriptError(f'the variable "{act.name}" is not declared')
+            if dot:
+                self.engine.raw(f"{head}.{tail} = ({act.expr.code}\n)", self.scopes(fiber))
+            else:
+                self.engine.assign(scope, name, act.expr.code, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, act.expr) from None
+
+    def clear(self, act: Clear, fiber: Fiber) -> None:
+        """Undefine form items and reset their counters (VoiceXML 5.3.3)."""
+        frame = fiber.frame
+        names = act.names or [item.name for item in all_items(frame.form.items)]
+        items = {item.name for item in all_items(frame.form.items)}
+        for name in names:
+            scope = next(
+                (one for one in reversed(self.scopes(fiber)) if self.engine.has(one, name)), None
+            )
+            if scope is None:
+                message = f'{source(act.node)}: the variable "{name}" is not declared'
+                raise Thrown(self.owner.internal("error.semantic", message), source(act.node))
+            self.engine.unset(scope, name)
+            if name in items:
+                frame.prompts.pop(name, None)
+                frame.counters = {
+                    key: count for key, count in frame.counters.items() if key[0] != name
+                }
+
+    def goto(self, act: Goto, fiber: Fiber) -> None:
+        """Leave for a form or an item."""
+        if act.item is not None:
+            name = str(self.plain(act.item, fiber))
+            if all(item.name != name for item in all_items(fiber.frame.form.items)):
+                message = f'{source(act.node)}: there is no form item "{name}"'
+                raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
+            raise GoItem(name)
+        target = str(self.plain(act.form, fiber)).removeprefix("#")
+        if target not in self.owner.document.forms:
+            message = f'{source(act.node)}: there is no form "{target}"'
+            raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
+        raise GoForm(target)
+
+    def send(self, act: SendOut, fiber: Fiber) -> None:
+        """Ask a service, or raise an event here after a delay."""
+        params = self.named(act.params, fiber)
+        if act.event:
+            delay = self.plain(act.delay, fiber)
+            self.owner.delay(act.event, params, self.milliseconds(delay, act.node), fiber)
+        else:
+            service = str(self.plain(act.service, fiber))
+            self.owner.send(service, params, source(act.node))
+
+    def milliseconds(self, value: Json, node: Node) -> int:
+        """A delay: milliseconds from an attribute, or a time or seconds from an expression."""
+        try:
+            if isinstance(value, str):
+                return int(read_value("duration", value))
+            if isinstance(value, int | float) and 0 <= value < 86_400_000:
+                return round(value) if "delay" in node.attributes else round(value * 1000)
+        except ValueError:
+            pass
+        message = f'{source(node)}: delay "{value}" is not a time'
+        raise Thrown(self.owner.internal("error.semantic", message), source(node))
+
+    def branch(self, act: If, fiber: Fiber) -> Content:
+        """The first branch whose condition holds."""
+        for cond, content in act.branches:
+            if cond is None or self.condition(cond, fiber):
+                yield from self.run(content, fiber)
+                return
+
+    def foreach(self, act: Foreach, fiber: Fiber) -> Content:
+        """Content once for each element of an array."""
+        try:
+            elements = self.engine.elements(act.array.code, self.scopes(fiber))
+            if len(elements) > MAX_REPEATS:
+                raise ScriptError(f"it has more than {MAX_REPEATS:,} elements")
+        except ScriptError as error:
+            raise self.failure(error, act.array) from None
+        for element in elements:
+            self.owner.count_step(act.node)
+            self.engine.put(fiber.local, act.item, element)
+            yield from self.run(act.content, fiber)
+
+    # Commands -----------------------------------------------------------------
+
+    def commands(self, act: Run, fiber: Fiber) -> Content:
+        """Request Commands as one tree and wait for their end (U3, O4)."""
+        number = self.owner.request(self.steps(act.steps, fiber), fiber)
+        yield from self.await_run(number, fiber)
+
+    def await_run(self, number: int, fiber: Fiber) -> Content:
+        """Wait for a run's fate; a failure becomes an event, a cancellation ends the content."""
+        notice = yield number
+        self.check(notice, fiber)
+
+    def check(self, notice: Notice, fiber: Fiber) -> None:
+        """Go on after a run's end, or not."""
+        if notice.what == "failed":
+            fiber.commands = (notice.command.hook if notice.command else None) or []
+            place = notice.command.source if notice.command else ""
+            message = f"{place}: {notice.message}" if place else notice.message
+            raise Thrown(self.owner.internal(notice.event, message, notice.command), place)
+        if notice.what == "cancelled":
+            raise Abandoned
+
+    def steps(self, templates: list[StepTemplate], fiber: Fiber) -> list[Step]:
+        """Templates with their expressions evaluated."""
+        made: list[Step] = []
+        for template in templates:
+            what = template.what
+            if isinstance(what, GroupTemplate):
+                group = Group(self.steps(what.steps, fiber), what.longest, source(what.node))
+                made.append(Step(group, template.after))
+            else:
+                made.append(Step(self.command(what, fiber), template.after))
+        return made
+
+    def command(self, template: CommandTemplate, fiber: Fiber) -> Command:
+        """A Command with its arguments."""
+        text = self.text(template.text, fiber)[:MAX_TEXT] if template.text is not None else None
+        args = {name: self.plain(value, fiber) for name, value in template.args.items()}
+        extra = self.named(template.extra, fiber)
+        own = self.owner.arguments.get(template.type, frozenset())
+        for name in [name for name in extra if name in own]:
+            args[name] = extra.pop(name)
+        command = Command(
+            template.type,
+            args,
+            text or None,
+            template.now,
+            extra,
+            lang=template.lang,
+            source=source(template.node),
+        )
+        if template.handlers:
+            command.hook = template.handlers
+        return command
+
+
+def source(node: Node) -> str:
+    """The document and line of an element, for the transcript."""
+    place = node.place
+    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"
+
+
+def where(expr: Expression) -> str:
+    """The document and line of an expression."""
+    if not expr.attribute:
+        return source(expr.node)
+    place = expr.node.attribute_place(expr.attribute)
+    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"

@@ -1,0 +1,375 @@
+"""A document as values: what an interpreter runs, each with the place it was written at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from prima.interpreter.grammar import Answers, Grammar
+from prima.markup.tree import Node
+from prima.messages import Json
+
+Text = list["str | Expression"]
+"""Text with expressions in it, in order."""
+
+
+@dataclass(slots=True)
+class Expression:
+    """ECMAScript, and the element and attribute that hold it."""
+
+    code: str
+    node: Node
+    attribute: str = "expr"
+
+
+@dataclass(slots=True)
+class CommandTemplate:
+    """A Command element; arguments are values or expressions."""
+
+    type: str
+    args: dict[str, Json | Expression]
+    text: Text | None
+    now: bool
+    extra: list[tuple[str, str | Expression]]
+    handlers: list[Handler]
+    node: Node
+    lang: str = ""
+
+
+@dataclass(slots=True)
+class GroupTemplate:
+    """A unit around Commands (U4)."""
+
+    steps: list[StepTemplate]
+    longest: int
+    node: Node
+
+
+@dataclass(slots=True)
+class StepTemplate:
+    """A node of the tree that a run of Commands becomes (U3)."""
+
+    what: CommandTemplate | GroupTemplate
+    after: tuple[int, ...]
+
+
+@dataclass(slots=True)
+class Run:
+    """Commands that follow one another: requested at once (O4)."""
+
+    steps: list[StepTemplate]
+    node: Node
+
+
+@dataclass(slots=True)
+class Declare:
+    """A var."""
+
+    name: str
+    expr: Expression | None
+    node: Node
+
+
+@dataclass(slots=True)
+class Script:
+    """A script."""
+
+    code: Expression
+    node: Node
+
+
+@dataclass(slots=True)
+class Assign:
+    """An assign."""
+
+    name: str
+    expr: Expression
+    node: Node
+
+
+@dataclass(slots=True)
+class Clear:
+    """A clear; no names means all form items."""
+
+    names: list[str]
+    node: Node
+
+
+@dataclass(slots=True)
+class If:
+    """Conditions with their content; the last may have none (else)."""
+
+    branches: list[tuple[Expression | None, list[Act]]]
+    node: Node
+
+
+@dataclass(slots=True)
+class Foreach:
+    """A foreach."""
+
+    item: str
+    array: Expression
+    content: list[Act]
+    node: Node
+
+
+@dataclass(slots=True)
+class Log:
+    """A log."""
+
+    label: str
+    text: Text
+    node: Node
+
+
+@dataclass(slots=True)
+class Throw:
+    """A throw."""
+
+    event: str | Expression
+    message: str | Expression
+    node: Node
+
+
+@dataclass(slots=True)
+class Goto:
+    """A goto: to a form, or to an item of this one."""
+
+    form: str | Expression | None
+    item: str | Expression | None
+    node: Node
+
+
+@dataclass(slots=True)
+class Return:
+    """A return."""
+
+    names: list[str]
+    event: str
+    node: Node
+
+
+@dataclass(slots=True)
+class Exit:
+    """An exit."""
+
+    node: Node
+
+
+@dataclass(slots=True)
+class Reprompt:
+    """A reprompt."""
+
+    node: Node
+
+
+@dataclass(slots=True)
+class SendOut:
+    """A send: to a service, or an event to this application itself after a delay."""
+
+    service: str | Expression
+    event: str
+    delay: int | Expression
+    params: list[tuple[str, str | Expression]]
+    node: Node
+
+
+Act = (
+    Run
+    | Declare
+    | Script
+    | Assign
+    | Clear
+    | If
+    | Foreach
+    | Log
+    | Throw
+    | Goto
+    | Return
+    | Exit
+    | Reprompt
+    | SendOut
+)
+
+
+@dataclass(slots=True)
+class Handler:
+    """A handler of events: names with the empty one for all (VoiceXML 5.2.2)."""
+
+    events: list[str]
+    cond: Expression | None
+    count: int
+    reactive: bool | None
+    content: list[Act]
+    node: Node
+
+
+@dataclass(slots=True)
+class Link:
+    """Something the user may say at any time in its scope."""
+
+    form: str
+    event: str
+    grammar: Grammar
+    node: Node
+
+
+@dataclass(slots=True)
+class Watch:
+    """An event defined by a condition on sensor values (C6)."""
+
+    name: str
+    when: Expression
+    node: Node
+
+
+@dataclass(slots=True)
+class Filled:
+    """A filled: its fields; none means those of the form."""
+
+    mode: str
+    names: list[str]
+    content: list[Act]
+    node: Node
+
+
+@dataclass(slots=True)
+class Prompt:
+    """A prompt of a field."""
+
+    text: Text
+    count: int
+    cond: Expression | None
+    timeout: int | None
+    bargein: bool | None
+    node: Node
+
+
+@dataclass(slots=True)
+class Item:
+    """What every form item has."""
+
+    name: str
+    expr: Expression | None
+    cond: Expression | None
+    handlers: list[Handler]
+    properties: dict[str, Json]
+    node: Node
+
+
+@dataclass(slots=True)
+class Block(Item):
+    """Content that runs once."""
+
+    content: list[Act] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Field(Item):
+    """A question."""
+
+    prompts: list[Prompt] = field(default_factory=list)
+    answers: Answers = field(default_factory=Answers)
+    filled: list[Filled] = field(default_factory=list)
+    lang: str = ""
+
+
+@dataclass(slots=True)
+class Subdialog(Item):
+    """A call of another form."""
+
+    form: str = ""
+    params: list[tuple[str, str | Expression]] = field(default_factory=list)
+    filled: list[Filled] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Unit(Item):
+    """A unit around form items (U5), with the devices of all its content."""
+
+    items: list[Item] = field(default_factory=list)
+    devices: frozenset[str] = frozenset()
+    longest: int = 60000
+
+
+@dataclass(slots=True)
+class Form:
+    """A state of the application."""
+
+    id: str
+    items: list[Item]
+    handlers: list[Handler]
+    links: list[Link]
+    watches: list[Watch]
+    setup: list[Declare | Script]
+    filled: list[Filled]
+    properties: dict[str, Json]
+    node: Node
+
+
+@dataclass(slots=True)
+class Document:
+    """A whole application."""
+
+    id: str
+    kind: str
+    lang: str
+    file: str
+    forms: dict[str, Form]
+    handlers: list[Handler]
+    links: list[Link]
+    watches: list[Watch]
+    setup: list[Declare | Script]
+    properties: dict[str, Json]
+    node: Node
+
+    def contents(self) -> list[tuple[Form | None, list[Act], Node]]:
+        """Every piece of executable content, with its form and the element that holds it."""
+        found: list[tuple[Form | None, list[Act], Node]] = []
+        found += [(None, handler.content, handler.node) for handler in self.handlers]
+        for form in self.forms.values():
+            found += [(form, part.content, part.node) for part in (*form.handlers, *form.filled)]
+            for item in all_items(form.items):
+                found += [(form, handler.content, handler.node) for handler in item.handlers]
+                if isinstance(item, Block):
+                    found.append((form, item.content, item.node))
+                elif isinstance(item, Field | Subdialog):
+                    found += [(form, part.content, part.node) for part in item.filled]
+        return found
+
+
+def all_items(items: list[Item]) -> list[Item]:
+    """Form items, those inside units included, in document order."""
+    found: list[Item] = []
+    for item in items:
+        found.append(item)
+        if isinstance(item, Unit):
+            found += all_items(item.items)
+    return found
+
+
+def all_acts(content: list[Act]) -> list[Act]:
+    """Executable content with all that it holds, in document order."""
+    found: list[Act] = []
+    for act in content:
+        found.append(act)
+        if isinstance(act, If):
+            for _, branch in act.branches:
+                found += all_acts(branch)
+        elif isinstance(act, Foreach):
+            found += all_acts(act.content)
+        elif isinstance(act, Run):
+            for command in run_commands(act.steps):
+                for handler in command.handlers:
+                    found += all_acts(handler.content)
+    return found
+
+
+def run_commands(steps: list[StepTemplate]) -> list[CommandTemplate]:
+    """The Commands of a run, those inside units included."""
+    found: list[CommandTemplate] = []
+    for step in steps:
+        if isinstance(step.what, GroupTemplate):
+            found += run_commands(step.what.steps)
+        else:
+            found.append(step.what)
+    return found

@@ -1,0 +1,391 @@
+"""ECMAScript for documents of strangers: one engine for each application.
+
+An expression is compiled once to a function of the scope objects it may see.
+The engine's limits on time, memory and stack hold for every call; built-ins
+that do not look at the time limit are replaced by ones that bound their work.
+``Date`` is absent and ``Math.random`` seeded, so that a run can be repeated.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import _quickjs as quickjs
+
+from prima.messages import Json
+
+TIME_LIMIT = 0.5
+"""Seconds of processor time that one evaluation may take."""
+MEMORY_LIMIT = 16 * 1024 * 1024
+STACK_LIMIT = 256 * 1024
+RESULT_LIMIT = 100_000
+"""Characters that a value may have when it leaves the engine."""
+
+Scope = Any
+"""A scope object inside the engine."""
+
+PRELUDE = r"""
+(function () {
+  'use strict';
+  const LONGEST = 1000000, WORK = 100000000;
+  const apply = Reflect.apply, isArray = Array.isArray;
+  const define = (object, name, value) => Object.defineProperty(
+    object, name, { value: value, writable: true, configurable: true, enumerable: false });
+  for (const name of ['Date', 'Proxy', 'BigInt', 'ArrayBuffer', 'SharedArrayBuffer', 'DataView',
+      'Atomics', 'Uint8Array', 'Int8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array',
+      'Int32Array', 'Uint32Array', 'BigInt64Array', 'BigUint64Array', 'Float16Array',
+      'Float32Array', 'Float64Array', 'WeakRef', 'FinalizationRegistry', 'performance',
+      'queueMicrotask', 'navigator', 'gc', 'std', 'os', 'bjson', 'DOMException'])
+    delete globalThis[name];
+  for (const name of Object.getOwnPropertyNames(Array.prototype)) {
+    const native = Array.prototype[name];
+    if (typeof native !== 'function' || name === 'constructor' || name === 'push' || name === 'pop')
+      continue;
+    define(Array.prototype, name, function (...given) {
+      if (!isArray(this)) throw new TypeError(name + ' is for arrays alone');
+      if (this.length > LONGEST) throw new RangeError('the array is too long');
+      return apply(native, this, given);
+    });
+  }
+  define(Array.prototype, Symbol.iterator, Array.prototype.values);
+  define(Array, 'from', function (source, map) {
+    const made = [];
+    if (source != null && source[Symbol.iterator] !== undefined)
+      for (const item of source) made.push(map ? map(item, made.length) : item);
+    else {
+      const length = source == null ? 0 : Math.min(Number(source.length) || 0, 2 ** 32);
+      for (let i = 0; i < length; i++) made.push(map ? map(source[i], i) : source[i]);
+    }
+    return made;
+  });
+  for (const name of ['indexOf', 'lastIndexOf', 'includes', 'split', 'replace', 'replaceAll',
+      'matchAll', 'match', 'search', 'repeat', 'padStart', 'padEnd', 'localeCompare',
+      'normalize', 'isWellFormed', 'toWellFormed']) {
+    const native = String.prototype[name];
+    if (typeof native !== 'function') continue;
+    define(String.prototype, name, function (...given) {
+      const own = String(this), first = given.length && typeof given[0] === 'string' ? given[0] : '';
+      if (own.length * (first.length + 1) > WORK) throw new RangeError('the text is too long');
+      return apply(native, own, given);
+    });
+  }
+  define(String, 'raw', function (strings, ...given) {
+    const raw = strings.raw, length = Math.min(Number(raw.length) || 0, LONGEST);
+    let made = '';
+    for (let i = 0; i < length; i++) made += raw[i] + (i + 1 < length && i < given.length ? given[i] : '');
+    return made;
+  });
+  let seed = 88172645;
+  define(Math, 'random', function () {
+    seed ^= seed << 13; seed ^= seed >>> 17; seed ^= seed << 5;
+    return (seed >>> 0) / 4294967296;
+  });
+  Object.preventExtensions(globalThis);
+})();
+"""
+
+HELPERS = r"""
+({
+  scope: function () { return {}; },
+  set: function (o, k, v) { o[k] = v; },
+  unset: function (o, k) { o[k] = undefined; },
+  has: function (o, k) { return k in o; },
+  defined: function (o, k) { return o[k] !== undefined; },
+  type: function (v) { return v === null ? 'null' : typeof v; },
+  text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
+    ? JSON.stringify(v) : String(v); },
+  json: function (v) { return JSON.stringify(v); },
+  items: function (v) { return Array.isArray(v) ? v.length : -1; },
+  item: function (v, i) { return v[i]; },
+})
+"""
+
+SCOPES = ("application", "document", "dialog", "local")
+"""The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
+
+RESERVED = frozenset(
+    ["break", "case", "catch", "class", "const", "continue", "debugger", "default", "delete", "do", "else", "enum", "export", "extends", "false", "finally", "for", "function", "if", "import", "in", "instanceof", "new", "null", "return", "super", "switch", "this", "throw", "true", "try", "typeof", "var", "void", "while", "with", "let", "static", "yield", "await", "async", "of"]
+)
+GLOBALS = frozenset(
+    ["undefined", "NaN", "Infinity", "Object", "Array", "String", "Number", "Boolean", "Math", "JSON", "RegExp", "Error", "TypeError", "RangeError", "Map", "Set", "Symbol", "parseInt", "parseFloat", "isNaN", "isFinite", "encodeURIComponent", "decodeURIComponent", "encodeURI", "decodeURI", "escape", "unescape", "globalThis", "arguments", "Function", "event", "_event", "_message", "session", "application", "document", "dialog", "sensor", "eval", "Promise", "Reflect", "WeakMap", "WeakSet", "SyntaxError", "ReferenceError", "EvalError", "URIError", "Iterator", "AggregateError"]
+)
+TOKEN = re.compile(
+    r"""//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`"""
+    r"""|(?<![\w$)\]])\s*/(?![/*])(?:\\.|\[(?:\\.|[^\]\\])*\]|[^/\\\n])+/[a-z]*"""
+    r"""|[0-9][\w.]*|[^\W\d][\w$]*|\$[\w$]*|\.\.\.|=>|\?\.|\S"""
+)
+IDENTIFIER = re.compile(r"(?:[^\W\d]|\$)[\w$]*")
+DECLARED = re.compile(r"\b(?:var|let|const)\s+([^;\n]+)|\bfunction\s+([\w$]+)|\bclass\s+([\w$]+)")
+
+
+class ScriptError(Exception):
+    """An expression or script failed; becomes ``error.semantic`` in the application."""
+
+    def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
+        super().__init__(message)
+        self.line = line
+        self.column = column
+
+
+def _script_error(error: Exception) -> ScriptError:
+    text = str(error)
+    lines = text.splitlines() or [type(error).__name__]
+    message = lines[0]
+    if "interrupted" in message:
+        message = f"it took longer than {TIME_LIMIT:g} s"
+    elif "out of memory" in message or message in ("null", "") or "string too long" in message:
+        message = "it used too much memory"
+    place = re.search(r"<input>:(\d+):(\d+)", text)
+    line, column = (int(place[1]), int(place[2])) if place else (0, 0)
+    return ScriptError(message, line, column)
+
+
+def free_names(code: str) -> set[str]:
+    """Names that an expression or script uses without declaring them, as far as can be seen."""
+    used: set[str] = set()
+    tokens = [token.strip() for token in TOKEN.findall(code)]
+    own = declared_names(code)
+    for position, token in enumerate(tokens):
+        before = tokens[position - 1] if position else ""
+        after = tokens[position + 1] if position + 1 < len(tokens) else ""
+        if not IDENTIFIER.fullmatch(token) or token in RESERVED or before in (".", "?."):
+            continue
+        if after == ":" and before in ("{", ","):
+            continue
+        if after == "=>":
+            own.add(token)
+        if before in ("function", "class"):
+            own.add(token)
+        used.add(token)
+    own |= _parameters(tokens)
+    return used - own - GLOBALS
+
+
+def _parameters(tokens: list[str]) -> set[str]:
+    """Names of function parameters: what stands in brackets after function or before an arrow."""
+    names: set[str] = set()
+    for position, token in enumerate(tokens):
+        if token == "function":
+            start = tokens.index("(", position) if "(" in tokens[position:] else position
+            end = tokens.index(")", start) if ")" in tokens[start:] else start
+            names.update(tokens[start + 1 : end])
+        elif token == "=>" and position and tokens[position - 1] == ")":
+            start = position - 1
+            while start and tokens[start] != "(":
+                start -= 1
+            names.update(tokens[start + 1 : position - 1])
+        elif token == "catch" and tokens[position + 1 : position + 2] == ["("]:
+            names.update(tokens[position + 2 : position + 3])
+    return names
+
+
+def declared_names(code: str) -> set[str]:
+    """Names that a script declares at its top level (and perhaps deeper)."""
+    names: set[str] = set()
+    for match in DECLARED.finditer(code):
+        if match[2] or match[3]:
+            names.add(match[2] or match[3])
+            continue
+        depth = 0
+        expecting = True
+        for token in TOKEN.findall(match[1]):
+            if token in "([{":
+                depth += 1
+            elif token in ")]}":
+                depth -= 1
+            elif depth == 0 and token == ",":
+                expecting = True
+            elif expecting and IDENTIFIER.fullmatch(token):
+                names.add(token)
+                expecting = False
+    return names
+
+
+class Engine:
+    """The ECMAScript of one application; nothing of another's is visible in it."""
+
+    evaluations = 0
+    """How many evaluations have begun in this process, odd while one runs: a watchdog reads it."""
+
+    def __init__(self) -> None:
+        context = quickjs.Context()
+        context.set_memory_limit(MEMORY_LIMIT)
+        context.set_max_stack_size(STACK_LIMIT)
+        context.set_time_limit(TIME_LIMIT)
+        self._context = context
+        self._compiled: dict[str, Any] = {}
+        helpers = context.eval(HELPERS)
+        context.set("__h", helpers)
+        self._help = {
+            name: context.eval(f"__h.{name}")
+            for name in ["scope", "set", "unset", "has", "defined", "type", "text", "json", "items", "item"]
+        }
+        context.eval("delete globalThis.__h")
+        context.eval(PRELUDE)
+
+    def _call(self, function: Any, *args: Any) -> Any:
+        Engine.evaluations += 1
+        try:
+            return function(*args)
+        except (quickjs.JSException, quickjs.StackOverflow, TypeError, MemoryError) as error:
+            raise _script_error(error) from None
+        finally:
+            Engine.evaluations += 1
+
+    def compile(self, code: str) -> Any:
+        """Give the function of an expression, compiled the first time.
+
+        Raises:
+            ScriptError: with the line and column inside the expression.
+        """
+        function = self._compiled.get(code)
+        if function is None:
+            check_expression(self._context, code)
+            function = self._compile(f"return (\n{code}\n)")
+            self._compiled[code] = function
+        return function
+
+    def _compile(self, body: str) -> Any:
+        withs = "".join(f"with({name[0:2]}_)" for name in SCOPES)
+        names = ",".join(f"{name[0:2]}_" for name in SCOPES)
+        return self._call(self._context.eval, f"(function({names}){{{withs}{{{body}}}}})")
+
+    def scope(self, **values: Json) -> Scope:
+        """A new, empty scope object."""
+        scope = self._call(self._help["scope"])
+        for name, value in values.items():
+            self.set(scope, name, value)
+        return scope
+
+    def into(self, value: Json) -> Any:
+        """A Python value as one the engine takes."""
+        if isinstance(value, dict | list | tuple):
+            return self._call(self._context.parse_json, json.dumps(value))
+        return value
+
+    def set(self, scope: Scope, name: str, value: Json) -> None:
+        """Give a variable of a scope a value from outside."""
+        self._call(self._help["set"], scope, name, self.into(value))
+
+    def unset(self, scope: Scope, name: str) -> None:
+        """Make a variable of a scope undefined."""
+        self._call(self._help["unset"], scope, name)
+
+    def has(self, scope: Scope, name: str) -> bool:
+        """Whether a scope has a variable of that name."""
+        return bool(self._call(self._help["has"], scope, name))
+
+    def defined(self, scope: Scope, name: str) -> bool:
+        """Whether a variable of a scope has a value other than undefined."""
+        return bool(self._call(self._help["defined"], scope, name))
+
+    def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
+        """Evaluate an expression and give the engine's own value."""
+        return self._call(self.compile(code), *scopes)
+
+    def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
+        """Evaluate an expression as a condition."""
+        return bool(self._call(self.compile(f"!!({code}\n)"), *scopes))
+
+    def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
+        """Evaluate an expression and give its value as text for speech or a log."""
+        text = str(self._call(self._help["text"], self.raw(code, scopes)))
+        return self._bounded(text)
+
+    def value(self, code: str, scopes: tuple[Scope, ...]) -> Json:
+        """Evaluate an expression and give its value as plain data."""
+        return self.out(self.raw(code, scopes))
+
+    def out(self, value: Any) -> Json:
+        """An engine's value as plain data; functions and undefined become None."""
+        if value is None or isinstance(value, bool | int | float):
+            return value
+        if isinstance(value, str):
+            return self._bounded(value)
+        text = self._call(self._help["json"], value)
+        return None if text is None else json.loads(self._bounded(text))
+
+    def get(self, scope: Scope, name: str) -> Json:
+        """A variable's value as plain data."""
+        return self.out(self._call(self._help["item"], scope, name))
+
+    def elements(self, code: str, scopes: tuple[Scope, ...]) -> list[Any]:
+        """Evaluate an expression that gives an array; its elements as the engine's values.
+
+        Raises:
+            ScriptError: it is no array.
+        """
+        array = self.raw(code, scopes)
+        length = self._call(self._help["items"], array)
+        if length < 0:
+            raise ScriptError(f"{code} is not an array")
+        return [self._call(self._help["item"], array, index) for index in range(int(length))]
+
+    def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
+        """Evaluate an expression and give its value to a variable of a scope."""
+        self._call(self._help["set"], scope, name, self.raw(code, scopes))
+
+    def put(self, scope: Scope, name: str, value: Any) -> None:
+        """Give a variable one of the engine's own values."""
+        self._call(self._help["set"], scope, name, value)
+
+    def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
+        """Run a script; what it declares at its top level becomes variables of ``scope``."""
+        key = f"script\n{code}"
+        function = self._compiled.get(key)
+        if function is None:
+            names = sorted(declared_names(code))
+            exports = "".join(f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in names)
+            check_script(self._context, code)
+            withs = "".join(f"with({name[0:2]}_)" for name in SCOPES)
+            args = ",".join(f"{name[0:2]}_" for name in SCOPES)
+            body = f"(function({args},$$){{{withs}{{(function(){{\n{code}\n;{exports}}})()}}}})"
+            function = self._compiled[key] = self._call(self._context.eval, body)
+        self._call(function, *scopes, scope)
+
+    @staticmethod
+    def _bounded(text: str) -> str:
+        if len(text) > RESULT_LIMIT:
+            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
+        return text
+
+
+def check_expression(context: Any, code: str) -> None:
+    """Compile an expression by itself, so that no bracket in it closes one of ours.
+
+    Raises:
+        ScriptError: with the line and column inside the expression.
+    """
+    _check(context, f"return (\n{code}\n)", 1)
+
+
+def check_script(context: Any, code: str) -> None:
+    """Compile a script by itself.
+
+    Raises:
+        ScriptError: with the line and column inside the script.
+    """
+    _check(context, f"\n{code}\n", 1)
+
+
+def _check(context: Any, body: str, before: int) -> None:
+    try:
+        context.eval(f"(void new Function({json.dumps(body)}))")
+    except (quickjs.JSException, quickjs.StackOverflow) as error:
+        failure = _script_error(error)
+        place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", str(error))
+        if place:
+            failure.line = max(int(place[0][0]) - 2 - before, 1)
+            failure.column = int(place[0][1])
+        raise failure from None
+
+
+def plain_context() -> Any:
+    """A context for checking syntax alone."""
+    context = quickjs.Context()
+    context.set_memory_limit(MEMORY_LIMIT)
+    context.set_max_stack_size(STACK_LIMIT)
+    context.set_time_limit(TIME_LIMIT)
+    return context

@@ -1,0 +1,264 @@
+"""What the user may answer: options, built-in types and SRGS rules, matched on text.
+
+Matching folds case, width and punctuation (W3C SRGS works on tokens; a person's
+"Prof. Kidode's room." and a recogniser's "prof kidode's room" are one answer).
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+from prima.messages import Json
+
+CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
+_BETWEEN_CJK = re.compile(f"(?<=[{CJK}]) +| +(?=[{CJK}])")
+_NUMBER = re.compile(r"(\d+(?:[.,:]\d+)+)")
+MAX_STEPS = 100_000
+"""How many steps matching one utterance may take."""
+
+
+@lru_cache(maxsize=4096)
+def fold(text: str) -> str:
+    """Give text without what speech does not carry: case, width, punctuation, CJK spaces."""
+    folded = unicodedata.normalize("NFKC", text).casefold()
+    folded = re.sub(r"['\u2019\u2018`\u00b4]", "", folded)
+    pieces = _NUMBER.split(folded)  # separators inside numbers and times are kept
+    pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
+    return _BETWEEN_CJK.sub("", " ".join("".join(pieces).split()))
+
+
+def _letter(letter: str) -> str:
+    return " " if unicodedata.category(letter)[0] in "PSZC" else letter
+
+
+YES = "yes|yeah|yep|yes please|yes i do|yes you may|sure|of course|ok|okay|はい|ええ|うん|お願いします|はいお願いします"
+NO = "no|nope|nah|no thanks|no thank you|no i dont|not now|いいえ|いや|ううん|結構です|いいえ結構です"
+_SMALL = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"]
+_TENS = ["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"]
+_KANJI = dict(zip("〇一二三四五六七八九", range(10), strict=True))
+
+
+def read_number(text: str) -> float | None:
+    """A number said in digits, English words up to 99, or Japanese ones; or None."""
+    folded = fold(text)
+    if re.fullmatch(r"\d+(?:[.,]\d+)?", folded):
+        return float(folded.replace(",", "."))
+    words = folded.split()
+    if len(words) == 1 and words[0] in _SMALL:
+        return float(_SMALL.index(words[0]))
+    if 1 <= len(words) <= 2 and words[0] in _TENS:
+        ones = _SMALL.index(words[1]) if len(words) == 2 and words[1] in _SMALL[1:10] else 0
+        return float(20 + 10 * _TENS.index(words[0]) + ones) if len(words) == 1 or ones else None
+    match = re.fullmatch("([一二三四五六七八九]?)(十?)([〇一二三四五六七八九]?)", folded)
+    if match and folded and (match[2] or len(folded) == 1):
+        tens = (_KANJI.get(match[1], 1) if match[2] else 0) * 10
+        ones = _KANJI.get(match[3] or ("" if match[2] else match[1]), 0)
+        return float(tens + ones)
+    return None
+
+
+def _boolean(text: str) -> Json:
+    folded = fold(text)
+    if folded in map(fold, YES.split("|")):
+        return True
+    return False if folded in map(fold, NO.split("|")) else None
+
+
+def _number(text: str) -> Json:
+    value = read_number(text)
+    return int(value) if value is not None and value == int(value) else value
+
+
+def _digits(text: str) -> Json:
+    joined = fold(text).replace(" ", "")
+    return joined if joined.isascii() and joined.isdigit() else None
+
+
+def _time(text: str) -> Json:
+    folded = fold(text)
+    match = re.fullmatch(
+        r"(\d{1,2})(?:[:.](\d{2}))?(?: ?oclock| hours| h|時)?(?:(\d{1,2})分)? ?(am|pm|a m|p m)?",
+        folded,
+    )
+    if match is None:
+        return None
+    hour, minute = int(match[1]), int(match[2] or match[3] or 0)
+    if match[4]:
+        if not 1 <= hour <= 12:
+            return None
+        hour = hour % 12 + (12 if match[4].startswith("p") else 0)
+    return f"{hour:02d}:{minute:02d}" if hour < 24 and minute < 60 else None
+
+
+def _date(text: str) -> Json:
+    match = re.fullmatch(r"\s*(\d{4})[-/年](\d{1,2})[-/月](\d{1,2})日?[.。]?\s*", text)
+    if match is None:
+        return None
+    month, day = int(match[2]), int(match[3])
+    if not (1 <= month <= 12 and 1 <= day <= 31):
+        return None
+    return f"{match[1]}-{month:02d}-{day:02d}"
+
+
+def _text(text: str) -> Json:
+    return " ".join(text.split()) if fold(text) else None
+
+
+BUILT_IN: dict[str, Callable[[str], Json]] = {
+    "boolean": _boolean,
+    "number": _number,
+    "digits": _digits,
+    "time": _time,
+    "date": _date,
+    "text": _text,
+}
+"""The built-in types: text to value, None where it does not match."""
+
+
+# SRGS ---------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Words:
+    """Words to be said, folded."""
+
+    words: str
+
+
+@dataclass(slots=True)
+class Sequence:
+    """Parts said one after another, between ``low`` and ``high`` times."""
+
+    parts: list[Part]
+    low: int = 1
+    high: int = 1
+
+
+@dataclass(slots=True)
+class Choice:
+    """Alternatives."""
+
+    parts: list[Part]
+
+
+@dataclass(slots=True)
+class Reference:
+    """Another rule."""
+
+    rule: str
+
+
+@dataclass(slots=True)
+class Tag:
+    """The value given."""
+
+    value: str
+
+
+Part = Words | Sequence | Choice | Reference | Tag
+
+
+@dataclass(slots=True)
+class Grammar:
+    """Rules by name, the root rule's name, and matching over folded characters."""
+
+    rules: dict[str, Part] = field(default_factory=dict)
+    root: str = ""
+
+    def match(self, text: str) -> str | None:
+        """The value of an utterance (the last tag met, else the utterance), or None."""
+        said = fold(text)
+        budget = [MAX_STEPS]
+        for end, tag in self._at(Reference(self.root), said, 0, budget, 0):
+            if end == len(said):
+                return text.strip() if tag is None else tag
+        return None
+
+    def _at(
+        self, part: Part, said: str, start: int, budget: list[int], depth: int
+    ) -> Iterator[tuple[int, str | None]]:
+        budget[0] -= 1
+        if budget[0] < 0 or depth > 200:
+            return
+        match part:
+            case Words(words):
+                end = _said(said, start, words)
+                if end is not None:
+                    yield end, None
+            case Tag(value):
+                yield start, value
+            case Reference(rule):
+                yield from self._at(self.rules[rule], said, start, budget, depth + 1)
+            case Choice(parts):
+                for choice in parts:
+                    yield from self._at(choice, said, start, budget, depth + 1)
+            case Sequence(parts, low, high):
+                yield from self._times(part, said, start, budget, depth + 1, low, high)
+
+    def _times(
+        self,
+        part: Sequence,
+        said: str,
+        start: int,
+        budget: list[int],
+        depth: int,
+        low: int,
+        high: int,
+    ) -> Iterator[tuple[int, str | None]]:
+        if high > 0:
+            for end, tag in self._parts(part.parts, said, start, budget, depth):
+                if end == start and low <= 0:
+                    continue  # saying nothing once more leads nowhere
+                for last, later in self._times(
+                    part, said, end, budget, depth + 1, low - 1, high - 1
+                ):
+                    yield last, tag if later is None else later
+        if low <= 0:
+            yield start, None
+
+    def _parts(
+        self, parts: list[Part], said: str, start: int, budget: list[int], depth: int
+    ) -> Iterator[tuple[int, str | None]]:
+        if not parts:
+            yield start, None
+            return
+        for end, tag in self._at(parts[0], said, start, budget, depth + 1):
+            for last, later in self._parts(parts[1:], said, end, budget, depth + 1):
+                yield last, tag if later is None else later
+
+
+def _said(said: str, start: int, words: str) -> int | None:
+    """Where the words end if they stand at ``start``, at the edge of a word."""
+    while start < len(said) and said[start] == " ":
+        start += 1
+    if not words:
+        return start
+    end = start + len(words)
+    if said[start:end] != words:
+        return None
+    inside = end < len(said) and said[end] != " " and said[end - 1].isascii()
+    return None if inside and said[end].isascii() and said[end].isalnum() else end
+
+
+@dataclass(slots=True)
+class Answers:
+    """All that a field takes: options first, then grammars, then its built-in type."""
+
+    options: dict[str, Json] = field(default_factory=dict)
+    grammars: list[Grammar] = field(default_factory=list)
+    type: str = ""
+
+    def match(self, text: str) -> Json:
+        """The field's value for an utterance, or None where it takes no such answer."""
+        said = fold(text)
+        if said in self.options:
+            return self.options[said]
+        for grammar in self.grammars:
+            value = grammar.match(text)
+            if value is not None:
+                return value
+        return BUILT_IN[self.type](text) if self.type else None

@@ -1,0 +1,119 @@
+"""Schema problems in the author's words, from the same table that makes the schema."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from prima.errors import DocumentError, Problem, did_you_mean, one_of
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Attribute, Element, Vocabulary, attributes_by_name
+from prima.values import read_value
+
+EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
+
+
+def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
+    """Find the vocabulary of a document by its root element's namespace.
+
+    Raises:
+        DocumentError: it is none of them.
+    """
+    expected = [(v.elements[v.root].tag, v.namespace) for v in vocabularies]
+    for vocabulary, (tag, namespace) in zip(vocabularies, expected, strict=True):
+        if root.namespace == namespace:
+            if root.tag == tag:
+                return vocabulary
+            message = f"The root element is <{root.tag}>; it must be <{tag}>."
+            raise DocumentError([Problem(root.place, "error", "wrong-root", message)])
+    found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
+    wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
+    message = f"The root element <{root.tag}> has {found}."
+    raise DocumentError(
+        [Problem(root.place, "error", "wrong-namespace", message, f"Begin with {wanted}.")]
+    )
+
+
+def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem] | None) -> None:
+    """Give every node its table key and, where ``problems`` is a list, add what is wrong."""
+    root.key = vocabulary.root
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        element = vocabulary.elements[node.key]
+        if problems is not None:
+            _check_attributes(node, element, node is root, problems)
+            _check_text(node, element, problems)
+        for child in node.nodes:
+            key = vocabulary.child(node.key, child.tag)
+            if key is None or child.namespace != vocabulary.namespace:
+                if problems is not None:
+                    problems.append(_misplaced(child, node, vocabulary))
+            else:
+                child.key = key
+                stack.append(child)
+
+
+def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
+    tag = child.tag
+    if child.namespace != vocabulary.namespace:
+        message = f'<{tag}> is of another namespace, "{child.namespace}".'
+        return Problem(child.place, "error", "wrong-namespace", message)
+    if tag not in vocabulary.tags:
+        remedy = vocabulary.hints.get(tag) or did_you_mean(tag, vocabulary.children(parent.key))
+        remedy = remedy or did_you_mean(tag, vocabulary.tags)
+        return Problem(child.place, "error", "unknown-element", f"There is no <{tag}>.", remedy)
+    message = f"<{tag}> cannot stand in <{parent.tag}>."
+    remedy = f"It may stand in {one_of(vocabulary.parents(tag))}."
+    return Problem(child.place, "error", "misplaced-element", message, remedy)
+
+
+def _check_text(node: Node, element: Element, problems: list[Problem]) -> None:
+    if element.text or not node.text:
+        return
+    shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
+    problems.append(
+        Problem(node.place, "error", "stray-text", f'<{node.tag}> holds text: "{shown}".',
+                "Say it with <speak>, or remove it.")
+    )  # fmt: skip
+
+
+def _check_attributes(node: Node, element: Element, root: bool, problems: list[Problem]) -> None:
+    known = attributes_by_name(element)
+    for name, text in node.attributes.items():
+        if root and name in EVERYWHERE:
+            continue
+        entry = known.get(name)
+        if entry is None:
+            problems.append(_unknown_attribute(node, name, list(known)))
+            continue
+        message = _value_problem(*entry, text)
+        if message:
+            place = node.attribute_place(name)
+            problems.append(Problem(place, "error", "bad-value", f'{name} "{text}" {message}'))
+    for item in element.attributes:
+        expr = f"{item.name}-expr"
+        if item.required and item.name not in node.attributes and expr not in node.attributes:
+            message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
+            problems.append(Problem(node.place, "error", "missing-attribute", message))
+
+
+def _unknown_attribute(node: Node, name: str, known: list[str]) -> Problem:
+    remedy = did_you_mean(name, known)
+    if not remedy and known:
+        remedy = f"It may have {one_of(known)}."
+    message = f'<{node.tag}> has no attribute "{name}".'
+    place = node.attribute_place(name, value=False)
+    return Problem(place, "error", "unknown-attribute", message, remedy)
+
+
+def _value_problem(item: Attribute, is_expression: bool, text: str) -> str:
+    if item.choices and not is_expression:
+        if text in item.choices:
+            return ""
+        hint = did_you_mean(text, item.choices) or f"Write {one_of(item.choices)}."
+        return f"is not allowed here. {hint}"
+    try:
+        read_value("expression" if is_expression else item.kind, text)
+    except ValueError as error:
+        return str(error)
+    return ""

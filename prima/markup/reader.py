@@ -1,0 +1,243 @@
+"""Hardened reading: bytes in, a tree of nodes or a list of problems out.
+
+This is the only module that knows lxml. What a stranger's file may do is
+bounded before it is parsed: its size, its encoding, and its DOCTYPE, which may
+name an external identifier (never fetched) and nothing else.
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+from functools import lru_cache
+from importlib import resources
+from xml.parsers import expat
+
+from lxml import etree
+
+from prima.errors import DocumentError, Place, Problem
+from prima.markup.check import check_root, check_tree
+from prima.markup.tree import Node, Source
+from prima.markup.vocabulary import Vocabulary
+
+MAX_BYTES = 2_000_000
+MAX_DEPTH = 100
+MAX_ELEMENTS = 200_000
+MAX_ATTRIBUTES = 64
+XML_NS = "http://www.w3.org/XML/1998/namespace"
+XSI_NS = "http://www.w3.org/2001/XMLSchema-instance"
+ENCODINGS = frozenset(
+    ["utf-8", "us-ascii", "ascii", "iso-8859-1", "iso-8859-15", "windows-1252", "utf-16", "shift_jis", "euc-jp"]
+)
+DECLARATION = re.compile(r"<\?xml[^>]*?\?>")
+ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
+BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+
+
+def _error(place: Place, code: str, message: str, remedy: str = "") -> DocumentError:
+    return DocumentError([Problem(place, "error", code, message, remedy)])
+
+
+def decode(file: str, data: bytes) -> str:
+    """Give a document's text, whatever listed encoding it is in.
+
+    Raises:
+        DocumentError: too large, in an unlisted encoding, or not in the one declared.
+    """
+    start = Place(file)
+    if len(data) > MAX_BYTES:
+        raise too_large(file, len(data))
+    encoding = next((name for bom, name in BOMS if data.startswith(bom)), "")
+    if not encoding:
+        declared = ENCODING.match(data)
+        encoding = declared[1].decode().lower() if declared else "utf-8"
+    if encoding not in ENCODINGS:
+        raise _error(
+            start, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
+        )
+    try:
+        text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise _error(
+            Place(file, line),
+            "encoding",
+            f"A byte here is not {encoding.upper()}.",
+            "Save it as UTF-8, or declare the encoding it has.",
+        ) from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def too_large(file: str, size: int) -> DocumentError:
+    """The error for a file over the limit, known before it is read."""
+    return _error(
+        Place(file),
+        "too-large",
+        f"The file has {size:,} bytes; at most {MAX_BYTES:,} are read.",
+        "Divide it.",
+    )
+
+
+class _Seen(Exception):
+    """The root element has been reached."""
+
+
+def _check_prolog(source: Source) -> None:
+    """Refuse a DOCTYPE that declares anything itself, before anything is expanded."""
+    parser = expat.ParserCreate(encoding="utf-8")
+
+    def doctype(_name: str, _system: str, _public: str, internal: int) -> None:
+        if internal:
+            raise _error(
+                Place(source.file, parser.CurrentLineNumber),
+                "doctype",
+                "A DOCTYPE may not declare anything itself.",
+                "Remove the part in square brackets; entities are not needed in UTF-8.",
+            )
+
+    def start(_tag: str, _attributes: dict[str, str]) -> None:
+        raise _Seen
+
+    parser.StartDoctypeDeclHandler = doctype
+    parser.StartElementHandler = start
+    try:
+        parser.Parse(source.text.encode(), True)
+    except (_Seen, expat.ExpatError):
+        return  # what is not well-formed is told better below
+
+
+def parse(file: str, data: bytes) -> tuple[Node, etree._Element]:
+    """Parse bytes into nodes, and give lxml's own root for schema validation.
+
+    Raises:
+        DocumentError: not well-formed, or beyond a limit.
+    """
+    text = DECLARATION.sub(lambda match: " " * len(match[0]), decode(file, data), count=1)
+    source = Source(file, text)
+    _check_prolog(source)
+    parser = etree.XMLParser(
+        resolve_entities="internal",
+        no_network=True,
+        load_dtd=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+        encoding="utf-8",
+    )
+    try:
+        root = etree.fromstring(text.encode(), parser)
+    except etree.XMLSyntaxError as error:
+        raise _syntax_error(source, error) from None
+    return _convert(root, source), root
+
+
+def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
+    line, column = (error.position or (1, 1)) if source.text.strip() else (1, 1)
+    place = Place(source.file, max(line or 1, 1), max(column or 1, 1))
+    message = (error.msg or "Not XML").split(", line ")[0]
+    if not source.text.strip():
+        return _error(place, "not-xml", "The file is empty.", "Begin with a root element.")
+    if "depth" in message.lower():
+        return _too_deep(place)
+    if message.startswith("Entity"):
+        name = message.split("'")[1] if "'" in message else "?"
+        return _error(
+            place,
+            "entity",
+            f"The entity &{name}; is not known: documents declare none.",
+            "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed.",
+        )
+    return _error(place, "not-xml", f"This is not well-formed XML: {message}.")
+
+
+def _too_deep(place: Place) -> DocumentError:
+    return _error(
+        place,
+        "too-deep",
+        f"Elements are nested more than {MAX_DEPTH} deep.",
+        "Divide the document into forms and subdialogs.",
+    )
+
+
+def _convert(root: etree._Element, source: Source) -> Node:
+    """lxml's tree as nodes, with the limits on depth, elements and attributes."""
+    nodes: list[Node] = []
+
+    def node_of(element: etree._Element) -> Node:
+        qname = etree.QName(element)
+        attributes: dict[str, str] = {}
+        for key, value in element.attrib.items():
+            name = str(key)
+            if name.startswith("{"):
+                name = name.replace(f"{{{XML_NS}}}", "xml:").replace(f"{{{XSI_NS}}}", "xsi:")
+            attributes[name] = str(value)
+        node = Node(
+            qname.localname, source, len(nodes), attributes, namespace=qname.namespace or ""
+        )
+        nodes.append(node)
+        if len(attributes) > MAX_ATTRIBUTES or len(nodes) > MAX_ELEMENTS:
+            raise _error(
+                node.place,
+                "too-large",
+                f"More than {MAX_ATTRIBUTES} attributes or {MAX_ELEMENTS:,} elements.",
+                "Divide the document.",
+            )
+        return node
+
+    top = node_of(root)
+    # Indices count elements in document order, so this walks depth first.
+    frames = [(iter(root), top, root)]
+    if root.text:
+        top.content.append(root.text)
+    while frames:
+        children, parent, _ = frames[-1]
+        child = next(children, None)
+        if child is None:
+            _, _, element = frames.pop()
+            if frames and element.tail:
+                frames[-1][1].content.append(element.tail)
+            continue
+        node = node_of(child)
+        parent.content.append(node)
+        if child.text:
+            node.content.append(child.text)
+        frames.append((iter(child), node, child))
+        if len(frames) > MAX_DEPTH:
+            raise _too_deep(node.place)
+    return top
+
+
+@lru_cache(maxsize=8)
+def compiled_schema(name: str) -> etree.XMLSchema:
+    """The package's own XML Schema of that name, compiled once."""
+    folder = resources.files("prima") / "schemas"
+    if not folder.is_dir():  # a checkout keeps them beside the package
+        folder = resources.files("prima") / ".." / "schemas"
+    with resources.as_file(folder) as path:
+        return etree.XMLSchema(etree.parse(str(path / f"{name}.xsd")))
+
+
+def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:
+    """Read a document of one of the vocabularies; the problems are those of its schema.
+
+    The XML Schema says quickly whether anything is wrong; what is wrong is then
+    found, and said in the author's words, from the table of elements.
+
+    Raises:
+        DocumentError: no tree can be given: not XML, or not such a document at all.
+    """
+    root, element = parse(file, data)
+    vocabulary = check_root(root, vocabularies)
+    problems: list[Problem] = []
+    schema = compiled_schema(vocabulary.name)
+    valid = schema.validate(element)
+    check_tree(root, vocabulary, problems if not valid else None)
+    if not valid and not problems:
+        entry = schema.error_log[0]
+        message = re.sub(r"\{[^}]*\}", "", str(entry.message))
+        problems.append(Problem(Place(file, entry.line), "error", "schema", message))
+    return root, problems

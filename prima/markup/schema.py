@@ -1,0 +1,103 @@
+"""XML Schemas made from tables of elements, with documentation for editors' hover."""
+
+from __future__ import annotations
+
+from html import escape
+
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.values import KINDS
+
+XML_SCHEMA = """<?xml version="1.0" encoding="UTF-8"?>
+<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"
+           targetNamespace="http://www.w3.org/XML/1998/namespace">
+  <xs:attribute name="lang" type="xs:string">
+    <xs:annotation><xs:documentation>The language of the document, as in en or ja.</xs:documentation></xs:annotation>
+  </xs:attribute>
+</xs:schema>
+"""
+"""The one attribute of the xml namespace that documents use."""
+
+
+def make_schema(vocabulary: Vocabulary) -> str:
+    """Give the XML Schema 1.0 of a kind of document as text."""
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"',
+        f'           xmlns="{vocabulary.namespace}" targetNamespace="{vocabulary.namespace}"',
+        '           elementFormDefault="qualified">',
+        '  <xs:import namespace="http://www.w3.org/XML/1998/namespace" schemaLocation="xml.xsd"/>',
+        f'  <xs:element name="{vocabulary.elements[vocabulary.root].tag}" type="{vocabulary.root}"/>',
+    ]
+    for element in vocabulary.elements.values():
+        lines += _complex_type(vocabulary, element)
+    kinds = sorted(
+        {a.kind for e in vocabulary.elements.values() for a in e.attributes if not a.choices}
+        | {"expression"}
+    )
+    for kind in kinds:
+        lines += _simple_type(kind)
+    return "\n".join([*lines, "</xs:schema>", ""])
+
+
+def _doc(text: str, indent: str) -> str:
+    return (
+        f"{indent}<xs:annotation><xs:documentation>{escape(text, quote=False)}"
+        "</xs:documentation></xs:annotation>"
+    )
+
+
+def _complex_type(vocabulary: Vocabulary, element: Element) -> list[str]:
+    mixed = ' mixed="true"' if element.text else ""
+    source = f" ({element.source})" if element.source else ""
+    lines = [f'  <xs:complexType name="{element.key}"{mixed}>', _doc(element.doc + source, "    ")]
+    if element.children:
+        lines.append('    <xs:choice minOccurs="0" maxOccurs="unbounded">')
+        for child in element.children:
+            tag = vocabulary.elements[child].tag
+            lines.append(f'      <xs:element name="{tag}" type="{child}"/>')
+        lines.append("    </xs:choice>")
+    for item in element.attributes:
+        lines += _attribute(item)
+    if element.key == vocabulary.root:
+        lines.append('    <xs:attribute ref="xml:lang"/>')
+    return [*lines, "  </xs:complexType>"]
+
+
+def _attribute(item: Attribute) -> list[str]:
+    use = ' use="required"' if item.required and not item.dynamic else ""
+    doc = item.doc + (f" (default: {item.default})" if item.default else "")
+    if item.choices:
+        values = "".join(f'<xs:enumeration value="{value}"/>' for value in item.choices)
+        lines = [
+            f'    <xs:attribute name="{item.name}"{use}>',
+            _doc(doc, "      "),
+            f'      <xs:simpleType><xs:restriction base="xs:string">{values}'
+            "</xs:restriction></xs:simpleType>",
+            "    </xs:attribute>",
+        ]
+    else:
+        lines = [
+            f'    <xs:attribute name="{item.name}" type="kind-{item.kind}"{use}>',
+            _doc(doc, "      "),
+            "    </xs:attribute>",
+        ]
+    if item.dynamic:
+        lines += [
+            f'    <xs:attribute name="{item.name}-expr" type="kind-expression">',
+            _doc(f"An expression that gives {item.name}: {item.doc}", "      "),
+            "    </xs:attribute>",
+        ]
+    return lines
+
+
+def _simple_type(kind: str) -> list[str]:
+    row = KINDS[kind]
+    pattern = f'<xs:pattern value="{escape(row.pattern)}"/>' if row.pattern else ""
+    space = "preserve" if kind == "text" else "collapse"
+    return [
+        f'  <xs:simpleType name="kind-{kind}">',
+        _doc(row.doc, "    "),
+        f'    <xs:restriction base="{row.xsd}"><xs:whiteSpace value="{space}"/>{pattern}'
+        "</xs:restriction>",
+        "  </xs:simpleType>",
+    ]

@@ -1,0 +1,117 @@
+"""Tables of elements: what a kind of document may hold, said once.
+
+A :class:`Vocabulary` generates the XML Schema that editors use
+(:mod:`prima.markup.schema`), drives validation (:mod:`prima.markup.check`), and
+fills the tables of the language reference; a test holds the three together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """An attribute of an element.
+
+    ``choices`` lists the allowed values where there are only few; ``dynamic``
+    says that ``NAME-expr`` may stand instead, with an expression.
+    """
+
+    name: str
+    kind: str
+    doc: str
+    required: bool = False
+    default: str = ""
+    choices: tuple[str, ...] = ()
+    dynamic: bool = False
+    low: float | None = None
+    high: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """An element: its attributes, the children it may have, and whether it holds text.
+
+    ``key`` tells apart elements of one name that differ by where they stand;
+    ``children`` are keys.
+    """
+
+    key: str
+    doc: str
+    attributes: tuple[Attribute, ...] = ()
+    children: tuple[str, ...] = ()
+    text: bool = False
+    name: str = ""
+    source: str = ""
+
+    @property
+    def tag(self) -> str:
+        """The name as written in documents."""
+        return self.name or self.key
+
+
+class Vocabulary:
+    """All elements of one kind of document."""
+
+    def __init__(
+        self,
+        namespace: str,
+        name: str,
+        root: str,
+        elements: Iterable[Element],
+        hints: Mapping[str, str] | None = None,
+    ) -> None:
+        self.namespace = namespace
+        self.name = name
+        self.root = root
+        self.elements = {element.key: element for element in elements}
+        self.hints = dict(hints or {})
+        """What to write instead of an element that authors expect but this language lacks."""
+        self._children = {
+            key: {self.elements[child].tag: child for child in element.children}
+            for key, element in self.elements.items()
+        }
+        self.tags = frozenset(element.tag for element in self.elements.values())
+
+    def child(self, key: str, tag: str) -> str | None:
+        """The key of the element written ``tag`` inside the element ``key``, if allowed."""
+        return self._children[key].get(tag)
+
+    def children(self, key: str) -> Iterable[str]:
+        """The tags allowed inside the element ``key``."""
+        return self._children[key]
+
+    def parents(self, tag: str) -> list[str]:
+        """The tags of the elements in which ``tag`` may stand."""
+        return sorted(
+            {self.elements[key].tag for key, tags in self._children.items() if tag in tags}
+        )
+
+
+def attribute(
+    name: str,
+    kind: str,
+    doc: str,
+    *marks: Literal["required", "dynamic"],
+    default: str = "",
+    choices: tuple[str, ...] = (),
+    low: float | None = None,
+    high: float | None = None,
+) -> Attribute:
+    """Write an :class:`Attribute` on one line."""
+    return Attribute(
+        name, kind, doc, "required" in marks, default, choices, "dynamic" in marks, low, high
+    )
+
+
+def attributes_by_name(element: Element) -> dict[str, tuple[Attribute, bool]]:
+    """Attribute names as written, ``NAME-expr`` included, with whether it is the expression."""
+    names: dict[str, tuple[Attribute, bool]] = {}
+    for item in element.attributes:
+        names[item.name] = (item, False)
+        if item.dynamic:
+            names[f"{item.name}-expr"] = (item, True)
+    return names

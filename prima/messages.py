@@ -1,0 +1,261 @@
+"""The only words that applications, mediator and devices exchange.
+
+Applications ask (:class:`Request`, :class:`OpenUnit`, :class:`CloseUnit`,
+:class:`LeaveState`, :class:`Send`, ...), the mediator orders devices about
+(:class:`Order`), and what happens comes in as one of the :data:`Inbound` values.
+All of them are data: whoever receives one decides what it means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+Json = Any
+Data = Mapping[str, Json]
+Record = dict[str, Json]
+"""One line of the transcript while it is still being made: field name to value."""
+
+
+@dataclass(slots=True)
+class Command:
+    """What an application asks for (thesis 4.1, Table 4.1)."""
+
+    type: str
+    args: dict[str, Json] = field(default_factory=dict)
+    text: str | None = None
+    now: bool = False
+    extra: dict[str, Json] = field(default_factory=dict)
+    lang: str = ""
+    source: str = ""
+    hook: Any = None
+    """What the application keeps with the Command; nobody else looks at it."""
+
+
+@dataclass(slots=True)
+class Group:
+    """Commands marked as one unit: one Atomic Behavior (rule U4)."""
+
+    steps: list[Step]
+    longest: int | None = None
+    source: str = ""
+
+
+@dataclass(slots=True)
+class Step:
+    """A node of a requested tree; ``after`` are indices of steps it waits for."""
+
+    what: Command | Group
+    after: tuple[int, ...] = ()
+
+
+# What applications say ------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Request:
+    """Commands sent at once (rule U3). ``run`` names them when their end is told."""
+
+    run: int
+    steps: list[Step]
+    state: int
+    cause: int | None = None
+    """Serial number of the event that this reacts to; sets the reactive flag (C5)."""
+    unit: int | None = None
+
+
+@dataclass(slots=True)
+class OpenUnit:
+    """A unit that spans questions and states begins (rule U5)."""
+
+    unit: int
+    state: int
+    devices: frozenset[str]
+    longest: int | None = None
+    cause: int | None = None
+    source: str = ""
+
+
+@dataclass(slots=True)
+class CloseUnit:
+    """The unit is left, by whatever way."""
+
+    unit: int
+
+
+@dataclass(slots=True)
+class LeaveState:
+    """A state of the document is left (rule O3)."""
+
+    state: int
+
+
+@dataclass(slots=True)
+class Send:
+    """A message to a named service."""
+
+    service: str
+    data: Json
+    serial: int
+    source: str = ""
+
+
+@dataclass(slots=True)
+class Say:
+    """Something for the transcript: a log element, an error nobody handled."""
+
+    level: Literal["log", "error"]
+    text: str
+    source: str = ""
+
+
+@dataclass(slots=True)
+class Quit:
+    """The application has ended."""
+
+    reason: str
+    failed: bool = False
+    source: str = ""
+
+
+Action = Request | OpenUnit | CloseUnit | LeaveState | Send | Say | Quit
+
+
+# What comes in --------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Ended:
+    """A device reports the end of an AB; ``goal`` tells whether a feedback loop is done."""
+
+    behavior: str
+    goal: bool = True
+    data: Data = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Listening:
+    """The question has been said: the robot now listens."""
+
+    behavior: str
+
+
+@dataclass(slots=True)
+class Failed:
+    """A device could not do it (rule E1)."""
+
+    behavior: str
+    device: str
+    reason: str
+
+
+@dataclass(slots=True)
+class Heard:
+    """The user said something (rule V1)."""
+
+    text: str
+
+
+@dataclass(slots=True)
+class Occurred:
+    """An event for every application, or for ``app`` alone (a service's answer)."""
+
+    name: str
+    actor: Literal["user", "environment", "robot", "mediator"] = "environment"
+    data: Data = field(default_factory=dict)
+    app: str | None = None
+
+
+@dataclass(slots=True)
+class Sensed:
+    """Sensor values that changed, by dotted name (rule C6)."""
+
+    values: Data
+
+
+@dataclass(slots=True)
+class Narrated:
+    """Something a reader of the transcript wants to know, and nobody else."""
+
+    actor: Literal["user", "environment"]
+    text: str
+
+
+@dataclass(slots=True)
+class Emergency:
+    """The emergency stop is pressed, or released with or without resuming (E5)."""
+
+    pressed: bool
+    resume: bool = True
+
+
+@dataclass(slots=True)
+class Loaded:
+    """An application starts."""
+
+    app: str
+
+
+@dataclass(slots=True)
+class Unloaded:
+    """An application is taken out of the robot (rule E2)."""
+
+    app: str
+
+
+Inbound = (
+    Ended
+    | Listening
+    | Failed
+    | Heard
+    | Occurred
+    | Sensed
+    | Narrated
+    | Emergency
+    | Loaded
+    | Unloaded
+)
+
+
+# What the mediator orders -----------------------------------------------------
+
+
+@dataclass(slots=True)
+class Order:
+    """To the devices: start an AB's Command, abort it, or stop what still moves (F5)."""
+
+    verb: Literal["start", "abort", "stop", "send"]
+    behavior: str
+    command: Command | None = None
+    devices: frozenset[str] = frozenset()
+    loop: int = 0
+    resumed: bool = False
+    app: str = ""
+    data: Json = None
+    """For ``send``: the service and what it is sent."""
+
+
+# What the mediator tells an application ------------------------------------------
+
+
+@dataclass(slots=True)
+class Notice:
+    """The fate of Commands: ``ended``, ``done`` (a whole run), ``cancelled`` or ``failed``."""
+
+    what: Literal["ended", "done", "cancelled", "failed", "unit-timeout"]
+    run: int
+    command: Command | None = None
+    data: Data = field(default_factory=dict)
+    event: str = ""
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened, as applications see it."""
+
+    name: str
+    serial: int
+    data: Data = field(default_factory=dict)
+    reactive: bool = True

@@ -1,0 +1,89 @@
+"""Running a transcript's inbound records again: recovery, what-if, and proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from prima.commands import CommandType
+from prima.errors import UsageError
+from prima.interpreter.elements import Document
+from prima.messages import (
+    Emergency,
+    Ended,
+    Failed,
+    Heard,
+    Inbound,
+    Listening,
+    Loaded,
+    Narrated,
+    Occurred,
+    Record,
+    Sensed,
+    Unloaded,
+)
+from prima.scheduler.selection import policy_named
+from prima.session import Session
+
+
+def inbound_of(record: Record) -> Inbound | None:
+    """The inbound value that a record was made of; None for what was decided inside."""
+    if not record.get("inbound"):
+        return None
+    data = record.get("data") or {}
+    match record["phase"]:
+        case "end":
+            return Ended(record["behavior"], record.get("goal", True), data)
+        case "listening":
+            return Listening(record["behavior"])
+        case "fail":
+            return Failed(record["behavior"], record["device"], record["message"])
+        case "event" if record["event"] == "speech" and record["actor"] == "user":
+            return Heard(record["text"])
+        case "event":
+            return Occurred(record["event"], record["actor"], data, record.get("app"))
+        case "sensed":
+            return Sensed(data)
+        case "note":
+            return Narrated(record["actor"], record["text"])
+        case "emergency":
+            pressed = record["outcome"] == "pressed"
+            return Emergency(pressed, bool(data.get("resume", True)))
+        case "load":
+            return Loaded(record["app"])
+        case "unload":
+            return Unloaded(record["app"])
+    return None
+
+
+def replay_records(
+    records: Iterable[Record], documents: Iterable[Document], commands: Mapping[str, CommandType]
+) -> Iterator[Record]:
+    """Run the inbound records of a transcript through a session; times of both in s and ms.
+
+    Raises:
+        UsageError: the transcript names an application that is not there.
+    """
+    held = list(records)
+    head, settings = held[0], held[0]["data"]
+    yield {**head, "time": round(head["time"] * 1000)}
+    session = Session(documents, policy_named(settings["policy"]), commands, settings.get("bound"))
+    batches: dict[int, list[Inbound]] = {}
+    for record in held:
+        value = inbound_of(record)
+        if value is not None:
+            if isinstance(value, Loaded) and value.app not in session.apps:
+                raise UsageError(f'The transcript loads "{value.app}", which is not there.')
+            batches.setdefault(round(record["time"] * 1000), []).append(value)
+    last = held[-1]
+    end = round(last["time"] * 1000)
+    for now, batch in sorted(batches.items()):
+        while (due := session.deadline()) is not None and due < now:
+            session.step(due, ())
+        session.step(now, batch)
+        yield from session.drain()
+    while (due := session.deadline()) is not None and due <= end and last["phase"] == "over":
+        session.step(due, ())
+        yield from session.drain()
+    yield from session.drain()
+    if last["phase"] == "over":
+        yield {**last, "time": end}

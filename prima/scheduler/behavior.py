@@ -1,0 +1,149 @@
+"""Atomic Behaviors, Communication Streams, and what is known of an application.
+
+An AB tree *is* a Communication Stream (thesis 4.4): a :class:`Stream` holds the
+ABs of its trees, and each :class:`Behavior` its parents and children. A feedback
+Command is one :class:`Behavior` that runs once for every loop; each loop is an
+AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from prima.commands import CommandType
+from prima.messages import Command, Group
+
+HIGH = 1
+NO_DEVICES: frozenset[str] = frozenset()
+
+
+class State(Enum):
+    """The states of an AB in working memory (thesis Figure 4.3), and out of it."""
+
+    LINKED = "linked"
+    WAITING = "waiting"
+    RUNNING = "running"
+    GONE = "gone"
+
+
+@dataclass(slots=True, eq=False)
+class Stream:
+    """A Communication Stream: it ends when nothing keeps it open (rule C1)."""
+
+    name: str
+    app: Application
+    members: dict[str, Behavior] = field(default_factory=dict)
+    windows: int = 0
+    engaged: bool = False
+    cause: int | None = None
+    suspended: int | None = None
+    """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
+
+    @property
+    def open(self) -> bool:
+        """Whether the stream has an AB in working memory or an open window (C1)."""
+        return bool(self.members) or self.windows > 0
+
+    def contending(self) -> list[Behavior]:
+        """The stream's running and waiting ABs; linked ones compete for nothing."""
+        return [ab for ab in self.members.values() if ab.state is not State.LINKED]
+
+    def engages_user(self) -> bool:
+        """Whether the stream keeps the channel (rule K1)."""
+        if not self.engaged:
+            return False
+        contending = self.contending()
+        return not contending or not all(ab.leaves for ab in contending)
+
+
+@dataclass(slots=True, eq=False)
+class Application:
+    """What the mediator keeps of an application: nothing of its documents."""
+
+    name: str
+    kind: str
+    order: int
+    latest: Behavior | None = None
+    window: Stream | None = None
+    continuing: tuple[Stream, int] | None = None
+    """The stream that O2 or O3 cancelled, and the instant for which it stays open."""
+    units: dict[int, Behavior] = field(default_factory=dict)
+    streams: int = 0
+    behaviors: int = 0
+    last_turn: int = -1
+    gone: bool = False
+
+
+@dataclass(slots=True)
+class Run:
+    """Commands that an application sent at once and whose end it awaits."""
+
+    number: int
+    app: Application
+    left: int
+
+
+@dataclass(slots=True, eq=False)
+class Behavior:
+    """An Atomic Behavior (thesis Figure 4.2)."""
+
+    name: str
+    serial: int
+    app: Application
+    stream: Stream
+    type: CommandType | None
+    command: Command | None
+    devices: frozenset[str]
+    requested: int
+    document_state: int
+    group: Group | None = None
+    run: Run | None = None
+    unit: Behavior | None = None
+    state: State = State.WAITING
+    reaction: int | None = None
+    """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
+    parent: str | None = None
+    waits_for: set[str] = field(default_factory=set)
+    children: list[Behavior] = field(default_factory=list)
+    freed: int = -1
+    """The instant in which the AB's parent ended or its window opened (S2c)."""
+    started: int = -1
+    loop: int = 0
+    resumed: bool = False
+    listening: bool = False
+    last_loop: bool = False
+    silent: bool = False
+    blocked: tuple[str, str] = ("", "")
+    waited_loops: int = 0
+    # Units only (U4, U5):
+    spans: bool = False
+    open: bool = False
+    inner: dict[str, Behavior] = field(default_factory=dict)
+    busy: dict[str, Behavior] = field(default_factory=dict)
+    longest: int | None = None
+
+    @property
+    def id(self) -> str:
+        """The AB's name in the transcript; a loop of a feedback Command has its number."""
+        return f"{self.name}.{self.loop}" if self.loop else self.name
+
+    @property
+    def feedback(self) -> bool:
+        """Whether the Command makes one loop after another (U2)."""
+        return self.type is not None and self.type.feedback
+
+    @property
+    def leaves(self) -> bool:
+        """Whether the AB leaves the user (K2)."""
+        return self.type is not None and self.type.leaves
+
+    @property
+    def engages(self) -> bool:
+        """Whether the AB engages the user (K1)."""
+        return self.type is not None and self.type.engages
+
+    @property
+    def priority(self) -> int:
+        """The Command type's priority; a unit's is high, as nothing in it leaves (K2)."""
+        return HIGH if self.type is None else self.type.priority

@@ -1,0 +1,81 @@
+"""What the mediator records: values in the order in which things were decided."""
+
+from __future__ import annotations
+
+from prima.messages import Json, Record
+from prima.scheduler.behavior import Behavior, Stream
+
+LOSERS_NAMED = 8
+"""How many losers of a decision are named; all are counted."""
+
+
+class Chronicle:
+    """Collects the records of a run; ``now`` is the instant, in milliseconds."""
+
+    def __init__(self) -> None:
+        self.now = 0
+        self.records: list[Record] = []
+
+    def add(self, phase: str, actor: str, **fields: Json) -> None:
+        """Record something. Fields that are None are left out when it is written."""
+        fields["time"] = self.now
+        fields["phase"] = phase
+        fields["actor"] = actor
+        self.records.append(fields)
+
+    def drain(self) -> list[Record]:
+        """Give what was recorded since the last time."""
+        records, self.records = self.records, []
+        return records
+
+    def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
+        """Record what becomes of an AB."""
+        self.add(
+            phase,
+            "robot",
+            app=ab.app.name,
+            behavior=ab.id,
+            tree=ab.stream.name,
+            command=ab.type.name if ab.type else "iu",
+            text=ab.command.text if ab.command else None,
+            unit=ab.unit.id if ab.unit else None,
+            **fields,
+        )
+
+    def request(self, ab: Behavior) -> None:
+        """Record a request with all that the rules ask of an AB."""
+        command = ab.command
+        self.behavior(
+            "request",
+            ab,
+            args=(command.args or None) if command else None,
+            extra=(command.extra or None) if command else None,
+            parent=ab.parent,
+            parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
+            devices=sorted(ab.devices),
+            priority="high" if ab.priority else "low",
+            reactive=ab.reaction is not None,
+            cause=ab.reaction,
+            feedback=ab.feedback or None,
+            leaves=ab.leaves or None,
+            engages=ab.engages or None,
+            order="now" if command and command.now else None,
+            state=ab.document_state,
+            source=(command.source if command else ab.group.source if ab.group else None) or None,
+        )
+
+    def stream(self, phase: str, stream: Stream, rule: str, **fields: Json) -> None:
+        """Record what becomes of a stream."""
+        self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
+
+    def decision(self, winner: Behavior, rule: str, losers: list[Behavior]) -> None:
+        """Record a selection: the rule, who won, and who lost."""
+        self.add(
+            "decision",
+            "mediator",
+            app=winner.app.name,
+            winner=winner.id,
+            rule=rule,
+            losers=[ab.id for ab in losers[:LOSERS_NAMED]],
+            losers_count=len(losers),
+        )

@@ -1,0 +1,172 @@
+"""From requested Commands to ABs in working memory (rules U1-U5, O1, E3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from prima.commands import TABLE_4_2, CommandType, check_arguments
+from prima.errors import did_you_mean
+from prima.messages import Command, Group, OpenUnit, Request, Step
+from prima.scheduler.behavior import NO_DEVICES, Application, Behavior, Run, State, Stream
+
+Table = Mapping[str, CommandType]
+
+
+class Refused(Exception):
+    """A Command is refused before it enters working memory (rule E3)."""
+
+    def __init__(self, event: str, message: str, command: Command | None) -> None:
+        super().__init__(message)
+        self.event = event
+        self.message = message
+        self.command = command
+
+
+def check_command(command: Command, app: Application, table: Table) -> None:
+    """Refuse a Command that the rules or this robot do not know, and fill in defaults.
+
+    Raises:
+        Refused: with ``error.unsupported.TYPE`` or ``error.semantic``.
+    """
+    row = table.get(command.type)
+    if row is None:
+        if command.type in TABLE_4_2:
+            message = f"This robot cannot do {command.type}."
+            raise Refused(f"error.unsupported.{command.type}", message, command)
+        hint = did_you_mean(command.type, table)
+        raise Refused("error.semantic", f'No Command "{command.type}". {hint}'.rstrip(), command)
+    if command.extra and app.kind == "ea":
+        message = f"Only an FA may give {command.type} additional arguments."
+        raise Refused("error.semantic", message, command)
+    for name in command.extra:
+        if name not in row.extra:
+            message = f'{command.type} has no additional argument "{name}" on this robot.'
+            raise Refused("error.semantic", message, command)
+    try:
+        command.args = dict(check_arguments(row, command.text, command.args))
+    except ValueError as error:
+        raise Refused("error.semantic", str(error), command) from None
+    command.now = command.now or row.now
+
+
+def check_steps(steps: list[Step], app: Application, table: Table, unit: bool = False) -> None:
+    """Check all Commands of a request before any of them is taken in.
+
+    Raises:
+        Refused: for the first bad one.
+    """
+    for step in steps:
+        if isinstance(step.what, Group):
+            check_steps(step.what.steps, app, table, unit=True)
+            continue
+        check_command(step.what, app, table)
+        row = table[step.what.type]
+        if unit and (row.feedback or row.leaves):
+            message = f"{row.name} cannot stand in a unit: it is not one piece."
+            raise Refused("error.semantic", message, step.what)
+
+
+def group_devices(group: Group, table: Table) -> frozenset[str]:
+    """All devices of a unit's Commands, of every branch (rule U4)."""
+    devices = NO_DEVICES
+    for step in group.steps:
+        if isinstance(step.what, Group):
+            devices |= group_devices(step.what, table)
+        else:
+            devices |= table[step.what.type].occupied(step.what.text)
+    return devices
+
+
+class Maker:
+    """Makes ABs and streams; it alone gives out their names and serial numbers."""
+
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self.serial = 0
+
+    def stream(self, app: Application) -> Stream:
+        """A new stream of the application."""
+        app.streams += 1
+        return Stream(f"{app.name}:{app.streams}", app)
+
+    def behavior(
+        self,
+        app: Application,
+        stream: Stream,
+        what: Command | Group,
+        now: int,
+        state: int,
+        run: Run | None = None,
+        unit: Behavior | None = None,
+    ) -> Behavior:
+        """One AB for a Command (U1) or for a group of them (U4)."""
+        self.serial += 1
+        app.behaviors += 1
+        group = what if isinstance(what, Group) else None
+        command = None if isinstance(what, Group) else what
+        row = self.table[command.type] if command else None
+        return Behavior(
+            name=f"{app.name}#{app.behaviors}",
+            serial=self.serial,
+            app=app,
+            stream=stream,
+            type=row,
+            command=command,
+            group=group,
+            devices=(
+                row.occupied(command.text)
+                if row and command
+                else group_devices(group, self.table)
+                if group
+                else NO_DEVICES
+            ),
+            requested=now,
+            document_state=state,
+            run=run,
+            unit=unit,
+            longest=group.longest if group else None,
+        )
+
+    def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:
+        """The AB of a unit that spans questions and states (U5)."""
+        unit = self.behavior(app, stream, Group([], asked.longest, asked.source), now, asked.state)
+        unit.devices = asked.devices
+        unit.spans = True
+        unit.open = True
+        return unit
+
+    def chain(
+        self,
+        app: Application,
+        stream: Stream,
+        steps: list[Step],
+        request: Request,
+        now: int,
+        run: Run | None,
+        unit: Behavior | None,
+    ) -> list[Behavior]:
+        """The ABs of steps, linked as the steps say; roots wait for nothing yet."""
+        made: list[Behavior] = []
+        for step in steps:
+            ab = self.behavior(app, stream, step.what, now, request.state, run, unit)
+            for index in step.after:
+                link(made[index], ab)
+            made.append(ab)
+        return made
+
+
+def link(parent: Behavior, child: Behavior) -> None:
+    """Make ``child`` wait for ``parent``; the last one linked is its parent (U3)."""
+    child.waits_for.add(parent.name)
+    child.parent = parent.id
+    parent.children.append(child)
+
+
+def parent_of(app: Application, unit: Behavior | None) -> Behavior | None:
+    """O1: the latest Command this application requested, if it is in working memory still."""
+    latest = app.latest
+    if latest is None or latest.state is State.GONE:
+        return None
+    if unit is not None:
+        return latest if latest.unit is unit else None
+    return latest.unit or latest

@@ -1,0 +1,98 @@
+"""Working memory (thesis Figure 4.3): every AB that has been requested and not ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.scheduler.behavior import Application, Behavior, State, Stream
+
+
+class Memory:
+    """ABs by state, the devices they occupy, the streams, and the stack of floors."""
+
+    def __init__(self) -> None:
+        self.apps: dict[str, Application] = {}
+        self.behaviors: dict[str, Behavior] = {}
+        self.waiting: dict[str, Behavior] = {}
+        self.running: dict[str, Behavior] = {}
+        self.occupied: dict[str, Behavior] = {}
+        self.streams: dict[str, Stream] = {}
+        self.floor: list[Stream] = []
+        self._active: Application | None = None
+
+    @property
+    def holder(self) -> Stream | None:
+        """The stream that holds the floor (F1-F4), if any."""
+        return self.floor[-1] if self.floor else None
+
+    @property
+    def active(self) -> Application | None:
+        """The application whose stream is active: the floor's, else the one that started last."""
+        holder = self.holder
+        if holder is not None:
+            return holder.app
+        return self._active if self.running else None
+
+    def add(self, ab: Behavior) -> None:
+        """Take a requested AB in: waiting where nothing is before it, else linked."""
+        self.behaviors[ab.name] = ab
+        ab.stream.members[ab.name] = ab
+        if ab.waits_for:
+            ab.state = State.LINKED
+        else:
+            self.wait(ab)
+
+    def wait(self, ab: Behavior) -> None:
+        """Let the AB compete. Commands inside a unit compete within it only."""
+        ab.state = State.WAITING
+        if ab.unit is None:
+            self.waiting[ab.name] = ab
+
+    def start(self, ab: Behavior, now: int) -> None:
+        """Move a waiting AB to the running ones; its devices are occupied from here on."""
+        self.waiting.pop(ab.name, None)
+        ab.state = State.RUNNING
+        ab.started = now
+        self.running[ab.name] = ab
+        self._active = ab.app
+        unit = ab.unit
+        for device in ab.devices:
+            if unit is not None and device in unit.devices:
+                unit.busy[device] = ab
+            else:
+                self.occupied[device] = ab
+
+    def release(self, ab: Behavior) -> None:
+        """Give back what a running AB occupies."""
+        self.running.pop(ab.name, None)
+        holders = (self.occupied,) if ab.unit is None else (self.occupied, ab.unit.busy)
+        for held in holders:
+            for device in ab.devices:
+                if held.get(device) is ab:
+                    del held[device]
+
+    def remove(self, ab: Behavior) -> None:
+        """Take an AB out of working memory, whatever its state."""
+        self.release(ab)
+        self.waiting.pop(ab.name, None)
+        self.behaviors.pop(ab.name, None)
+        ab.stream.members.pop(ab.name, None)
+        if ab.unit is not None:
+            ab.unit.inner.pop(ab.name, None)
+        ab.state = State.GONE
+
+    def of_app(self, app: Application) -> Iterator[Behavior]:
+        """The application's ABs, in the order of their requests."""
+        return iter([ab for ab in self.behaviors.values() if ab.app is app])
+
+    def conflict(self, ab: Behavior) -> Behavior | None:
+        """A running AB that occupies one of the devices (S1); a unit's own count within it."""
+        unit = ab.unit
+        for device in sorted(ab.devices):
+            if unit is not None and device in unit.devices:
+                other = unit.busy.get(device)
+            else:
+                other = self.occupied.get(device)
+            if other is not None:
+                return other
+        return None

@@ -1,0 +1,194 @@
+"""The rules of selection (S, F, K), each a short function, and the policies made of them.
+
+A policy answers three questions about a waiting AB: where it ranks, whether
+something other than a device keeps it from starting, and whether it holds its
+devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
+``fifo``, ``fair``, ``fixed`` and ``none`` are the baselines it is compared with.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from prima.errors import UsageError, did_you_mean, one_of
+from prima.scheduler.behavior import Behavior, Stream
+from prima.scheduler.memory import Memory
+
+Rank = tuple[tuple[int, ...], ...]
+Refusal = tuple[str, str]
+"""The rule that keeps an AB from starting, and what it is kept back by."""
+
+
+def rank_priority(ab: Behavior) -> tuple[int, ...]:
+    """S2a: the higher priority goes first."""
+    return (-ab.priority,)
+
+
+def rank_reaction(ab: Behavior, memory: Memory) -> tuple[int, ...]:
+    """S2b: reactions, the latest event's first; of one event, the active application's."""
+    if ab.reaction is None:
+        return (1,)
+    return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
+
+
+def rank_continuing(ab: Behavior, now: int) -> tuple[int, ...]:
+    """S2c: a parent that has ended in this instant goes before others."""
+    return (0 if ab.freed == now else 1,)
+
+
+def rank_suspended(ab: Behavior) -> tuple[int, ...]:
+    """S2d: the stream suspended last goes first."""
+    suspended = ab.stream.suspended
+    return (1,) if suspended is None else (0, -suspended)
+
+
+def rank_request(ab: Behavior) -> tuple[int, ...]:
+    """S2e: the earlier request goes first."""
+    return (ab.requested,)
+
+
+def rank_declared(ab: Behavior) -> tuple[int, ...]:
+    """S2f: the order in which applications were declared, then the serial number."""
+    return (ab.app.order, ab.serial)
+
+
+def outranks(ab: Behavior, stream: Stream) -> bool:
+    """F2: whether an AB has a higher priority than all that the floor's stream has."""
+    contending = stream.contending()
+    return bool(contending) and all(ab.priority > other.priority for other in contending)
+
+
+def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
+    """F2: another application's floor lets only certain ABs start."""
+    holder = memory.holder
+    if holder is None or holder.app is ab.app:
+        return None
+    if ab.reaction is not None and ab.reaction != holder.cause:
+        return None
+    return None if outranks(ab, holder) else ("F2", holder.name)
+
+
+def refused_by_channel(ab: Behavior, memory: Memory) -> Refusal | None:
+    """K1: an AB that leaves the user waits while another application engages the user."""
+    if not ab.leaves:
+        return None
+    for stream in memory.streams.values():
+        if stream.app is not ab.app and stream.engages_user():
+            return ("K1", stream.name)
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """The thesis's policy, ``prima``."""
+
+    name: str = "prima"
+    floor: bool = True
+    """Whether reactions take the floor (F1) and the channel is kept (K1)."""
+    exclusive: bool = True
+    """Whether an AB waits for its devices (S1); only ``none`` does without."""
+    rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
+    """The name of the rule behind each part of a rank."""
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """Where a waiting AB stands: the smallest goes first (S2)."""
+        return (
+            rank_priority(ab),
+            rank_reaction(ab, memory),
+            rank_continuing(ab, now),
+            rank_suspended(ab),
+            rank_request(ab),
+            rank_declared(ab),
+        )
+
+    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+        """What else than a device keeps the AB from starting (F2, K1)."""
+        return refused_by_floor(ab, memory) or refused_by_channel(ab, memory)
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """S3: whether a waiting AB keeps its devices from those it outranks."""
+        return ab.reaction is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Fifo(Policy):
+    """Waiting ABs in the order of their requests; no floor, channel or reactivity."""
+
+    name: str = "fifo"
+    floor: bool = False
+    rules: tuple[str, ...] = ("fifo", "S2f")
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The earlier request goes first."""
+        return (rank_request(ab), rank_declared(ab))
+
+    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+        """Nothing but devices keeps an AB from starting."""
+        return None
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """Every waiting AB holds its devices back from later ones."""
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class Fair(Fifo):
+    """Like ``fifo``, but the application goes first that has not had its turn."""
+
+    name: str = "fair"
+    rules: tuple[str, ...] = ("fair", "fifo", "S2f")
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The application whose turn is longest ago, then the earlier request."""
+        return ((ab.app.last_turn,), rank_request(ab), rank_declared(ab))
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed(Fifo):
+    """One application, named, always outranks the other (a subsumption architecture)."""
+
+    name: str = "fixed"
+    rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
+    first: str = ""
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The named application (else the one declared first), then the earlier request."""
+        top = ab.app.name == self.first if self.first else ab.app.order == 0
+        return ((0 if top else 1,), rank_request(ab), rank_declared(ab))
+
+
+@dataclass(frozen=True, slots=True)
+class Unmediated(Fifo):
+    """No mediator: every Command reaches its devices at once."""
+
+    name: str = "none"
+    exclusive: bool = False
+    rules: tuple[str, ...] = ("none", "S2f")
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """Nothing is ever held back."""
+        return False
+
+
+POLICIES = ("prima", "fifo", "fair", "fixed", "none")
+
+
+def policy_named(text: str) -> Policy:
+    """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.
+
+    Raises:
+        UsageError: no policy has that name.
+    """
+    name, colon, first = text.partition(":")
+    if name == "fixed":
+        return Fixed(first=first)
+    simple: dict[str, type[Policy]] = {
+        "prima": Policy,
+        "fifo": Fifo,
+        "fair": Fair,
+        "none": Unmediated,
+    }
+    if name not in simple or colon:
+        hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
+        raise UsageError(f'There is no policy "{text}". {hint}')
+    return simple[name]()

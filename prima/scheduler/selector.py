@@ -1,0 +1,236 @@
+"""Selection: once an instant, every waiting AB that may start is started (rules S, F, K)."""
+
+from __future__ import annotations
+
+from prima.messages import Order
+from prima.scheduler.behavior import Behavior, State, Stream
+from prima.scheduler.chronicle import Chronicle
+from prima.scheduler.intake import Maker
+from prima.scheduler.memory import Memory
+from prima.scheduler.selection import Policy, Rank, Refusal
+
+STARVING_LOOPS = 20
+"""After how many loops of another's feedback Command a waiting AB is reported (E4)."""
+
+
+class Selector:
+    """Starts ABs by a policy; knows working memory but nothing of requests or ends."""
+
+    def __init__(
+        self, memory: Memory, policy: Policy, maker: Maker, chronicle: Chronicle, bound: int | None
+    ) -> None:
+        self.memory = memory
+        self.policy = policy
+        self.chronicle = chronicle
+        self.bound = bound
+        self.orders: list[Order] = []
+        self.started: list[Behavior] = []
+        """What the latest selection started."""
+        self._maker = maker
+        self._suspensions = 0
+        self._turns = 0
+        self._starved = 0
+
+    def select(self, now: int) -> None:
+        """Start what may start, in the order of S2, until nothing more may."""
+        self.started = []
+        again = bool(self.memory.waiting)
+        while again:
+            again = self._pass(now)
+        for unit in [ab for ab in self.memory.running.values() if ab.inner]:
+            self._advance(unit, now)
+
+    def _pass(self, now: int) -> bool:
+        """Go through the waiting ABs once; true when the floor changed on the way."""
+        memory = self.memory
+        ranked = sorted((self.policy.rank(ab, memory, now), ab) for ab in memory.waiting.values())
+        held: dict[str, Behavior] = {}
+        for index, (rank, ab) in enumerate(ranked):
+            refusal = self.policy.refusal(ab, memory)
+            if refusal is None:
+                refusal = self._refused_by_devices(ab, held)
+                if refusal is not None and self.policy.holds_back(ab):
+                    for device in ab.devices:
+                        held.setdefault(device, ab)
+            if refusal is not None:
+                self._hold(ab, refusal)
+            elif self._start(ab, rank, ranked[index + 1 :], now):
+                return True
+        return False
+
+    def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
+        """S1 and S3: a device is occupied, or held back for a reaction."""
+        if not self.policy.exclusive:
+            return None
+        other = self.memory.conflict(ab)
+        if other is not None:
+            return ("S1", other.id)
+        for device in sorted(ab.devices & held.keys()):
+            return ("S3", held[device].id)
+        return None
+
+    def _hold(self, ab: Behavior, refusal: Refusal) -> None:
+        if ab.blocked == refusal:
+            return
+        changed = ab.blocked[0] != refusal[0] or "." not in refusal[1]
+        ab.blocked = refusal
+        if changed:  # the next loop of the same feedback Command is no news
+            rule, by = refusal
+            self.chronicle.add(
+                "hold", "mediator", app=ab.app.name, behavior=ab.id, rule=rule, by=by
+            )
+
+    def _start(
+        self, ab: Behavior, rank: Rank, lower: list[tuple[Rank, Behavior]], now: int
+    ) -> bool:
+        """Start an AB and record why; true when its stream took the floor."""
+        holder = self.memory.holder
+        by_floor_rule = holder is not None and holder.app is not ab.app
+        others = bool(self.memory.running)
+        reaction, ab.reaction = ab.reaction, None
+        self._run(ab, now)
+        changed = self._take_floor(ab, reaction, by_floor_rule)
+        losers = [
+            (other_rank, other)
+            for other_rank, other in lower
+            if other.devices & ab.devices or self.policy.refusal(other, self.memory)
+        ]
+        if not self.policy.exclusive:
+            rule = "none"
+        elif by_floor_rule and self.policy.floor:
+            rule = "F2"
+        elif losers:
+            pairs = zip(self.policy.rules, rank, losers[0][0], strict=True)
+            rule = next((name for name, mine, other in pairs if mine != other), "S2f")
+        else:
+            rule = "S4" if others else "S1"
+        self.chronicle.decision(ab, rule, [other for _, other in losers])
+        self._record_start(ab, rule, reaction)
+        if ab.feedback and ab.loop > 1:
+            self._count_starving(ab)
+        return changed
+
+    def _run(self, ab: Behavior, now: int) -> None:
+        if not self.policy.exclusive:
+            self._collide(ab)
+        self._turns += 1
+        ab.app.last_turn = self._turns
+        ab.blocked = ("", "")
+        ab.waited_loops = 0
+        ab.resumed = ab.loop > 0 and ab.freed != now
+        if ab.feedback:
+            if ab.loop:
+                ab.parent = ab.id
+            ab.loop += 1
+        self.started.append(ab)
+        first = ab.started < 0
+        self.memory.start(ab, now)
+        stream = ab.stream
+        stream.engaged = stream.engaged or ab.engages
+        if stream.suspended is not None:
+            stream.suspended = None
+            self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
+        if ab.command is not None:
+            order = Order(
+                "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, app=ab.app.name
+            )
+            self.orders.append(order)
+        elif first and not ab.spans:
+            self._open_group(ab, now)
+
+    def _record_start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
+        self.chronicle.behavior(
+            "start",
+            ab,
+            devices=sorted(ab.devices),
+            parent=ab.parent if ab.feedback else None,
+            reactive=True if reaction is not None else None,
+            cause=reaction if reaction and reaction > 0 else None,
+            resumed=ab.resumed or None,
+            rule=rule,
+        )
+
+    def _collide(self, ab: Behavior) -> None:
+        """Without a mediator a later Command displaces an earlier one on its devices."""
+        for device in sorted(ab.devices):
+            other = self.memory.occupied.get(device)
+            if other is not None and other is not ab:
+                self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)
+
+    def _take_floor(self, ab: Behavior, reaction: int | None, by_floor_rule: bool) -> bool:
+        """F1, F3: a reaction, or what started by F2, takes the floor; the loser stays beneath."""
+        stream = ab.stream
+        if reaction is not None:
+            stream.cause = reaction
+        if not self.policy.floor or (reaction is None and not by_floor_rule):
+            return False
+        floor = self.memory.floor
+        if floor and floor[-1] is stream:
+            return False
+        if stream in floor:
+            floor.remove(stream)
+        floor.append(stream)
+        rule = "F1" if reaction is not None else "F3"
+        self.chronicle.stream(
+            "floor", stream, rule, outcome="taken", floor=[held.name for held in floor]
+        )
+        self._suspend_others(stream)
+        return True
+
+    def _suspend_others(self, stream: Stream) -> None:
+        for other in self.memory.streams.values():
+            if other.app is not stream.app and other.members and other.suspended is None:
+                self._suspensions += 1
+                other.suspended = self._suspensions
+                self.chronicle.stream("suspend", other, "C2", by=stream.name)
+
+    def _count_starving(self, ab: Behavior) -> None:
+        """E4: count the loops that other applications' equal ABs have waited."""
+        for other in list(self.memory.waiting.values()):
+            if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
+                continue
+            other.waited_loops += 1
+            if other.waited_loops == STARVING_LOOPS:
+                self.chronicle.add(
+                    "starve",
+                    "mediator",
+                    app=other.app.name,
+                    behavior=other.id,
+                    rule="E4",
+                    by=ab.id,
+                    loop=STARVING_LOOPS,
+                )
+            if self.bound is not None and other.waited_loops >= self.bound:
+                self._starved += 1
+                other.reaction = -self._starved
+
+    # Units ------------------------------------------------------------------
+
+    def _open_group(self, unit: Behavior, now: int) -> None:
+        """U4: the Commands of a group become the unit's own ABs when it starts."""
+        assert unit.group is not None
+        made: list[Behavior] = []
+        for step in unit.group.steps:
+            ab = self._maker.behavior(
+                unit.app, unit.stream, step.what, now, unit.document_state, None, unit
+            )
+            for index in step.after:
+                ab.waits_for.add(made[index].name)
+                ab.parent = made[index].id
+                made[index].children.append(ab)
+            made.append(ab)
+            unit.inner[ab.name] = ab
+            self.memory.add(ab)
+            self.chronicle.request(ab)
+
+    def _advance(self, unit: Behavior, now: int) -> None:
+        """Start the unit's own ABs in their order, where their devices are free (U4, U5)."""
+        for ab in list(unit.inner.values()):
+            if ab.state is State.WAITING and not (
+                self.policy.exclusive and self.memory.conflict(ab)
+            ):
+                reaction, ab.reaction = ab.reaction, None
+                self._run(ab, now)
+                self._record_start(ab, "U5" if unit.spans else "U4", reaction)
+                if ab.inner:
+                    self._advance(ab, now)

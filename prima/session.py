@@ -1,0 +1,329 @@
+"""Applications and one mediator, wired: inbound values in, orders out.
+
+A :class:`Session` owns no clock, thread or file. :meth:`Session.step` takes what
+happens at one instant and carries it through by rule V3: ends of ABs, then
+events, then timeouts, until nothing more happens; then selection, once. What a
+session does is a function of its documents and of these calls, so recording
+the inbound values is a journal, and feeding them again a replay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from prima.commands import CommandType
+from prima.interpreter.elements import Document
+from prima.interpreter.form import Interpreter
+from prima.messages import (
+    CloseUnit,
+    Emergency,
+    Ended,
+    Event,
+    Failed,
+    Heard,
+    Inbound,
+    Json,
+    LeaveState,
+    Listening,
+    Loaded,
+    Narrated,
+    Occurred,
+    OpenUnit,
+    Order,
+    Quit,
+    Record,
+    Request,
+    Say,
+    Send,
+    Sensed,
+    Unloaded,
+)
+from prima.scheduler.chronicle import Chronicle
+from prima.scheduler.mediator import Mediator, Told
+from prima.scheduler.selection import Policy
+
+CLASSES = {Ended: 0, Listening: 0, Failed: 0}
+"""V3: ends of ABs are taken in before events."""
+
+
+class Session:
+    """One robot's applications under one policy."""
+
+    def __init__(
+        self,
+        documents: Iterable[Document],
+        policy: Policy,
+        commands: Mapping[str, CommandType],
+        bound: int | None = None,
+    ) -> None:
+        own = {name: frozenset(row.arguments) for name, row in commands.items()}
+        self.apps = {doc.id: Interpreter(doc, own) for doc in documents}
+        self.order = {name: index for index, name in enumerate(self.apps)}
+        self.chronicle = Chronicle()
+        self.mediator = Mediator(policy, commands, self.chronicle, bound)
+        self.failures: list[str] = []
+        """Applications that ended by an error, as ``NAME: what``."""
+        self._serial = 0
+        self._loaded: set[str] = set()
+        self._sends: list[Order] = []
+
+    # Driving ------------------------------------------------------------------
+
+    def step(self, now: int, inbound: Iterable[Inbound]) -> list[Order]:
+        """Take in what happens at ``now`` (ms, never less than before); gives the orders.
+
+        Orders are for the devices, in the order in which they were made; ``send``
+        orders are for services.
+        """
+        self.chronicle.now = now
+        for value in sorted(inbound, key=self._class):
+            self._take(value)
+        self._time_out(now)
+        self._settle()
+        self.mediator.select()
+        sends, self._sends = self._sends, []
+        return [*self.mediator.drain_orders(), *sends]
+
+    def deadline(self) -> int | None:
+        """The next instant at which :meth:`step` has to be called, if anything is due."""
+        due = [app.deadline for name, app in self.apps.items() if name in self._loaded]
+        due.append(self.mediator.deadline())
+        return min((time for time in due if time is not None), default=None)
+
+    def drain(self) -> list[Record]:
+        """Give the records made since the last time."""
+        return self.chronicle.drain()
+
+    @property
+    def over(self) -> bool:
+        """Whether every application that was loaded has ended."""
+        return bool(self._loaded) and all(self.apps[name].over for name in self._loaded)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing runs or waits in working memory."""
+        return not self.mediator.memory.behaviors
+
+    def _class(self, value: Inbound) -> tuple[int, int]:
+        """V3: class, and for ends the application, the one whose stream is active first."""
+        kind = CLASSES.get(type(value), 1)  # type: ignore[arg-type]
+        if kind == 0:
+            name = value.behavior.partition("#")[0]  # type: ignore[union-attr]
+            return kind, self._rank(name)
+        return kind, 0
+
+    def _rank(self, name: str) -> int:
+        active = self.mediator.memory.active
+        return -1 if active is not None and active.name == name else self.order.get(name, 0)
+
+    def _in_order(self) -> list[Interpreter]:
+        """V3: the applications in declared order, the one whose stream is active first."""
+        return [
+            self.apps[name]
+            for name in sorted(self._loaded, key=self._rank)
+            if not self.apps[name].over
+        ]
+
+    # Inbound ------------------------------------------------------------------
+
+    def _take(self, value: Inbound) -> None:
+        match value:
+            case Ended():
+                self.mediator.ended(value.behavior, value.goal, value.data)
+                self._settle()
+            case Listening():
+                self._record("listening", "robot", behavior=value.behavior)
+                self.mediator.listening(value.behavior)
+            case Failed():
+                self.mediator.failed(value.behavior, value.device, value.reason)
+                self._settle()
+            case Heard():
+                self._heard(value)
+            case Occurred():
+                self._occurred(value)
+            case Sensed():
+                self._sensed(value)
+            case Narrated():
+                self._record("note", value.actor, text=value.text)
+            case Emergency():
+                self.mediator.emergency(value.pressed, value.resume)
+                name = "emergency.stop" if value.pressed else "emergency.release"
+                self._raise(name, {}, self._in_order())
+                self._settle()
+            case Loaded():
+                self._load(value.app)
+            case Unloaded():
+                self._record("unload", "environment", app=value.app)
+                app = self.apps.get(value.app)
+                if app is not None and value.app in self._loaded:
+                    app.stop()
+                    self._act(app)
+
+    def _record(self, phase: str, actor: str, **fields: Json) -> None:
+        self.chronicle.add(phase, actor, inbound=True, **fields)
+
+    def _load(self, name: str) -> None:
+        self._record("load", "environment", app=name)
+        app = self.apps[name]
+        if name in self._loaded:
+            return
+        self._loaded.add(name)
+        self.mediator.load(name, app.kind)
+        app.start(self.chronicle.now)
+        self._act(app)
+        self._settle()
+
+    def _occurred(self, value: Occurred) -> None:
+        apps = self._in_order()
+        if value.app is not None:
+            apps = [app for app in apps if app.name == value.app]
+        serial = self._serial + 1
+        self._record(
+            "event",
+            value.actor,
+            app=value.app,
+            event=value.name,
+            data=dict(value.data) or None,
+            serial=serial,
+        )
+        self._raise(value.name, dict(value.data), apps)
+
+    def _raise(
+        self, name: str, data: dict[str, Json], apps: list[Interpreter], reactive: bool = True
+    ) -> None:
+        """V1: an event goes to every application; each one's handlers decide."""
+        self._serial += 1
+        event = Event(name, self._serial, data, reactive)
+        for app in apps:
+            app.event(self.chronicle.now, event)
+            self._act(app)
+
+    def _heard(self, value: Heard) -> None:
+        """V1: the question that listens, then links that listen all the time, then nomatch."""
+        self._serial += 1
+        self._record("event", "user", event="speech", text=value.text, serial=self._serial)
+        question = self.mediator.question()
+        if question is not None and question.command is not None and question.run is not None:
+            asker = self.apps[question.app.name]
+            if not (question.listening or question.command.args.get("bargein", True)):
+                question = None
+            else:
+                answer = None if asker.over else asker.answer(question.run.number, value.text)
+                if answer is not None:
+                    data = {"outcome": "filled", "utterance": value.text, "value": answer}
+                    self._conclude(question.id, data)
+                    return
+        if self._follow_links(value.text) or question is None or question.silent:
+            return
+        self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})
+
+    def _follow_links(self, text: str) -> bool:
+        taken = False
+        event = Event("speech", self._serial, {"text": text})
+        for app in self._in_order():
+            link = app.listens_to(text)
+            if link is not None:
+                taken = True
+                app.follow(self.chronicle.now, link, event)
+                self._act(app)
+        return taken
+
+    def _conclude(self, behavior: str, data: dict[str, Json]) -> None:
+        """The answer is the question's end (C4); the devices are told to stop listening."""
+        ab = self.mediator.running(behavior)
+        if ab is not None:
+            self.mediator.orders.append(Order("abort", behavior, ab.command, app=ab.app.name))
+        self.mediator.ended(behavior, True, data, inbound=False)
+        self._settle()
+
+    def _sensed(self, value: Sensed) -> None:
+        self._record("sensed", "environment", data=dict(value.values))
+        for app in self._in_order():
+            for name in app.sensed(self.chronicle.now, value.values):
+                self._own_event(app, name, {}, reactive=True)
+            self._act(app)
+
+    def _own_event(
+        self, app: Interpreter, name: str, data: dict[str, Json], reactive: bool
+    ) -> None:
+        """An event that one application alone has defined."""
+        self.chronicle.add(
+            "event",
+            "environment",
+            app=app.name,
+            event=name,
+            data=data or None,
+            serial=self._serial + 1,
+        )
+        self._raise(name, data, [app], reactive)
+
+    def _time_out(self, now: int) -> None:
+        """V3: timeouts come last."""
+        self.mediator.expire()
+        self._settle()
+        for app in self._in_order():
+            for name, data in app.expire(now):
+                self._own_event(app, name, dict(data), reactive=False)
+
+    # Outbound -----------------------------------------------------------------
+
+    def _settle(self) -> None:
+        """Tell applications what became of their Commands, until nobody has more to say."""
+        told_queue = self.mediator.told
+        while told_queue:
+            told = told_queue.popleft()
+            self._tell(told)
+
+    def _tell(self, told: Told) -> None:
+        app = self.apps[told.app]
+        if app.over:
+            return
+        self.mediator.open_window(told)
+        for notice in told.notices:
+            app.notice(self.chronicle.now, notice)
+            self._act(app)
+        self.mediator.close_window(told)
+
+    def _act(self, app: Interpreter) -> None:
+        """Carry out what an application wants."""
+        while app.actions:
+            actions, app.actions = app.actions, []
+            for action in actions:
+                match action:
+                    case Request():
+                        self.mediator.request(app.name, action)
+                    case OpenUnit():
+                        self.mediator.open_unit(app.name, action)
+                    case CloseUnit():
+                        self.mediator.close_unit(app.name, action)
+                    case LeaveState():
+                        self.mediator.leave_state(app.name, action)
+                    case Send():
+                        self._send(app, action)
+                    case Say():
+                        self._log(app, action)
+                    case Quit():
+                        self._quit(app, action)
+
+    def _send(self, app: Interpreter, action: Send) -> None:
+        data = {"to": action.service, "params": action.data}
+        self.chronicle.add(
+            "send", "robot", app=app.name, data=data, serial=action.serial, source=action.source
+        )
+        order = Order("send", f"{app.name}!{action.serial}", app=app.name)
+        order.data = data
+        self._sends.append(order)
+
+    def _log(self, app: Interpreter, action: Say) -> None:
+        self.chronicle.add(
+            "log" if action.level == "log" else "error",
+            "robot",
+            app=app.name,
+            message=action.text,
+            source=action.source or None,
+        )
+
+    def _quit(self, app: Interpreter, action: Quit) -> None:
+        if action.failed:
+            self.failures.append(f"{app.name}: {action.reason}")
+        self.mediator.unload(app.name, action.reason)

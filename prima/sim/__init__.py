@@ -1,0 +1,1 @@
+"""Headless simulation in virtual time: world, robot, person, services."""

@@ -1,0 +1,217 @@
+"""The scripted user, and the surroundings' events, of a scenario."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from prima.interpreter.grammar import fold
+from prima.interpreter.selection import takes
+from prima.messages import (
+    Emergency,
+    Heard,
+    Inbound,
+    Json,
+    Narrated,
+    Occurred,
+    Record,
+    Unloaded,
+)
+from prima.sim import voice
+from prima.sim.robot import Robot
+from prima.sim.scenario import Doing, Scenario, When
+from prima.sim.world import World, distance
+
+
+@dataclass(slots=True, order=True)
+class Script:
+    """What follows a trigger: what is left of it, and when it goes on (ms)."""
+
+    time: int
+    serial: int
+    left: list[Doing] = field(compare=False)
+    speaking: str = field(default="", compare=False)
+
+
+class Person:
+    """Plays the user: observes what the robot does, and does what the scenario says."""
+
+    def __init__(self, scenario: Scenario, world: World, robot: Robot) -> None:
+        self.world = world
+        self.robot = robot
+        self.sensors: dict[str, Json] = {}
+        self._speed = scenario.person_speed
+        self._whens = scenario.whens
+        self._fired: dict[int, int] = {}
+        self._seen: dict[int, int] = {}
+        self._scripts: list[Script] = []
+        self._serial = 0
+        self._texts: dict[str, str] = {}
+        self._following: float | None = None
+        for when in self._whens:
+            if when.trigger == "at":
+                self._begin(when, int(when.what) + when.after)
+
+    def _begin(self, when: When, time: int) -> None:
+        self._serial += 1
+        self._scripts.append(Script(time, self._serial, list(when.doings)))
+
+    # Observing --------------------------------------------------------------------
+
+    def observe(self, now: int, records: list[Record]) -> None:
+        """See what has happened, and react to it after a while."""
+        for record in records:
+            phase = record["phase"]
+            if phase == "start" and record.get("text"):
+                self._texts[record["behavior"].partition(".")[0]] = record["text"]
+            if phase in ("start", "end", "listening", "event"):
+                for index, when in enumerate(self._whens):
+                    if when.trigger != "at" and self._is(when, phase, record):
+                        self._trigger(index, when, now)
+
+    def _trigger(self, index: int, when: When, now: int) -> None:
+        self._seen[index] = self._seen.get(index, 0) + 1
+        fired = self._fired.get(index, 0)
+        if self._seen[index] >= when.count and fired < when.times:
+            self._fired[index] = fired + 1
+            self._begin(when, now + max(when.after, 1))
+
+    def _is(self, when: When, phase: str, record: Record) -> bool:
+        behavior = record.get("behavior") or ""
+        match when.trigger:
+            case "asked":
+                return phase == "listening" and self._holds(when, behavior)
+            case "said":
+                ended = phase == "end" and record.get("outcome") == "done"
+                return (phase == "listening" or ended) and self._holds(when, behavior)
+            case "doing":
+                first = behavior.partition(".")[2] in ("", "1")
+                return phase == "start" and first and record.get("command") == when.what
+            case "done":
+                over = phase == "end" and record.get("outcome") != "again"
+                return over and record.get("command") == when.what
+            case _:
+                return phase == "event" and takes(when.what, record["event"])
+
+    def _holds(self, when: When, behavior: str) -> bool:
+        said = self._texts.get(behavior.partition(".")[0], "")
+        return bool(said) and fold(when.what) in fold(said)
+
+    # Doing ------------------------------------------------------------------------
+
+    def due(self) -> int | None:
+        """When something is to be done next, if ever."""
+        return min((script.time for script in self._scripts), default=None)
+
+    def collect(self, now: int) -> list[Inbound]:
+        """Everything that happens at ``now`` by the scenario's script."""
+        made: list[Inbound] = []
+        for script in sorted(script for script in self._scripts if script.time <= now):
+            made += self._go_on(script, now)
+            if not script.left and not script.speaking:
+                self._scripts.remove(script)
+        if self._following is not None:
+            self._follow(self._following)
+        return made
+
+    def _go_on(self, script: Script, now: int) -> list[Inbound]:
+        made: list[Inbound] = []
+        while script.time <= now:
+            if script.speaking:
+                made.append(Heard(script.speaking))
+                script.speaking = ""
+            if not script.left:
+                break
+            doing = script.left.pop(0)
+            made += self._do(doing, script, now)
+        return made
+
+    def _do(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
+        values = doing.values
+        match doing.name:
+            case "say":
+                self.robot.speech_begins(now)
+                script.speaking = doing.text
+                script.time = now + voice.duration(doing.text, "", self.robot.profile.voices)
+            case "touch":
+                sensor = values["sensor"]
+                return [Occurred(f"touch.{sensor}", "user", {"sensor": sensor})]
+            case "walk":
+                return self._walk(doing, script, now)
+            case "wait":
+                script.time = now + values["for"]
+            case "look":
+                return [Narrated("user", f"looks at the {values['at']}")]
+            case "follow":
+                self._following = values["distance"] or 1.2
+                return [Narrated("user", "goes along with the robot")]
+            case "stay":
+                self._following = None
+                self.world.walk(None, self._speed)
+            case "leave":
+                self._following = self.world.person = None
+                self.world.walk(None, self._speed)
+                return [Narrated("user", "goes away")]
+            case "note":
+                return [Narrated("environment", doing.text)]
+            case _:
+                return self._happen(doing)
+        return []
+
+    def _happen(self, doing: Doing) -> list[Inbound]:
+        """What is none of the user's doing."""
+        values = doing.values
+        match doing.name:
+            case "message":
+                data = {"from": values["from"] or "", "text": doing.text}
+                return [Occurred("message", "environment", data)]
+            case "event":
+                return [Occurred(values["name"], "environment", values["data"])]
+            case "sensor":
+                self.sensors[values["name"]] = _plain(values["value"])
+            case "fail":
+                self.robot.broken[values["device"]] = bool(values["hangs"])
+                return [Narrated("environment", f"the {values['device']} fails")]
+            case "repair":
+                self.robot.broken.pop(values["device"], None)
+                return [Narrated("environment", f"the {values['device']} works again")]
+            case "emergency":
+                return [Emergency(True)]
+            case "release":
+                return [Emergency(False, bool(values["resume"]))]
+            case "unload":
+                return [Unloaded(values["application"])]
+        return []
+
+    def _walk(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
+        values = doing.values
+        goal = self.world.map.point(values["to"]) if values["to"] else (values["x"], values["y"])
+        self._following = None
+        if self.world.person is None or goal is None:
+            return []
+        self.world.walk(goal, self._speed)
+        script.time = now + round(distance(self.world.person, goal) / self._speed * 1000) + 1
+        whither = f"to the {values['to']}" if values["to"] else f"to {goal[0]:g}, {goal[1]:g}"
+        return [Narrated("user", f"walks {whither}")]
+
+    def _follow(self, keep: float) -> None:
+        """Stay behind the robot while it moves."""
+        world, person = self.world, self.world.person
+        if person is None:
+            return
+        here = world.position
+        if distance(here, person) > keep + 0.2:
+            share = keep / distance(here, person)
+            goal = (
+                here[0] + (person[0] - here[0]) * share,
+                here[1] + (person[1] - here[1]) * share,
+            )
+            world.walk(goal, self._speed)
+
+
+def _plain(text: str) -> Json:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text

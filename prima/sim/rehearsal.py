@@ -1,0 +1,168 @@
+"""The virtual-time loop: it jumps to whatever is next, and steps only what moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from prima.errors import DocumentError, Problem, did_you_mean
+from prima.interpreter.elements import Document
+from prima.messages import Inbound, Loaded, Record
+from prima.scheduler.selection import Policy
+from prima.session import Session
+from prima.sim.person import Person
+from prima.sim.robot import Robot
+from prima.sim.routes import Routes
+from prima.sim.scenario import Map, Point, Profile, Scenario
+from prima.sim.services import Services
+from prima.sim.world import STEP_MS, World
+
+MAX_RECORDS = 1_000_000
+"""Records that a run may make."""
+
+
+@dataclass(slots=True)
+class Cast:
+    """All that a run needs, read and checked."""
+
+    scenario: Scenario
+    documents: list[Document]
+    world: Map
+    robot: Profile
+
+
+def check_cast(cast: Cast, file: str) -> list[Problem]:
+    """Names in a scenario that its world, robot and applications do not know."""
+    scenario, problems = cast.scenario, []
+    points = set(cast.world.places) | set(cast.world.things)
+    known = {
+        ("robot", "at"): (set(cast.world.places), "place"),
+        ("person", "at"): (points, "place or thing"),
+        ("walk", "to"): (points, "place or thing"),
+        ("look", "at"): (points, "place or thing"),
+        ("touch", "sensor"): (set(cast.robot.touch), "touch sensor"),
+        ("fail", "device"): (set(cast.robot.devices), "device"),
+        ("repair", "device"): (set(cast.robot.devices), "device"),
+        ("when", "doing"): (set(cast.robot.commands), "Command"),
+        ("when", "done"): (set(cast.robot.commands), "Command"),
+        ("unload", "application"): ({doc.id for doc in cast.documents}, "application"),
+    }
+    stack = [scenario.node]
+    while stack:
+        node = stack.pop()
+        stack += reversed(node.nodes)
+        for (tag, name), (words, what) in known.items():
+            word = node.attributes.get(name)
+            if node.tag == tag and word is not None and word not in words:
+                place = node.attribute_place(name)
+                message = f'There is no {what} "{word}".'
+                problems.append(
+                    Problem(place, "error", "no-such-name", message, did_you_mean(word, words))
+                )
+    seen: set[str] = set()
+    for (_, _, node), document in zip(scenario.applications, cast.documents, strict=True):
+        if document.id in seen:
+            message = f'Two applications have the id "{document.id}".'
+            problems.append(Problem(node.place, "error", "duplicate-id", message))
+        seen.add(document.id)
+    return problems
+
+
+class Rehearsal:
+    """One run of a scenario. Iterate over :meth:`run` for its records, in order."""
+
+    def __init__(self, cast: Cast, policy: Policy, bound: int | None = None) -> None:
+        self.cast = cast
+        problems = check_cast(cast, cast.scenario.node.source.file)
+        if problems:
+            raise DocumentError(problems)
+        scenario = cast.scenario
+        at = cast.world.places.get(scenario.robot_at) or next(
+            iter(cast.world.places.values()), (0.0, 0.0)
+        )
+        heading = scenario.robot_heading
+        if heading is None:
+            heading = cast.world.headings.get(scenario.robot_at, 0.0)
+        self.world = World(cast.world, cast.robot, at, heading)
+        self.world.person = self._person_start(scenario)
+        self.robot = Robot(cast.robot, self.world, Routes(cast.world))
+        self.person = Person(scenario, self.world, self.robot)
+        self.services = Services(scenario.services)
+        self.session = Session(cast.documents, policy, cast.robot.commands, bound)
+        self._watching = any(
+            doc.watches or any(form.watches for form in doc.forms.values())
+            for doc in cast.documents
+        )
+        self._loads = sorted(
+            (start, index, doc.id)
+            for index, ((_, start, _), doc) in enumerate(
+                zip(scenario.applications, cast.documents, strict=True)
+            )
+        )
+        self.outcome = ""
+        """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+        self.made = 0
+
+    def _person_start(self, scenario: Scenario) -> Point | None:
+        return scenario.person_point or self.cast.world.point(scenario.person_at)
+
+    def run(self) -> Iterator[list[Record]]:
+        """Run to the end, giving the records of each instant as they are made."""
+        now = 0
+        while not self.outcome:
+            due = self._due()
+            if due is None:
+                self.outcome = "quiet"
+            elif due > self.cast.scenario.until:
+                self.outcome, now = "until", self.cast.scenario.until
+            elif self.made > MAX_RECORDS:
+                self.outcome = "limit"
+            else:
+                now = max(due, now)
+                yield self.step(now)
+                if self.session.over and not self._loads:
+                    self.outcome = "over"
+        self.session.chronicle.now = now
+        self.session.chronicle.add("over", "mediator", outcome=self.outcome)
+        yield self.session.drain()
+
+    def step(self, now: int) -> list[Record]:
+        """One instant."""
+        world, session = self.world, self.session
+        world.advance(now)
+        inbound: list[Inbound] = []
+        while self._loads and self._loads[0][0] <= now:
+            inbound.append(Loaded(self._loads.pop(0)[2]))
+        inbound += self.robot.collect(now)
+        said = self.person.collect(now)
+        inbound += said
+        inbound += self.services.collect(now)
+        if self._watching:
+            inbound += self.robot.sense(self.person.sensors)
+        for order in session.step(now, inbound):
+            target = self.services if order.verb == "send" else self.robot
+            target.order(now, order)
+        if said:
+            self.robot.speech_over(now)
+        records = session.drain()
+        self.made += len(records)
+        self.person.observe(now, records)
+        return records
+
+    def _due(self) -> int | None:
+        times = [
+            self._loads[0][0] if self._loads else None,
+            self.robot.due(),
+            self.person.due(),
+            self.services.due(),
+            self.session.deadline(),
+        ]
+        if self.world.moving or self._has_controls():
+            times.append(self.world.time + STEP_MS)
+        return min((time for time in times if time is not None), default=None)
+
+    def _has_controls(self) -> bool:
+        """Whether a motion has been ordered that has not set the wheels going yet."""
+        return any(
+            task.control is not None and task.ends is None for task in self.robot.tasks.values()
+        )

@@ -1,0 +1,457 @@
+"""The simulated robot: carries out orders in the world and reports what comes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from prima.messages import Command, Ended, Failed, Inbound, Json, Listening, Occurred, Order, Sensed
+from prima.sim import voice
+from prima.sim.routes import Routes
+from prima.sim.scenario import Point, Profile
+from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance
+
+ARRIVED = 0.1
+"""How near a goal is reached (m)."""
+PASSED = 0.25
+"""How near a point on the way is passed (m)."""
+BLOCKED_MS = 10_000
+"""How long a way may be blocked before the move has failed."""
+IN_THE_WAY = 0.45
+"""How near a person in front stops the robot (m)."""
+ALIGNED = 1.5
+"""How many degrees off a direction counts as turned to it."""
+BRAKING_MS = 200
+POINTING_MS = 1000
+
+
+@dataclass(slots=True)
+class Plan:
+    """What a locomotion Command remembers from loop to loop; forgotten when interrupted."""
+
+    path: list[Point] | None = None
+    turn_left: float = 0.0
+    since: int = 0
+    last: tuple[Point, float] | None = None
+    stuck: int = 0
+    sought: Point | None = None
+    scanned: float = 0.0
+
+
+@dataclass(slots=True)
+class Task:
+    """An AB that the robot carries out. Times in ms; ``ends`` None while motion decides it."""
+
+    id: str
+    command: Command
+    devices: frozenset[str]
+    ends: int | None = None
+    speech_ends: int = 0
+    listens: int | None = None
+    listening: bool = False
+    fails: tuple[str, str] | None = None
+    lost: set[str] = field(default_factory=set)
+    plan: Plan = field(default_factory=Plan)
+    goal: bool = False
+    control: Callable[[Task], bool] | None = None
+
+    @property
+    def name(self) -> str:
+        """The Command's AB without the number of its loop."""
+        return self.id.partition(".")[0]
+
+
+class Robot:
+    """A PaPeRo-like robot: differential drive, turning head, camera, touch, speech, ear."""
+
+    def __init__(self, profile: Profile, world: World, routes: Routes) -> None:
+        self.profile = profile
+        self.world = world
+        self.routes = routes
+        self.tasks: dict[str, Task] = {}
+        self.broken: dict[str, bool] = {}
+        """Devices that fail, and whether they hang instead."""
+        self._plans: dict[str, Plan] = {}
+        self._owners: dict[str, Task] = {}
+        self._now = 0
+        self._seen = False
+        self._unseen_since: int | None = None
+        self._sensed: dict[str, Json] = {}
+        self._loops: dict[str, Callable[[Task], bool]] = {
+            "topological-move": self._drive_path,
+            "set-position": self._drive_path,
+            "set-position-and-direction": self._drive_path,
+            "tracking-human": self._track,
+            "active-sensing-human": self._sense,
+        }
+
+    # Orders ---------------------------------------------------------------------
+
+    def order(self, now: int, order: Order) -> None:
+        """Carry out an order of the mediator."""
+        self._now = now
+        if order.verb == "start":
+            self._start(order)
+        elif order.verb == "stop":
+            self.world.drive = (0.0, 0.0)
+        else:
+            self._abort(order.behavior)
+
+    def _abort(self, behavior: str) -> None:
+        task = self.tasks.pop(behavior, None)
+        if task is not None and "locomotion" in task.devices - task.lost:
+            self.world.drive = (0.0, 0.0)
+
+    def _start(self, order: Order) -> None:
+        command = order.command
+        assert command is not None
+        task = Task(order.behavior, command, order.devices)
+        self.tasks[task.id] = task
+        for device in order.devices:
+            before = self._owners.get(device)
+            if before is not None and before.id in self.tasks:
+                before.lost.add(device)  # only without a mediator
+            self._owners[device] = task
+        broken = sorted(order.devices & self.broken.keys())
+        if broken:
+            if not self.broken[broken[0]]:
+                task.ends, task.fails = self._now + 1, (broken[0], "the device fails")
+            return
+        row = self.profile.commands[command.type]
+        if command.text and (order.loop <= 1 or order.resumed):
+            lasts = voice.duration(command.text, command.lang, self.profile.voices)
+            task.speech_ends = self._now + lasts
+        if row.feedback:
+            self._start_loop(task, order)
+        else:
+            if "locomotion" in task.devices:
+                self.world.drive = (0.0, 0.0)
+            self._start_once(task)
+
+    def _start_loop(self, task: Task, order: Order) -> None:
+        plan = self._plans.get(task.name)
+        if plan is None or order.loop == 1 or order.resumed:
+            if "locomotion" in task.devices:
+                self.world.drive = (0.0, 0.0)
+            plan = self._plans[task.name] = Plan(since=self._now)
+            self._prepare(task, plan)
+        task.plan = plan
+        loop = self.profile.durations.get(task.command.type, self.profile.loop)
+        task.ends = max(self._now + loop, task.speech_ends) if not task.fails else self._now + 1
+        task.control = self._loops.get(task.command.type)
+
+    def _prepare(self, task: Task, plan: Plan) -> None:
+        """Find the way from where the robot is now."""
+        args = task.command.args
+        if task.command.type == "topological-move":
+            plan.path = self.routes.route(self.world, str(args["to"]))
+            if plan.path is None:
+                task.fails = ("localization", f'there is no way to "{args["to"]}"')
+        elif task.command.type.startswith("set-position"):
+            plan.path = [(float(args["x"]), float(args["y"]))]
+
+    def _start_once(self, task: Task) -> None:
+        args, now = task.command.args, self._now
+        match task.command.type:
+            case "q-and-a":
+                task.listens = max(task.speech_ends, now + 1)
+            case "turn":
+                task.plan.turn_left = float(args["angle"])
+                task.control = self._turn
+            case "turn-and-speak" if "angle" in args:
+                task.plan.turn_left = float(args["angle"])
+                task.control = self._turn
+            case "set-direction" | "turn-and-speak":
+                self._turn_to(task)
+            case "face-human" | "face-human-and-speak":
+                task.control = self._face
+            case "set-speed-and-time":
+                self.world.drive = (float(args["speed"]), float(args["turn-speed"]))
+                task.ends = now + int(args["time"])
+            case "stop-moving":
+                task.ends = now + (BRAKING_MS if self.world.drive != (0.0, 0.0) else 1)
+            case "move-head":
+                angle = abs(float(args["pan"]) - self.world.pan)
+                task.ends = now + max(round(angle / self.profile.head_speed * 1000), 1)
+            case "point-by-hand":
+                task.ends = now + POINTING_MS
+            case "gesture":
+                lasts = self.profile.gestures.get(str(args["name"]))
+                task.ends = now + (lasts or 1)
+                if lasts is None:
+                    task.fails = ("arm", f'the robot knows no gesture "{args["name"]}"')
+            case other:
+                task.ends = max(
+                    task.speech_ends, now + self.profile.durations.get(other, 1), now + 1
+                )
+
+    def _turn_to(self, task: Task) -> None:
+        args = task.command.args
+        if "toward" in args:
+            point = self.world.map.point(str(args["toward"]))
+            if point is None:
+                task.fails = ("localization", f'there is no place "{args["toward"]}"')
+                task.ends = self._now + 1
+                return
+            heading = bearing(self.world.position, point)
+        else:
+            heading = float(args["heading"])
+        task.plan.turn_left = difference(heading, self.world.heading)
+        task.control = self._turn
+
+    # Motion: each gives True when it has nothing left to do -------------------------
+
+    def _rotate(self, left: float) -> None:
+        limit = self.profile.turn_speed
+        speed = max(min(left * 4.0, limit), -limit)
+        if abs(speed) < 10.0:
+            speed = 10.0 if left > 0 else -10.0
+        self.world.drive = (0.0, speed)
+
+    def _turned(self, plan: Plan) -> float:
+        """How far the robot has turned since the last time (degrees)."""
+        heading = self.world.heading
+        before = plan.last[1] if plan.last else heading
+        plan.last = (self.world.position, heading)
+        return difference(heading, before)
+
+    def _turn(self, task: Task) -> bool:
+        plan = task.plan
+        plan.turn_left -= self._turned(plan)
+        if abs(plan.turn_left) <= ALIGNED:
+            self.world.drive = (0.0, 0.0)
+            return True
+        self._rotate(plan.turn_left)
+        return False
+
+    def _face(self, task: Task) -> bool:
+        plan, world = task.plan, self.world
+        plan.scanned += abs(self._turned(plan))
+        if world.sees_person() and world.person is not None:
+            off = difference(bearing(world.position, world.person), world.heading)
+            if abs(off) <= 5.0:
+                world.drive = (0.0, 0.0)
+                return True
+            self._rotate(off)
+            return False
+        if plan.scanned >= 360.0:
+            world.drive = (0.0, 0.0)
+            return True
+        self._rotate(90.0)
+        return False
+
+    def _toward(self, point: Point, near: float) -> None:
+        """Drive toward a point: turn on the spot first, then go, slower when near."""
+        world, profile = self.world, self.profile
+        off = difference(bearing(world.position, point), world.heading)
+        turning = max(min(off * 3.0, profile.turn_speed), -profile.turn_speed)
+        if abs(off) > 30.0:
+            world.drive = (0.0, turning)
+            return
+        forward = min(profile.speed, max(near * 1.5, 0.1))
+        person = world.person
+        if person is not None and distance(world.position, person) < IN_THE_WAY:
+            ahead = difference(bearing(world.position, person), world.heading)
+            if abs(ahead) < 45.0:
+                forward = 0.0
+        world.drive = (forward, turning)
+
+    def _drive_path(self, task: Task) -> bool:
+        plan, world = task.plan, self.world
+        path = plan.path
+        if path is None:
+            return True
+        while path:
+            left = distance(world.position, path[0])
+            if left > (ARRIVED if len(path) == 1 else PASSED):
+                self._toward(path[0], left if len(path) == 1 else 10.0)
+                return False
+            path.pop(0)
+        heading = task.command.args.get("heading")
+        if heading is not None:
+            off = difference(float(heading), world.heading)
+            if abs(off) > ALIGNED:
+                self._rotate(off)
+                return False
+        world.drive = (0.0, 0.0)
+        task.goal = True
+        return True
+
+    def _track(self, task: Task) -> bool:
+        world, plan = self.world, task.plan
+        keep = float(task.command.args["distance"])
+        if world.sees_person():
+            plan.sought = world.person
+        if plan.sought is None:
+            self._rotate(90.0)
+            return False
+        seen = plan.sought == world.person
+        left = distance(world.position, plan.sought) - (keep if seen else 0.0)
+        if seen and left <= 0.05:
+            off = difference(bearing(world.position, plan.sought), world.heading)
+            if abs(off) > 5.0:
+                self._rotate(off)
+            else:
+                world.drive = (0.0, 0.0)
+        elif not seen and left <= PASSED:
+            plan.sought = None  # he is not where he was seen last: look around
+        else:
+            self._toward(plan.sought, left)
+        return False
+
+    def _sense(self, task: Task) -> bool:
+        plan = task.plan
+        plan.turn_left -= self._turned(plan)
+        if abs(plan.turn_left) > ALIGNED and not self.world.sees_person():
+            self._rotate(plan.turn_left)
+        else:
+            plan.turn_left = 0.0
+            self.world.drive = (0.0, 0.0)
+        return False
+
+    # Reports ------------------------------------------------------------------------
+
+    def due(self) -> int | None:
+        """The next instant at which something is to be reported, if one is known."""
+        times = [time for task in self.tasks.values() for time in (task.ends, task.listens) if time]
+        if self._unseen_since is not None:
+            times.append(self._unseen_since + LOST_AFTER_MS)
+        return min(times, default=None)
+
+    def collect(self, now: int) -> list[Inbound]:
+        """Everything that the devices report at ``now``."""
+        self._now = now
+        reports: list[Inbound] = []
+        for task in list(self.tasks.values()):
+            if task.control is not None and "locomotion" not in task.lost:
+                if task.control(task) and task.ends is None:
+                    task.ends = max(now, task.speech_ends)
+            if task.listens is not None and task.listens <= now:
+                task.listens, task.listening = None, True
+                task.ends = now + max(int(task.command.args["timeout"]), 1)
+                reports.append(Listening(task.id))
+            elif task.ends is not None and task.ends <= now:
+                reports += self._end(task)
+        reports += self._look()
+        for corner in self.world.corners():
+            reports.append(Occurred(corner.event, "environment", {"corner": corner.id}))
+        return reports
+
+    def _end(self, task: Task) -> list[Inbound]:
+        del self.tasks[task.id]
+        if task.fails is not None:
+            return [Failed(task.id, *task.fails)]
+        row, kind = self.profile.commands[task.command.type], task.command.type
+        if kind in ("set-speed-and-time", "stop-moving") and "locomotion" not in task.lost:
+            self.world.drive = (0.0, 0.0)
+        if kind == "move-head":
+            self.world.pan = float(task.command.args["pan"])
+        if kind == "q-and-a":
+            return [Ended(task.id, True, {"outcome": "noinput"})]
+        data = self.world.pose() if "locomotion" in task.devices else {}
+        if not row.feedback:
+            return [Ended(task.id, True, data)]
+        return self._end_loop(task, data)
+
+    def _end_loop(self, task: Task, data: dict[str, float]) -> list[Inbound]:
+        kind = task.command.type
+        if kind in self.profile.durations:
+            return [Ended(task.id, True, data)]
+        if kind == "active-sensing-human":
+            return self._end_sensing(task, data)
+        if task.plan.path is not None and not task.goal and self._is_stuck(task.plan):
+            self.world.drive = (0.0, 0.0)
+            return [Failed(task.id, "locomotion", "the way is blocked")]
+        return [Ended(task.id, task.goal, data)]
+
+    def _end_sensing(self, task: Task, data: dict[str, float]) -> list[Inbound]:
+        """Turn-and-Search: found, or look on, or turn the camera's angle and try again."""
+        plan = task.plan
+        if self.world.sees_person():
+            self.world.drive = (0.0, 0.0)
+            self._seen, self._unseen_since = True, None
+            found = Occurred("human.found", "robot", {**self._whereabouts(), "sensed": True})
+            return [Ended(task.id, True, data), found]
+        if self._now - plan.since >= int(task.command.args["patience"]):
+            plan.since = self._now
+            plan.turn_left = self.profile.camera_angle
+        return [Ended(task.id, False, data)]
+
+    def _is_stuck(self, plan: Plan) -> bool:
+        position, heading = self.world.position, self.world.heading
+        if plan.last is not None:
+            moved = distance(position, plan.last[0]) > 0.02
+            turned = abs(difference(heading, plan.last[1])) > 2.0
+            plan.stuck = 0 if moved or turned else plan.stuck + self.profile.loop
+        plan.last = (position, heading)
+        return plan.stuck >= BLOCKED_MS
+
+    def _whereabouts(self) -> dict[str, Json]:
+        person, position = self.world.person, self.world.position
+        if person is None:
+            return {}
+        return {
+            "distance": round(distance(position, person), 2),
+            "angle": round(difference(bearing(position, person), self.world.heading), 1),
+        }
+
+    def _look(self) -> list[Inbound]:
+        """V4: the camera comes to see the human, or has lost him."""
+        visible = self.world.sees_person()
+        if visible:
+            self._unseen_since = None
+            sensing = any(t.command.type == "active-sensing-human" for t in self.tasks.values())
+            if not self._seen and not sensing:
+                self._seen = True
+                return [Occurred("human.found", "robot", self._whereabouts())]
+            return []
+        if not self._seen:
+            return []
+        if self._unseen_since is None:
+            self._unseen_since = self._now
+        elif self._now - self._unseen_since >= LOST_AFTER_MS:
+            self._seen, self._unseen_since = False, None
+            return [Occurred("human.lost", "robot")]
+        return []
+
+    def sense(self, values: dict[str, Json]) -> list[Inbound]:
+        """What the sensors say, if it has changed: for applications that watch them."""
+        person, pose = self.world.person, self.world.pose()
+        now: dict[str, Json] = {
+            "human.visible": self.world.sees_person(),
+            "human.distance": (
+                None if person is None else round(distance(self.world.position, person), 1)
+            ),
+            "position.x": round(pose["x"], 1),
+            "position.y": round(pose["y"], 1),
+            "position.heading": round(pose["heading"]) % 360,
+            "moving": self.world.drive != (0.0, 0.0),
+            **values,
+        }
+        changed = {key: value for key, value in now.items() if self._sensed.get(key, ...) != value}
+        self._sensed.update(changed)
+        return [Sensed(changed)] if changed else []
+
+    # The ear ------------------------------------------------------------------------
+
+    def _question(self) -> Task | None:
+        for task in self.tasks.values():
+            if task.command.type == "q-and-a" and "speech-recognition" not in task.lost:
+                return task
+        return None
+
+    def speech_begins(self, now: int) -> None:
+        """The user begins to speak: a question that listens, or may be interrupted, waits."""
+        task = self._question()
+        if task is None or task.fails is not None:
+            return
+        if task.listening:
+            task.ends = None
+        elif task.command.args.get("bargein", True) and task.listens is not None:
+            task.listens = now + 1
+
+    def speech_over(self, now: int) -> None:
+        """The user has spoken and nobody took it as the answer: listen on."""
+        task = self._question()
+        if task is not None and task.listening and task.ends is None:
+            task.ends = now + max(int(task.command.args["timeout"]), 1)

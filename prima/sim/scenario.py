@@ -1,0 +1,372 @@
+"""Worlds, robot profiles and scenarios as values, read from their documents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any
+
+from prima.commands import TABLE_4_2, Argument, CommandType
+from prima.errors import DocumentError, Problem, did_you_mean
+from prima.markup.reader import read_tree
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Vocabulary
+from prima.messages import Json
+from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.values import read_value
+
+Point = tuple[float, float]
+
+
+class Reader:
+    """Reads typed attributes of one document by its vocabulary, collecting problems."""
+
+    def __init__(self, vocabulary: Vocabulary, file: str, data: bytes) -> None:
+        self.vocabulary = vocabulary
+        self.root, self.problems = read_tree(file, data, vocabulary)
+
+    def get(self, node: Node, name: str) -> Any:
+        """An attribute's value, its default, or None."""
+        element = self.vocabulary.elements[node.key]
+        item = next(item for item in element.attributes if item.name == name)
+        text = node.attributes.get(name, item.default)
+        if not text and name not in node.attributes:
+            return None
+        try:
+            value = read_value(item.kind, text)
+        except ValueError:
+            return None  # told already, as a problem of the schema
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if (item.low is not None and value < item.low) or (
+                item.high is not None and value > item.high
+            ):
+                self.problem(node, "out-of-range", f'{name} "{text}" is out of range.', name)
+        return value
+
+    def problem(
+        self, node: Node, code: str, message: str, attribute: str = "", remedy: str = ""
+    ) -> None:
+        """Note a problem."""
+        place = node.attribute_place(attribute) if attribute in node.attributes else node.place
+        self.problems.append(Problem(place, "error", code, message, remedy))
+
+    def known(self, node: Node, name: str, words: Iterator[str] | set[str], what: str) -> None:
+        """Note a problem where an attribute names something that is not there."""
+        word = node.get(name)
+        choices = set(words)
+        if word and word not in choices:
+            message = f'There is no {what} "{word}".'
+            self.problem(node, "no-such-name", message, name, did_you_mean(word, choices))
+
+    def finish(self) -> None:
+        """Raise what was found.
+
+        Raises:
+            DocumentError: if there is any error.
+        """
+        if any(problem.severity == "error" for problem in self.problems):
+            raise DocumentError(self.problems)
+
+
+@dataclass(slots=True)
+class Corner:
+    """Where an event is raised when the robot comes near (radius in m)."""
+
+    id: str
+    at: Point
+    radius: float
+    event: str
+
+
+@dataclass(slots=True)
+class Map:
+    """A world: places with headings (degrees), ways, walls, things, corners."""
+
+    id: str
+    places: dict[str, Point] = field(default_factory=dict)
+    headings: dict[str, float] = field(default_factory=dict)
+    ways: list[tuple[str, str]] = field(default_factory=list)
+    walls: list[tuple[Point, Point]] = field(default_factory=list)
+    things: dict[str, Point] = field(default_factory=dict)
+    corners: list[Corner] = field(default_factory=list)
+
+    def point(self, name: str) -> Point | None:
+        """Where a place or thing is (m)."""
+        return self.places.get(name) or self.things.get(name)
+
+
+def read_world(file: str, data: bytes) -> Map:
+    """Read a world.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(WORLD, file, data)
+    world = Map(reader.root.get("id"))
+    seen: set[str] = set()
+    for node in reader.root.all("place", "thing", "corner"):
+        name = node.get("id")
+        if name in seen:
+            reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id")
+        seen.add(name)
+        at = (reader.get(node, "x") or 0.0, reader.get(node, "y") or 0.0)
+        if node.tag == "place":
+            world.places[name] = at
+            world.headings[name] = reader.get(node, "heading") or 0.0
+        elif node.tag == "thing":
+            world.things[name] = at
+        else:
+            world.corners.append(
+                Corner(name, at, reader.get(node, "radius") or 0.8, node.get("event", "corner"))
+            )
+    for node in reader.root.all("way"):
+        for end in ("from", "to"):
+            reader.known(node, end, set(world.places), "place")
+        world.ways.append((node.get("from"), node.get("to")))
+    for node in reader.root.all("wall"):
+        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
+        world.walls.append(((x1, y1), (x2, y2)))
+    reader.finish()
+    return world
+
+
+@dataclass(slots=True)
+class Profile:
+    """A robot: sizes in m, speeds in m/s and degrees/s, times in ms."""
+
+    id: str
+    radius: float = 0.2
+    speed: float = 0.5
+    turn_speed: float = 90.0
+    head_speed: float = 120.0
+    loop: int = 500
+    devices: frozenset[str] = frozenset()
+    camera_angle: float = 60.0
+    camera_range: float = 4.0
+    voices: dict[str, float] = field(default_factory=dict)
+    touch: frozenset[str] = frozenset()
+    gestures: dict[str, int] = field(default_factory=dict)
+    commands: dict[str, CommandType] = field(default_factory=dict)
+    durations: dict[str, int] = field(default_factory=dict)
+
+
+def read_robot(file: str, data: bytes) -> Profile:
+    """Read a robot profile; its ``commands`` are those it can do.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(ROBOT, file, data)
+    root = reader.root
+    profile = Profile(
+        root.get("id"),
+        radius=reader.get(root, "radius") or 0.2,
+        speed=reader.get(root, "speed") or 0.5,
+        turn_speed=reader.get(root, "turn-speed") or 90.0,
+        head_speed=reader.get(root, "head-speed") or 120.0,
+        loop=reader.get(root, "loop") or 500,
+        devices=frozenset(node.get("name") for node in root.all("device")),
+        touch=frozenset(node.get("sensor") for node in root.all("touch")),
+    )
+    for node in root.all("camera"):
+        profile.camera_angle = reader.get(node, "angle") or 60.0
+        profile.camera_range = reader.get(node, "range") or 4.0
+    for node in root.all("voice"):
+        profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
+    for node in root.all("gesture"):
+        profile.gestures[node.get("name")] = reader.get(node, "duration") or 1000
+    rows = dict(TABLE_4_2)
+    for node in root.all("adds"):
+        if node.get("command") in rows:
+            message = f'There is a Command "{node.get("command")}" already.'
+            reader.problem(node, "duplicate-id", message, "command")
+        rows[node.get("command")] = _added(reader, node)
+        profile.durations[node.get("command")] = max(reader.get(node, "duration") or 1000, 1)
+    for node in root.all("allows"):
+        reader.known(node, "command", set(rows), "Command")
+        row = rows.get(node.get("command"))
+        if row is not None:
+            rows[row.name] = replace(row, extra=row.extra | {node.get("argument")})
+    profile.commands = {name: row for name, row in rows.items() if row.devices <= profile.devices}
+    reader.finish()
+    return profile
+
+
+def _added(reader: Reader, node: Node) -> CommandType:
+    """A Command of the profile's own (thesis 5.3 (6))."""
+    arguments = {
+        child.get("name"): Argument(
+            child.get("kind", "text"),
+            "",
+            reader.get(child, "low"),
+            reader.get(child, "high"),
+            required=bool(reader.get(child, "required")),
+        )
+        for child in node.all("argument")
+    }
+    return CommandType(
+        name=node.get("command"),
+        title=node.get("title", node.get("command")),
+        doc="",
+        devices=frozenset(node.get("devices").split()),
+        feedback=bool(reader.get(node, "feedback")),
+        leaves=bool(reader.get(node, "leaves")),
+        engages=bool(reader.get(node, "engages")),
+        text="optional" if reader.get(node, "says") else "none",
+        arguments=MappingProxyType(arguments),
+    )
+
+
+@dataclass(slots=True)
+class Doing:
+    """One thing that happens in a ``when``: its element's name and values."""
+
+    name: str
+    text: str = ""
+    values: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class When:
+    """A trigger with what follows it."""
+
+    trigger: str
+    what: Any
+    after: int
+    times: int
+    count: int
+    doings: list[Doing]
+
+
+@dataclass(slots=True)
+class Reply:
+    """What a service answers, after how long (ms); ``error`` where it fails."""
+
+    after: int
+    data: dict[str, Json] = field(default_factory=dict)
+    error: str = ""
+
+
+@dataclass(slots=True)
+class Scenario:
+    """A run's script. Paths are as written, relative to the scenario's file."""
+
+    id: str
+    title: str
+    world: str
+    robot: str
+    until: int
+    policy: str
+    robot_at: str
+    robot_heading: float | None
+    person_at: str
+    person_point: Point | None
+    person_speed: float
+    applications: list[tuple[str, int, Node]]
+    whens: list[When]
+    services: dict[str, list[Reply]]
+    node: Node
+
+
+TRIGGERS = ("at", "said", "asked", "doing", "done", "on")
+
+
+def read_scenario(file: str, data: bytes) -> Scenario:
+    """Read a scenario; names of the world are checked when the run is put together.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(SCENARIO, file, data)
+    root = reader.root
+    robots, people = root.all("robot"), root.all("person")
+    for extra in (*robots[1:], *people[1:]):
+        reader.problem(extra, "duplicate-element", f"There is a second <{extra.tag}>.")
+    applications = [
+        (node.get("src"), reader.get(node, "start") or 0, node) for node in root.all("application")
+    ]
+    if not applications:
+        reader.problem(root, "missing-element", "The scenario runs no <application>.")
+    person = people[0] if people else None
+    point: Point | None = None
+    if person is not None and "x" in person.attributes:
+        point = (reader.get(person, "x") or 0.0, reader.get(person, "y") or 0.0)
+    scenario = Scenario(
+        id=root.get("id"),
+        title=root.get("title"),
+        world=root.get("world"),
+        robot=root.get("robot"),
+        until=reader.get(root, "until") or 600_000,
+        policy=root.get("policy", "prima"),
+        robot_at=robots[0].get("at") if robots else "",
+        robot_heading=(
+            reader.get(robots[0], "heading")
+            if robots and "heading" in robots[0].attributes
+            else None
+        ),
+        person_at=person.get("at") if person is not None else "",
+        person_point=point,
+        person_speed=(reader.get(person, "speed") if person is not None else None) or 1.0,
+        applications=applications,
+        whens=[_when(reader, node) for node in root.all("when")]
+        + [_answer(reader, node) for node in root.all("answer")],
+        services={
+            node.get("name"): [_reply(reader, child) for child in node.nodes]
+            for node in root.all("service")
+        },
+        node=root,
+    )
+    reader.finish()
+    return scenario
+
+
+def _when(reader: Reader, node: Node) -> When:
+    given = [name for name in TRIGGERS if name in node.attributes]
+    if len(given) != 1:
+        message = "<when> needs exactly one of at, said, asked, doing, done, on."
+        reader.problem(node, "missing-attribute", message)
+        given = given or ["at"]
+    doings = [_doing(reader, child) for child in node.nodes if child.key]
+    return When(
+        given[0],
+        reader.get(node, given[0]),
+        reader.get(node, "after") or 0,
+        reader.get(node, "times") or 1,
+        reader.get(node, "count") or 1,
+        doings,
+    )
+
+
+def _doing(reader: Reader, node: Node) -> Doing:
+    element = reader.vocabulary.elements[node.key]
+    values = {item.name: reader.get(node, item.name) for item in element.attributes}
+    if node.tag == "walk" and values["to"] is None and (values["x"] is None or values["y"] is None):
+        reader.problem(node, "missing-attribute", "<walk> needs a place to go to, or x and y.")
+    if node.tag == "event":
+        values["data"] = _data(node)
+    return Doing(node.tag, node.text, values)
+
+
+def _answer(reader: Reader, node: Node) -> When:
+    after = reader.get(node, "after")
+    times = reader.get(node, "times") or 1
+    return When(
+        "asked",
+        node.get("to"),
+        1000 if after is None else after,
+        times,
+        1,
+        [Doing("say", node.text)],
+    )
+
+
+def _reply(reader: Reader, node: Node) -> Reply:
+    after = max(reader.get(node, "after") or 0, 1)
+    if node.tag == "failure":
+        return Reply(after, error=reader.get(node, "reason") or "no answer")
+    return Reply(after, _data(node))
+
+
+def _data(node: Node) -> dict[str, Json]:
+    return {child.get("name"): child.get("value") for child in node.all("data")}

@@ -1,0 +1,350 @@
+"""Worlds, robot profiles and scenarios: their elements as tables."""
+
+from __future__ import annotations
+
+from prima.markup.vocabulary import Element, Vocabulary, attribute
+
+_VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
+_ID = attribute("id", "id", "its name", "required")
+_X = attribute("x", "number", "metres east", "required", low=-1000, high=1000)
+_Y = attribute("y", "number", "metres north", "required", low=-1000, high=1000)
+_HEADING = attribute(
+    "heading", "number", "degrees counter-clockwise from east", default="0", low=-360, high=360
+)
+_TITLE = attribute("title", "text", "what people call it")
+_AFTER = attribute("after", "duration", "how long afterwards", default="0s")
+
+WORLD = Vocabulary(
+    "urn:prima:world:1",
+    "world",
+    "world",
+    (
+        Element(
+            "world",
+            "A place that a robot visits: its map, walls and things. Lengths in metres.",
+            (_VERSION, _ID, _TITLE),
+            ("place", "way", "wall", "thing", "corner"),
+        ),
+        Element("place", "A place of the topological map.", (_ID, _X, _Y, _HEADING, _TITLE)),
+        Element(
+            "way",
+            "A way between two places, to be gone in both directions.",
+            (
+                attribute("from", "id", "a place", "required"),
+                attribute("to", "id", "another place", "required"),
+            ),
+        ),
+        Element(
+            "wall",
+            "A straight wall; nobody sees or goes through it.",
+            (
+                attribute("x1", "number", "metres east of one end", "required"),
+                attribute("y1", "number", "metres north of one end", "required"),
+                attribute("x2", "number", "metres east of the other end", "required"),
+                attribute("y2", "number", "metres north of the other end", "required"),
+            ),
+        ),
+        Element("thing", "Something to look at or point to.", (_ID, _X, _Y, _TITLE)),
+        Element(
+            "corner",
+            "Raises an event when the robot comes near it.",
+            (
+                _ID,
+                _X,
+                _Y,
+                attribute("radius", "number", "how near", default="0.8", low=0.05, high=50),
+                attribute("event", "event", "which event", default="corner"),
+            ),
+        ),
+    ),
+)
+
+ROBOT = Vocabulary(
+    "urn:prima:robot:1",
+    "robot",
+    "robot",
+    (
+        Element(
+            "robot",
+            "A robot's body, devices and Commands.",
+            (
+                _VERSION,
+                _ID,
+                _TITLE,
+                attribute("radius", "number", "the body's", default="0.2", low=0.05, high=2),
+                attribute(
+                    "speed", "number", "metres a second at most", default="0.5", low=0.01, high=3
+                ),
+                attribute(
+                    "turn-speed",
+                    "number",
+                    "degrees a second at most",
+                    default="90",
+                    low=1,
+                    high=720,
+                ),
+                attribute(
+                    "head-speed", "number", "degrees a second", default="120", low=1, high=720
+                ),
+                attribute(
+                    "loop", "duration", "a loop of a feedback Command", default="500ms", low=10
+                ),
+            ),
+            ("device", "camera", "voice", "touch", "gesture", "adds", "allows"),
+        ),
+        Element(
+            "device",
+            "A device that the robot has; Commands whose devices it lacks it cannot do.",
+            (attribute("name", "id", "as in Table 4.2, or its own", "required"),),
+        ),
+        Element(
+            "camera",
+            "What it sees humans with.",
+            (
+                attribute(
+                    "angle", "number", "field of view in degrees", default="60", low=1, high=360
+                ),
+                attribute("range", "number", "metres", default="4", low=0.1, high=100),
+            ),
+        ),
+        Element(
+            "voice",
+            "How fast it talks in a language.",
+            (
+                attribute("lang", "language", "the language", "required"),
+                attribute("rate", "number", "letters a second", "required", low=0.5, high=100),
+            ),
+        ),
+        Element("touch", "A touch sensor.", (attribute("sensor", "id", "its name", "required"),)),
+        Element(
+            "gesture",
+            "A gesture that it knows.",
+            (
+                attribute("name", "id", "its name", "required"),
+                attribute("duration", "duration", "how long it takes", default="1s"),
+            ),
+        ),
+        Element(
+            "adds",
+            "A Command that the hardware developer adds.",
+            (
+                attribute("command", "id", "its name", "required"),
+                _TITLE,
+                attribute(
+                    "devices", "text", "the devices it occupies, separated by spaces", "required"
+                ),
+                attribute(
+                    "duration", "duration", "how long it takes, or a loop of it", default="1s"
+                ),
+                attribute("feedback", "boolean", "whether it works in loops", default="false"),
+                attribute("leaves", "boolean", "whether it leaves the user", default="false"),
+                attribute("engages", "boolean", "whether it engages the user", default="false"),
+                attribute("says", "boolean", "whether it takes a text", default="false"),
+            ),
+            ("argument",),
+        ),
+        Element(
+            "argument",
+            "A motion argument of an added Command.",
+            (
+                attribute("name", "id", "its name", "required"),
+                attribute(
+                    "kind",
+                    "text",
+                    "its type",
+                    default="text",
+                    choices=("text", "number", "duration", "boolean", "id"),
+                ),
+                attribute("low", "number", "the least"),
+                attribute("high", "number", "the most"),
+                attribute("required", "boolean", "whether it is needed", default="false"),
+            ),
+        ),
+        Element(
+            "allows",
+            "An additional argument of a Command, for an FA alone.",
+            (
+                attribute("command", "id", "the Command", "required"),
+                attribute("argument", "id", "the argument's name", "required"),
+            ),
+        ),
+    ),
+)
+
+_ACTIONS = (
+    *("say", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note"),
+    *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload"),
+)
+_TRIGGERS = (
+    attribute("at", "duration", "a time of the run"),
+    attribute("said", "text", "the robot has said something with these words"),
+    attribute("asked", "text", "the robot has asked something with these words and listens"),
+    attribute("doing", "id", "the robot begins such a Command"),
+    attribute("done", "id", "the robot ends such a Command"),
+    attribute("on", "event", "such an event happens"),
+)
+
+SCENARIO = Vocabulary(
+    "urn:prima:scenario:1",
+    "scenario",
+    "scenario",
+    (
+        Element(
+            "scenario",
+            "A run: who is where, what the user does and when, what services answer.",
+            (
+                _VERSION,
+                _ID,
+                _TITLE,
+                attribute("world", "path", "the world's document", "required"),
+                attribute("robot", "path", "the robot's profile", "required"),
+                attribute(
+                    "until", "duration", "when the run ends, if not by itself", default="600s"
+                ),
+                attribute("policy", "text", "the mediator's policy", default="prima"),
+            ),
+            ("robot", "person", "application", "answer", "when", "service"),
+        ),
+        Element(
+            "robot",
+            "Where the robot is at first.",
+            (attribute("at", "id", "a place", "required"), _HEADING),
+        ),
+        Element(
+            "person",
+            "The user, and where at first.",
+            (
+                attribute("at", "id", "a place or thing"),
+                attribute("x", "number", "metres east"),
+                attribute("y", "number", "metres north"),
+                attribute("speed", "number", "metres a second", default="1", low=0.05, high=5),
+            ),
+        ),
+        Element(
+            "application",
+            "An application that the robot runs, in the order in which they are declared.",
+            (
+                attribute("src", "path", "its document", "required"),
+                attribute("start", "duration", "when it is loaded", default="0s"),
+            ),
+        ),
+        Element(
+            "answer",
+            "What the user answers whenever the robot asks something with these words.",
+            (
+                attribute("to", "text", "words of the question", "required"),
+                attribute("after", "duration", "how long after it", default="1s"),
+                attribute(
+                    "times", "integer", "how often at most", default="1000", low=1, high=1000
+                ),
+            ),
+            text=True,
+        ),
+        Element(
+            "when",
+            "What happens at a time, or when the robot has done something: in sequence.",
+            (
+                *_TRIGGERS,
+                _AFTER,
+                attribute("times", "integer", "how often at most", default="1", low=1, high=1000),
+                attribute("count", "integer", "the first time that counts", default="1", low=1),
+            ),
+            _ACTIONS,
+        ),
+        Element("say", "The user says something.", text=True),
+        Element(
+            "touch", "The user touches a sensor.", (attribute("sensor", "id", "which", "required"),)
+        ),
+        Element(
+            "walk",
+            "The user walks somewhere in a straight line.",
+            (
+                attribute("to", "id", "a place or thing"),
+                attribute("x", "number", "metres east"),
+                attribute("y", "number", "metres north"),
+            ),
+        ),
+        Element(
+            "wait", "Nothing, for a while.", (attribute("for", "duration", "how long", "required"),)
+        ),
+        Element(
+            "look",
+            "The user looks at something.",
+            (attribute("at", "id", "a place or thing", "required"),),
+        ),
+        Element(
+            "follow",
+            "The user goes behind the robot from now on.",
+            (attribute("distance", "number", "metres", default="1.2", low=0.3, high=10),),
+        ),
+        Element("stay", "The user stays where he is."),
+        Element("leave", "The user goes away and is seen no more."),
+        Element("note", "A remark for the reader.", text=True),
+        Element(
+            "message",
+            "A message arrives from the network: the event message, with its sender and text.",
+            (attribute("from", "text", "who sends it", default=""),),
+            text=True,
+        ),
+        Element(
+            "event",
+            "An event of the surroundings.",
+            (attribute("name", "event", "its name", "required"),),
+            ("data",),
+        ),
+        Element(
+            "data",
+            "A value given along.",
+            (
+                attribute("name", "text", "its name", "required"),
+                attribute("value", "text", "its value", "required"),
+            ),
+        ),
+        Element(
+            "sensor",
+            "A sensor's value changes.",
+            (
+                attribute("name", "event", "its dotted name", "required"),
+                attribute(
+                    "value", "text", "its value: a number, true, false or a text", "required"
+                ),
+            ),
+        ),
+        Element(
+            "fail",
+            "A device fails from now on, or hangs.",
+            (
+                attribute("device", "id", "which", "required"),
+                attribute(
+                    "hangs", "boolean", "whether it hangs instead of failing", default="false"
+                ),
+            ),
+        ),
+        Element(
+            "repair", "The device works again.", (attribute("device", "id", "which", "required"),)
+        ),
+        Element("emergency", "The emergency stop is pressed."),
+        Element(
+            "release",
+            "The emergency stop is released.",
+            (attribute("resume", "boolean", "whether streams resume", default="true"),),
+        ),
+        Element(
+            "unload",
+            "An application is taken out.",
+            (attribute("application", "id", "its id", "required"),),
+        ),
+        Element(
+            "service",
+            "A service that applications send to. Its replies are given in order; the last repeats.",
+            (attribute("name", "id", "its name", "required"),),
+            ("reply", "failure"),
+        ),
+        Element("reply", "An answer.", (_AFTER,), ("data",)),
+        Element(
+            "failure",
+            "No answer but an error.",
+            (_AFTER, attribute("reason", "text", "why", default="the service does not answer")),
+        ),
+    ),
+)

@@ -1,0 +1,150 @@
+"""The physical world: bodies, walls, what can be seen. This alone knows pymunk."""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from prima.sim.scenario import Corner, Map, Point, Profile
+
+STEP_MS = 50
+"""The longest step of physics."""
+WALLS = pymunk.ShapeFilter(mask=0b10)
+LOST_AFTER_MS = 1000
+"""How long a human must be out of sight before the camera has lost him."""
+
+
+def distance(a: Point, b: Point) -> float:
+    """Metres between two points."""
+    return math.hypot(b[0] - a[0], b[1] - a[1])
+
+
+def bearing(a: Point, b: Point) -> float:
+    """The direction from one point to another, in degrees."""
+    return math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
+
+
+def difference(angle: float, other: float) -> float:
+    """The way from ``other`` to ``angle``, between -180 and 180 degrees."""
+    return (angle - other + 180.0) % 360.0 - 180.0
+
+
+class World:
+    """Bodies that move in virtual time, in milliseconds; steps only while something moves."""
+
+    def __init__(self, plan: Map, profile: Profile, at: Point, heading: float) -> None:
+        self.map = plan
+        self.profile = profile
+        self.time = 0
+        self._space = pymunk.Space()
+        for start, end in plan.walls:
+            wall = pymunk.Segment(self._space.static_body, start, end, 0.05)
+            wall.filter = pymunk.ShapeFilter(categories=0b10)
+            self._space.add(wall)
+        self._body = pymunk.Body(10.0, pymunk.moment_for_circle(10.0, 0, profile.radius))
+        shape = pymunk.Circle(self._body, profile.radius)
+        shape.filter = pymunk.ShapeFilter(categories=0b01)
+        self._space.add(self._body, shape)
+        self._body.position = at
+        self._body.angle = math.radians(heading)
+        self.drive = (0.0, 0.0)
+        """What the wheels are told: metres a second forward, degrees a second to the left."""
+        self.pan = 0.0
+        self.person: Point | None = None
+        self._goal: Point | None = None
+        self._walking = 1.0
+        self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
+
+    # The robot -----------------------------------------------------------------
+
+    @property
+    def position(self) -> Point:
+        """Where the robot is (m)."""
+        return (self._body.position.x, self._body.position.y)
+
+    @property
+    def heading(self) -> float:
+        """Where the robot's front points (degrees)."""
+        return math.degrees(self._body.angle) % 360.0
+
+    def pose(self) -> dict[str, float]:
+        """The robot's pose, rounded to mm and tenths of a degree."""
+        x, y = self.position
+        return {"x": round(x, 3), "y": round(y, 3), "heading": round(self.heading, 1) % 360.0}
+
+    # The person ----------------------------------------------------------------
+
+    def walk(self, to: Point | None, speed: float) -> None:
+        """Send the person somewhere in a straight line; None lets him stay."""
+        self._goal, self._walking = to, speed
+
+    @property
+    def walking(self) -> bool:
+        """Whether the person is on his way."""
+        return self._goal is not None
+
+    # Seeing --------------------------------------------------------------------
+
+    def clear(self, a: Point, b: Point) -> bool:
+        """Whether no wall stands between two points."""
+        return self._space.segment_query_first(a, b, 0.0, WALLS) is None
+
+    def sees_person(self) -> bool:
+        """Whether the person is in the camera's field of view, near enough and not hidden."""
+        person, position = self.person, self.position
+        if person is None or distance(position, person) > self.profile.camera_range:
+            return False
+        off = difference(bearing(position, person), self.heading + self.pan)
+        return abs(off) <= self.profile.camera_angle / 2 and self.clear(position, person)
+
+    # Time ----------------------------------------------------------------------
+
+    @property
+    def moving(self) -> bool:
+        """Whether physics has to be stepped."""
+        return self.drive != (0.0, 0.0) or self._goal is not None
+
+    def advance(self, to: int) -> None:
+        """Let time pass until ``to`` (ms)."""
+        while self.time < to and self.moving:
+            step = min(STEP_MS, to - self.time)
+            self._step(step / 1000)
+            self.time += step
+        self.time = to
+
+    def _step(self, seconds: float) -> None:
+        forward, turning = self.drive
+        if forward or turning:
+            body = self._body
+            body.velocity = (forward * math.cos(body.angle), forward * math.sin(body.angle))
+            body.angular_velocity = math.radians(turning)
+            self._space.step(seconds)
+            body.velocity = (0.0, 0.0)
+            body.angular_velocity = 0.0
+        if self._goal is not None and self.person is not None:
+            self._step_person(self._goal, seconds)
+
+    def _step_person(self, goal: Point, seconds: float) -> None:
+        assert self.person is not None
+        left, step = distance(self.person, goal), self._walking * seconds
+        if left <= step:
+            self.person, self._goal = goal, None
+        else:
+            share = step / left
+            x, y = self.person
+            self.person = (x + (goal[0] - x) * share, y + (goal[1] - y) * share)
+
+    def corners(self) -> list[Corner]:
+        """Corners that the robot has come near to since the last time."""
+        reached = []
+        for corner in self.map.corners:
+            if not self._near(corner):
+                self._inside.discard(corner.id)
+            elif corner.id not in self._inside:
+                self._inside.add(corner.id)
+                reached.append(corner)
+        return reached
+
+    def _near(self, corner: Corner) -> bool:
+        return distance(self.position, corner.at) <= corner.radius

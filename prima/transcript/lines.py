@@ -1,0 +1,65 @@
+"""Transcripts as JSON lines: writing without a model, reading with one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+
+from prima.errors import UsageError
+from prima.messages import Record
+
+ORDER = ["time", "phase", "actor", "app", "behavior", "tree", "command", "text", "args", "extra", "parent", "parents", "devices", "priority", "reactive", "cause", "feedback", "leaves", "engages", "order", "state", "unit", "event", "serial", "rule", "winner", "losers", "losers_count", "by", "floor", "outcome", "goal", "resumed", "device", "loop", "message", "data", "source", "inbound"]
+"""The order of a record's fields; a test holds it to the model's."""
+
+MAX_LINE = 1_000_000
+"""Characters that a line of a transcript may have."""
+
+
+def line(record: Record) -> str:
+    """A record of a run as a line of JSON; its time goes from ms to seconds."""
+    shown = {name: record[name] for name in ORDER if name in record and record[name] is not None}
+    shown["time"] = record["time"] / 1000
+    return json.dumps(shown, ensure_ascii=False, separators=(",", ":")) + "\n"
+
+
+def finished(record: Record) -> Record:
+    """A record of a run as it is read back from a line."""
+    made: Record = json.loads(line(record))
+    return made
+
+
+def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
+    """Read a transcript's records, checked against the model.
+
+    Raises:
+        UsageError: the text is no transcript, with the line's number.
+    """
+    from pydantic import ValidationError
+
+    from prima.transcript.record import Record as Model
+
+    count = 0
+    for number, text in enumerate(lines, 1):
+        if not text.strip():
+            continue
+        if len(text) > MAX_LINE:
+            raise UsageError(f"{name}:{number}: this line is too long for a transcript's.")
+        try:
+            record = json.loads(text)
+            Model.model_validate(record)
+        except (ValueError, RecursionError) as error:
+            raise UsageError(f"{name}:{number}: {_why(error, text, ValidationError)}") from None
+        count += 1
+        yield record
+    if count == 0:
+        raise UsageError(f"{name}: this is no transcript: it has no records.")
+
+
+def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
+    if isinstance(error, invalid):
+        first = error.errors()[0]  # type: ignore[attr-defined]
+        where = ".".join(str(part) for part in first["loc"]) or "the record"
+        return f"this is no transcript's record: {where}: {first['msg']}."
+    if text.lstrip().startswith("{") and not text.endswith("\n"):
+        return "the record is cut off; the transcript was not written to its end."
+    return "this is not a line of JSON. Transcripts are written by prima run -o."

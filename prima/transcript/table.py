@@ -1,0 +1,266 @@
+"""The table that a person reads, in the manner of the thesis's Figures 5.1-5.12."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from prima.commands import TABLE_4_2
+from prima.messages import Record
+
+SILENT = frozenset({"stop-moving", "iu"})
+"""Commands that have no row of their own, as in the thesis."""
+
+
+@dataclass(slots=True)
+class Row:
+    """A row: who does what. ``time`` in seconds; ``key`` is what makes two rows the same."""
+
+    time: float
+    actor: str
+    app: str
+    what: str
+    event: bool = False
+    star: bool = False
+    unit: str = ""
+    bracket: str = ""
+    resumed: bool = False
+    rule: str = ""
+    kind: str = ""
+    behavior: str = ""
+    source: str = ""
+    number: int = 0
+
+    @property
+    def key(self) -> tuple[str, str, str, str]:
+        """Actor, application, kind and text: alike in two runs where the behaviour is."""
+        return (self.actor, self.app, self.kind, self.what.removeprefix("resumes "))
+
+
+def make_rows(records: Iterable[Record]) -> list[Row]:
+    """The rows of a transcript, numbered."""
+    held = list(records)
+    handled = {record["cause"] for record in held if record.get("cause")}
+    asked = {record["behavior"]: record for record in held if record["phase"] == "request"}
+    rows: list[Row] = []
+    for record in held:
+        row = _row(record, asked, handled)
+        if row is not None:
+            row.number = len(rows)
+            rows.append(row)
+    _bracket(rows)
+    return rows
+
+
+def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | None:
+    match record["phase"]:
+        case "start":
+            return _start_row(record, asked)
+        case "end" if record.get("goal") and record.get("outcome") != "again":
+            return _goal_row(record, asked)
+        case "event":
+            return _event_row(record, handled)
+        case "note":
+            letter = "U" if record["actor"] == "user" else "E"
+            return Row(record["time"], letter, "", record["text"], kind="note")
+        case "load" if record["actor"] == "mediator":
+            return Row(record["time"], "R", record["app"], f"starts {record['app']}", kind="load")
+        case "unload" if record["actor"] == "mediator":
+            return _plain(record, f"ends {record['app']}: {record.get('outcome', '')}", "unload")
+        case "fail":
+            what = f"{record.get('command') or 'unit'} fails: {record.get('message') or record.get('event')}"
+            return _plain(record, what, "fail", event=True)
+        case "emergency":
+            what = "the emergency stop is " + str(record["outcome"])
+            return Row(record["time"], "E", "", what, event=True, kind="emergency")
+        case "collision":
+            what = f"{record.get('command')} loses the {record.get('device')}"
+            return _plain(record, what, "collision")
+        case "starve":
+            return _plain(record, f"{record['behavior']} starves", "starve")
+        case "log":
+            return _plain(record, f"log: {record['message']}", "log")
+    return None
+
+
+def _plain(record: Record, what: str, kind: str, event: bool = False) -> Row:
+    return Row(
+        record["time"],
+        "R",
+        record.get("app") or "",
+        what,
+        event=event,
+        kind=kind,
+        rule=record.get("rule") or "",
+        behavior=record.get("behavior") or "",
+        source=record.get("source") or "",
+    )
+
+
+def _start_row(record: Record, asked: dict[str, Record]) -> Row | None:
+    command, loop = record["command"], record["behavior"].partition(".")[2]
+    resumed = bool(record.get("resumed"))
+    if command in SILENT or (loop not in ("", "1") and not resumed):
+        return None
+    request = asked.get(record["behavior"].partition(".")[0], record)
+    what = describe(command, record.get("text"), request.get("args"), request.get("extra"))
+    return Row(
+        record["time"],
+        "R",
+        record["app"],
+        f"resumes {what}" if resumed else what,
+        star=bool(loop),
+        unit=record.get("unit") or "",
+        resumed=resumed,
+        rule=record.get("rule") or "",
+        kind=command,
+        behavior=record["behavior"],
+        source=request.get("source") or "",
+    )
+
+
+def describe(
+    command: str, text: str | None, args: Record | None, extra: Record | None = None
+) -> str:
+    """A Command in words: what it says, or its title and what it was given."""
+    row = TABLE_4_2.get(command)
+    title = row.title if row else command
+    if command in ("speak", "q-and-a") and text:
+        return f'"{text}"'
+    if command == "q-and-a":
+        return "(listens)"
+    defaults = row.arguments if row else {}
+    given = {
+        name: value
+        for name, value in {**(args or {}), **(extra or {})}.items()
+        if name not in defaults or value != defaults[name].default
+    }
+    shown = ", ".join(f"{name} {_value(value)}" for name, value in given.items())
+    return title + (f" ({shown})" if shown else "") + (f', saying "{text}"' if text else "")
+
+
+def _value(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _goal_row(record: Record, asked: dict[str, Record]) -> Row:
+    request = asked.get(record["behavior"].partition(".")[0], record)
+    args = request.get("args") or {}
+    if record["command"] == "active-sensing-human":
+        what = "finds the user"
+    elif "to" in args:
+        what = f"reaches {args['to']}"
+    else:
+        what = f"reaches the goal of {describe(record['command'], None, args)}"
+    return Row(
+        record["time"],
+        "R",
+        record["app"],
+        what,
+        event=True,
+        kind=f"goal {record['command']}",
+        behavior=record["behavior"],
+    )
+
+
+def _event_row(record: Record, handled: set[int]) -> Row | None:
+    name, data = record["event"], record.get("data") or {}
+    if name == "speech":
+        return Row(record["time"], "U", "", f'"{record["text"]}"', kind="speech")
+    if record["actor"] == "robot" and record.get("serial") not in handled:
+        return None  # the camera sees the human, and nobody minds
+    if name == "human.found" and record["actor"] == "robot":
+        return (
+            None
+            if data.get("sensed")
+            else Row(record["time"], "R", "", "sees the user", event=True, kind=name)
+        )
+    letter = {"user": "U", "robot": "R"}.get(record["actor"], "E")
+    if name.startswith("touch."):
+        what = f"touches the robot's {data.get('sensor', name[6:])}"
+    elif name == "message":
+        sender = f" from {data['from']}" if data.get("from") else ""
+        what = f"a message{sender} arrives"
+    elif name == "human.lost":
+        what = "has lost the user"
+    else:
+        details = ", ".join(str(value) for value in data.values())
+        what = name + (f" ({details})" if details else "")
+    return Row(record["time"], letter, record.get("app") or "", what, event=True, kind=name)
+
+
+def _bracket(rows: list[Row]) -> None:
+    """Mark the rows of units: what happens between the first and the last belongs to them."""
+    spans: dict[str, list[int]] = {}
+    for index, row in enumerate(rows):
+        if row.unit:
+            spans.setdefault(row.unit, []).append(index)
+    for indices in spans.values():
+        first, last = indices[0], indices[-1]
+        for index in range(first, last + 1):
+            rows[index].bracket = "|"
+        rows[first].bracket = "+" if first != last else "["
+        if first != last:
+            rows[last].bracket = "+"
+
+
+def width(text: str) -> int:
+    """How many columns of a terminal a text takes."""
+    return sum(
+        0
+        if unicodedata.combining(letter)
+        else 2
+        if unicodedata.east_asian_width(letter) in "WF"
+        else 1
+        for letter in text
+    )
+
+
+def _pad(text: str, columns: int) -> str:
+    return text + " " * max(columns - width(text), 0)
+
+
+def _printable(text: str) -> str:
+    """Text without control characters, which a terminal would obey."""
+    return "".join(" " if unicodedata.category(letter) == "Cc" else letter for letter in text)
+
+
+def format_rows(rows: list[Row], why: bool = False) -> str:
+    """The table as text: star and bracket, number, who, application, behaviour, event."""
+    apps = max([3, *(width(row.app) for row in rows)])
+    shown = [_printable(row.what) for row in rows]
+    column = min(max([8, *(width(what) for what in shown)]), 76)
+    head = f"        No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
+    lines = [head + ("  Rule" if why else "")]
+    for row, what in zip(rows, shown, strict=True):
+        mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
+        left = (
+            f"  {mark}  {row.number:>4} {row.time:>7.2f}  {row.actor:<3}  {_pad(row.app, apps)}  "
+        )
+        pieces = _wrap(what, column)
+        event = "o" if row.event else " "
+        tail = f"  {event}      {row.rule}" if why else f"  {event}"
+        lines.append((left + _pad(pieces[0], column) + tail).rstrip())
+        lines += [" " * width(left) + piece for piece in pieces[1:]]
+    return "\n".join(lines) + "\n"
+
+
+def _wrap(text: str, columns: int) -> list[str]:
+    """Break a text at spaces, or anywhere in a script without them."""
+    lines, current = [], ""
+    for word in text.split(" "):
+        candidate = f"{current} {word}" if current else word
+        if width(candidate) <= columns:
+            current = candidate
+            continue
+        if current:
+            lines.append(current)
+        while width(word) > columns:
+            cut = len(word)
+            while width(word[:cut]) > columns:
+                cut -= 1
+            lines.append(word[:cut])
+            word = word[cut:]
+        current = word
+    return [*lines, current]

@@ -1,0 +1,156 @@
+"""The simple types that attributes and arguments have, and how text becomes a value.
+
+A *kind* is the name of a type: it says how a text is read, what Python value it
+gives, and which XML Schema type describes it. Times are integer milliseconds
+everywhere; lengths are metres, angles degrees.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+Value = str | int | float | bool
+
+DURATION = re.compile(r"\+?(\d+(?:\.\d*)?|\.\d+)(ms|s)")
+NAME = re.compile(r"[^\W\d][\w.\-]*")
+VARIABLE = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*|\$(?:\w)*")
+EVENT = re.compile(r"[\w\-]+(?:\.[\w\-]+)*\.?")
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+LONGEST_MS = 24 * 3600 * 1000
+
+
+def _duration(text: str) -> int:
+    match = DURATION.fullmatch(text)
+    if match is None:
+        raise ValueError('is not a time. Write a number with its unit: "500ms" or "2.5s".')
+    value = float(match[1]) * (1000 if match[2] == "s" else 1)
+    if value > LONGEST_MS:
+        raise ValueError("is longer than a day.")
+    return round(value)
+
+
+def _number(text: str) -> float:
+    if NUMBER.fullmatch(text) is None or not math.isfinite(float(text)):
+        raise ValueError('is not a number. Write digits, as in "1.5".')
+    return float(text)
+
+
+def _integer(text: str) -> int:
+    if re.fullmatch(r"[+-]?\d{1,9}", text) is None:
+        raise ValueError('is not a whole number. Write digits alone, as in "2".')
+    return int(text)
+
+
+def _boolean(text: str) -> bool:
+    if text not in ("true", "false"):
+        raise ValueError('is neither "true" nor "false".')
+    return text == "true"
+
+
+def _pattern(pattern: re.Pattern[str], what: str) -> Callable[[str], str]:
+    def read(text: str) -> str:
+        if pattern.fullmatch(text) is None:
+            raise ValueError(f"is not {what}")
+        return text
+
+    return read
+
+
+def _event_list(text: str) -> str:
+    for name in text.split():
+        if EVENT.fullmatch(name) is None:
+            raise ValueError(f'holds "{name}", which is not an event name such as "touch.head".')
+    return " ".join(text.split())
+
+
+def _name_list(text: str) -> str:
+    for name in text.split():
+        if VARIABLE.fullmatch(name) is None:
+            raise ValueError(f'holds "{name}", which is not a variable name.')
+    return " ".join(text.split())
+
+
+def _filled(text: str) -> str:
+    if not text.strip():
+        raise ValueError("is empty.")
+    return text
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A simple type: how to read it, its XML Schema base and pattern, and its meaning."""
+
+    read: Callable[[str], Value]
+    xsd: str
+    pattern: str
+    doc: str
+
+
+KINDS: dict[str, Kind] = {
+    "duration": Kind(
+        _duration,
+        "xs:string",
+        r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(ms|s)",
+        "a time with its unit, as in 2s or 500ms",
+    ),
+    "number": Kind(
+        _number,
+        "xs:string",
+        r"[+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?",
+        "a number, as in 1.5",
+    ),
+    "integer": Kind(_integer, "xs:string", r"[+\-]?[0-9]{1,9}", "a whole number"),
+    "boolean": Kind(_boolean, "xs:string", "true|false", "true or false"),
+    "id": Kind(
+        _pattern(NAME, 'a name. Begin with a letter; letters, digits, ".", "-", "_" follow.'),
+        "xs:string",
+        r"[\p{L}_][\p{L}\p{M}\p{N}_.\-]*",
+        "a name: a letter, then letters, digits, . - _",
+    ),
+    "variable": Kind(
+        _pattern(VARIABLE, "a variable name. Use letters, digits and _, not first a digit."),
+        "xs:string",
+        "",
+        "the name of a variable",
+    ),
+    "variables": Kind(_name_list, "xs:string", "", "names of variables, separated by spaces"),
+    "event": Kind(
+        _pattern(EVENT, 'an event name such as "touch.head".'),
+        "xs:string",
+        "",
+        "an event name: words joined by dots",
+    ),
+    "events": Kind(_event_list, "xs:string", "", "event names, separated by spaces"),
+    "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
+    "text": Kind(str, "xs:string", "", "any text"),
+    "target": Kind(
+        _pattern(
+            re.compile(r"#[^\W\d][\w.\-]*"), 'a place to go to. Write "#" and the id of a form.'
+        ),
+        "xs:string",
+        r"#[\p{L}_][\p{L}\p{M}\p{N}_.\-]*",
+        "# and the id of a form",
+    ),
+    "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
+    "language": Kind(
+        _pattern(
+            re.compile(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"), 'a language tag such as "en" or "ja".'
+        ),
+        "xs:string",
+        r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
+        "a language tag, as in en or ja",
+    ),
+}
+
+
+def read_value(kind: str, text: str) -> Value:
+    """Read ``text`` as a value of ``kind``.
+
+    Raises:
+        ValueError: the text is not of that kind; the message continues a
+            sentence that begins with the quoted text.
+    """
+    return KINDS[kind].read(text if kind == "text" else text.strip())
