@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from prima.errors import did_you_mean, one_of
-from prima.values import Value, read_value
+from prima.values import Value, read_value, within
 
 DEVICES = (
     "human-detection",
@@ -297,7 +297,7 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
 
 def _check_range(shown: str, argument: Argument, value: float) -> None:
     low, high = argument.low, argument.high
-    if not ((low is None or value >= low) and (high is None or value <= high)):
+    if not within(value, low, high):
         unit = " ms" if argument.kind == "duration" else ""
         raise ValueError(f"{shown} is out of range: {low:g} to {high:g}{unit}.")
 

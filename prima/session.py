@@ -38,12 +38,10 @@ from prima.messages import (
     Sensed,
     Unloaded,
 )
+from prima.scheduler.behavior import Behavior
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator, Told
 from prima.scheduler.selection import Policy
-
-CLASSES = {Ended: 0, Listening: 0, Failed: 0}
-"""V3: ends of ABs are taken in before events."""
 
 
 class Session:
@@ -106,11 +104,9 @@ class Session:
 
     def _class(self, value: Inbound) -> tuple[int, int]:
         """V3: class, and for ends the application, the one whose stream is active first."""
-        kind = CLASSES.get(type(value), 1)  # type: ignore[arg-type]
-        if kind == 0:
-            name = value.behavior.partition("#")[0]  # type: ignore[union-attr]
-            return kind, self._rank(name)
-        return kind, 0
+        if isinstance(value, Ended | Listening | Failed):
+            return 0, self._rank(value.behavior.partition("#")[0])
+        return 1, 0
 
     def _rank(self, name: str) -> int:
         active = self.mediator.memory.active
@@ -203,19 +199,23 @@ class Session:
         self._serial += 1
         self._record("event", "user", event="speech", text=value.text, serial=self._serial)
         question = self.mediator.question()
-        if question is not None and question.command is not None and question.run is not None:
-            asker = self.apps[question.app.name]
-            if not (question.listening or question.command.args.get("bargein", True)):
-                question = None
-            else:
-                answer = None if asker.over else asker.answer(question.run.number, value.text)
-                if answer is not None:
-                    data = {"outcome": "filled", "utterance": value.text, "value": answer}
-                    self._conclude(question.id, data)
-                    return
+        if question is not None and not self._hears(question):
+            question = None
+        if question is not None and question.run is not None:
+            answer = self.apps[question.app.name].answer(question.run.number, value.text)
+            if answer is not None:
+                data = {"outcome": "filled", "utterance": value.text, "value": answer}
+                self._conclude(question.id, data)
+                return
         if self._follow_links(value.text) or question is None or question.silent:
             return
         self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})
+
+    @staticmethod
+    def _hears(question: Behavior) -> bool:
+        """Whether a question takes an answer now: it listens, or may be interrupted."""
+        command = question.command
+        return question.listening or (command is not None and bool(command.args.get("bargein")))
 
     def _follow_links(self, text: str) -> bool:
         taken = False

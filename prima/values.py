@@ -154,3 +154,8 @@ def read_value(kind: str, text: str) -> Value:
             sentence that begins with the quoted text.
     """
     return KINDS[kind].read(text if kind == "text" else text.strip())
+
+
+def within(value: float, low: float | None, high: float | None) -> bool:
+    """Whether a number is neither below ``low`` nor above ``high``, where those are given."""
+    return (low is None or value >= low) and (high is None or value <= high)

@@ -54,7 +54,7 @@ from prima.interpreter.grammar import (
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.values import read_value
+from prima.values import read_value, within
 
 LONGEST_MS = 60_000
 
@@ -87,13 +87,11 @@ class Builder:
         except ValueError:
             return default  # the schema's problem, told already
         for item in DIALOGUE.elements[node.key].attributes:
-            if item.name == name and isinstance(value, int | float):
-                if (item.low is not None and value < item.low) or (
-                    item.high is not None and value > item.high
-                ):
-                    self.problem(
-                        node, "out-of-range", f'{name} "{text}" is out of range.', attribute=name
-                    )
+            number = item.name == name and isinstance(value, int | float)
+            if number and not within(float(value), item.low, item.high):
+                self.problem(
+                    node, "out-of-range", f'{name} "{text}" is out of range.', attribute=name
+                )
         return value
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:

@@ -327,7 +327,8 @@ class Document:
         found: list[tuple[Form | None, list[Act], Node]] = []
         found += [(None, handler.content, handler.node) for handler in self.handlers]
         for form in self.forms.values():
-            found += [(form, part.content, part.node) for part in (*form.handlers, *form.filled)]
+            found += [(form, handler.content, handler.node) for handler in form.handlers]
+            found += [(form, filled.content, filled.node) for filled in form.filled]
             for item in all_items(form.items):
                 found += [(form, handler.content, handler.node) for handler in item.handlers]
                 if isinstance(item, Block):

@@ -106,10 +106,103 @@ SCOPES = ("application", "document", "dialog", "local")
 """The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
 
 RESERVED = frozenset(
-    ["break", "case", "catch", "class", "const", "continue", "debugger", "default", "delete", "do", "else", "enum", "export", "extends", "false", "finally", "for", "function", "if", "import", "in", "instanceof", "new", "null", "return", "super", "switch", "this", "throw", "true", "try", "typeof", "var", "void", "while", "with", "let", "static", "yield", "await", "async", "of"]
+    [
+        "break",
+        "case",
+        "catch",
+        "class",
+        "const",
+        "continue",
+        "debugger",
+        "default",
+        "delete",
+        "do",
+        "else",
+        "enum",
+        "export",
+        "extends",
+        "false",
+        "finally",
+        "for",
+        "function",
+        "if",
+        "import",
+        "in",
+        "instanceof",
+        "new",
+        "null",
+        "return",
+        "super",
+        "switch",
+        "this",
+        "throw",
+        "true",
+        "try",
+        "typeof",
+        "var",
+        "void",
+        "while",
+        "with",
+        "let",
+        "static",
+        "yield",
+        "await",
+        "async",
+        "of",
+    ]
 )
 GLOBALS = frozenset(
-    ["undefined", "NaN", "Infinity", "Object", "Array", "String", "Number", "Boolean", "Math", "JSON", "RegExp", "Error", "TypeError", "RangeError", "Map", "Set", "Symbol", "parseInt", "parseFloat", "isNaN", "isFinite", "encodeURIComponent", "decodeURIComponent", "encodeURI", "decodeURI", "escape", "unescape", "globalThis", "arguments", "Function", "event", "_event", "_message", "session", "application", "document", "dialog", "sensor", "eval", "Promise", "Reflect", "WeakMap", "WeakSet", "SyntaxError", "ReferenceError", "EvalError", "URIError", "Iterator", "AggregateError"]
+    [
+        "undefined",
+        "NaN",
+        "Infinity",
+        "Object",
+        "Array",
+        "String",
+        "Number",
+        "Boolean",
+        "Math",
+        "JSON",
+        "RegExp",
+        "Error",
+        "TypeError",
+        "RangeError",
+        "Map",
+        "Set",
+        "Symbol",
+        "parseInt",
+        "parseFloat",
+        "isNaN",
+        "isFinite",
+        "encodeURIComponent",
+        "decodeURIComponent",
+        "encodeURI",
+        "decodeURI",
+        "escape",
+        "unescape",
+        "globalThis",
+        "arguments",
+        "Function",
+        "event",
+        "_event",
+        "_message",
+        "session",
+        "application",
+        "document",
+        "dialog",
+        "sensor",
+        "eval",
+        "Promise",
+        "Reflect",
+        "WeakMap",
+        "WeakSet",
+        "SyntaxError",
+        "ReferenceError",
+        "EvalError",
+        "URIError",
+        "Iterator",
+        "AggregateError",
+    ]
 )
 TOKEN = re.compile(
     r"""//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`"""
@@ -220,7 +313,18 @@ class Engine:
         context.set("__h", helpers)
         self._help = {
             name: context.eval(f"__h.{name}")
-            for name in ["scope", "set", "unset", "has", "defined", "type", "text", "json", "items", "item"]
+            for name in [
+                "scope",
+                "set",
+                "unset",
+                "has",
+                "defined",
+                "type",
+                "text",
+                "json",
+                "items",
+                "item",
+            ]
         }
         context.eval("delete globalThis.__h")
         context.eval(PRELUDE)

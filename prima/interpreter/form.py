@@ -653,6 +653,8 @@ class Interpreter:
             yield from self._visit_unit(frame, fiber, unit)
         finally:
             fiber.unit = outer
+            for other in [one for one in frame.fibers if one.unit == number and one is not fiber]:
+                self._forget(other)
             if (number, unit) in frame.units:
                 frame.units.remove((number, unit))
                 self.actions.append(CloseUnit(number))
@@ -723,13 +725,13 @@ class Interpreter:
 
     def _unit_timeout(self, notice: Notice) -> None:
         """The unit took too long: error.unit.timeout is thrown in it, and it ends (U5)."""
-        frame = self._frame
+        frame, unit = self._frame, None
         while frame is not None:
             unit = next((unit for number, unit in frame.units if number == notice.run), None)
             if unit is not None:
                 break
             frame = frame.caller
-        if frame is None:
+        if frame is None or unit is None:
             return
         for fiber in [fiber for fiber in frame.fibers if fiber.main or fiber.unit == notice.run]:
             self._forget(fiber)

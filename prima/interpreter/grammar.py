@@ -37,7 +37,28 @@ def _letter(letter: str) -> str:
 
 YES = "yes|yeah|yep|yes please|yes i do|yes you may|sure|of course|ok|okay|はい|ええ|うん|お願いします|はいお願いします"
 NO = "no|nope|nah|no thanks|no thank you|no i dont|not now|いいえ|いや|ううん|結構です|いいえ結構です"
-_SMALL = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"]
+_SMALL = [
+    "zero",
+    "one",
+    "two",
+    "three",
+    "four",
+    "five",
+    "six",
+    "seven",
+    "eight",
+    "nine",
+    "ten",
+    "eleven",
+    "twelve",
+    "thirteen",
+    "fourteen",
+    "fifteen",
+    "sixteen",
+    "seventeen",
+    "eighteen",
+    "nineteen",
+]
 _TENS = ["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"]
 _KANJI = dict(zip("〇一二三四五六七八九", range(10), strict=True))
 

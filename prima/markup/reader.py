@@ -27,7 +27,17 @@ MAX_ATTRIBUTES = 64
 XML_NS = "http://www.w3.org/XML/1998/namespace"
 XSI_NS = "http://www.w3.org/2001/XMLSchema-instance"
 ENCODINGS = frozenset(
-    ["utf-8", "us-ascii", "ascii", "iso-8859-1", "iso-8859-15", "windows-1252", "utf-16", "shift_jis", "euc-jp"]
+    [
+        "utf-8",
+        "us-ascii",
+        "ascii",
+        "iso-8859-1",
+        "iso-8859-15",
+        "windows-1252",
+        "utf-16",
+        "shift_jis",
+        "euc-jp",
+    ]
 )
 DECLARATION = re.compile(r"<\?xml[^>]*?\?>")
 ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
@@ -90,7 +100,7 @@ def _check_prolog(source: Source) -> None:
     """Refuse a DOCTYPE that declares anything itself, before anything is expanded."""
     parser = expat.ParserCreate(encoding="utf-8")
 
-    def doctype(_name: str, _system: str, _public: str, internal: int) -> None:
+    def doctype(_name: str, _system: str | None, _public: str | None, internal: bool) -> None:
         if internal:
             raise _error(
                 Place(source.file, parser.CurrentLineNumber),
@@ -120,7 +130,7 @@ def parse(file: str, data: bytes) -> tuple[Node, etree._Element]:
     source = Source(file, text)
     _check_prolog(source)
     parser = etree.XMLParser(
-        resolve_entities="internal",
+        resolve_entities="internal",  # type: ignore[arg-type]  # the stubs know True and False
         no_network=True,
         load_dtd=False,
         huge_tree=False,
@@ -237,7 +247,7 @@ def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, 
     valid = schema.validate(element)
     check_tree(root, vocabulary, problems if not valid else None)
     if not valid and not problems:
-        entry = schema.error_log[0]
+        entry = schema.error_log[0]  # type: ignore[index]
         message = re.sub(r"\{[^}]*\}", "", str(entry.message))
         problems.append(Problem(Place(file, entry.line), "error", "schema", message))
     return root, problems

@@ -241,9 +241,8 @@ class Mediator:
         ab.open = True  # a unit that is deleted does not settle as done
         for inner in list(ab.inner.values()):
             self._delete(inner, rule)
-        if ab.state is State.RUNNING:
-            if ab.command is not None:
-                self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
+        if ab.state is State.RUNNING and ab.command is not None:
+            self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
         self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state.value)
         self._remove(ab)
 
@@ -341,10 +340,10 @@ class Mediator:
                     self._delete(ab, "U5")
             elif ab.state is not State.GONE:
                 self._delete(ab, "U5")
-        if unit.state is State.RUNNING:
-            self._settle(unit)
-        elif unit.state is not State.GONE:
+        if unit.started < 0 and unit.name in self.memory.behaviors:
             self._delete(unit, "U5")
+        else:
+            self._settle(unit)
 
     # Failures ------------------------------------------------------------------
 
@@ -379,16 +378,19 @@ class Mediator:
             self.chronicle.behavior("fail", ab, rule="E1", event=event, message=reason)
         stream, run, unit_of = ab.stream, ab.run, ab.unit
         self._remove(ab)
-        rest = stream.members if unit_of is None else unit_of.inner
-        for other in list(reversed(list(rest.values()))):
-            if other.state in (State.LINKED, State.WAITING):
-                self._delete(other, "E1")
-                if other.run is not run and not other.silent:
-                    self._tell_cancelled(other)
+        self._delete_rest(stream.members if unit_of is None else unit_of.inner, run, "E1")
         if run is not None and not told:
             run.left = 0
             notice = Notice("failed", run.number, ab.command, event=event, message=reason)
             self.told.append(Told(ab.app.name, stream, [notice]))
+
+    def _delete_rest(self, tree: dict[str, Behavior], run: Run | None, rule: str) -> None:
+        """Delete what has not started of a failed tree; other runs in it are cancelled."""
+        for other in list(reversed(list(tree.values()))):
+            if other.state in (State.LINKED, State.WAITING) and not _in_group(other):
+                self._delete(other, rule)
+                if other.run is not run and not other.silent:
+                    self._tell_cancelled(other)
 
     def deadline(self) -> int | None:
         """The next instant at which a unit or a device is too late, if any."""
@@ -414,15 +416,21 @@ class Mediator:
         if number is not None:
             self._close_unit(unit.app, number)
         else:
+            told = unit.silent or unit.app.gone
             self._silence(unit)
             for ab in list(reversed(list(unit.inner.values()))):
                 if ab.state is not State.RUNNING:
                     self._delete(ab, "U5")
-        if not unit.app.gone:
-            target = number if number is not None else run.number if run else 0
-            what = "unit-timeout" if number is not None else "failed"
-            notice = Notice(what, target, event="error.unit.timeout", message="The unit took too long.")  # fmt: skip
-            self.told.append(Told(unit.app.name, unit.stream, [notice]))
+            self._delete_rest(unit.stream.members, run, "U5")
+            if told:
+                return
+        notice = Notice(
+            "failed" if number is None else "unit-timeout",
+            number if number is not None else run.number if run else 0,
+            event="error.unit.timeout",
+            message="The unit took too long.",
+        )
+        self.told.append(Told(unit.app.name, unit.stream, [notice]))
 
     def emergency(self, pressed: bool, resume: bool) -> None:
         """E5: every AB ends at once and nothing starts until the stop is released."""

@@ -323,9 +323,9 @@ class Robot:
         self._now = now
         reports: list[Inbound] = []
         for task in list(self.tasks.values()):
-            if task.control is not None and "locomotion" not in task.lost:
-                if task.control(task) and task.ends is None:
-                    task.ends = max(now, task.speech_ends)
+            drives = task.control is not None and "locomotion" not in task.lost
+            if drives and self._steer(task) and task.ends is None:
+                task.ends = max(now, task.speech_ends)
             if task.listens is not None and task.listens <= now:
                 task.listens, task.listening = None, True
                 task.ends = now + max(int(task.command.args["timeout"]), 1)
@@ -336,6 +336,11 @@ class Robot:
         for corner in self.world.corners():
             reports.append(Occurred(corner.event, "environment", {"corner": corner.id}))
         return reports
+
+    @staticmethod
+    def _steer(task: Task) -> bool:
+        """Let a task set the wheels; true when it has nothing left to do."""
+        return task.control is not None and task.control(task)
 
     def _end(self, task: Task) -> list[Inbound]:
         del self.tasks[task.id]

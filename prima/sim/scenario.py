@@ -14,7 +14,7 @@ from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-from prima.values import read_value
+from prima.values import read_value, within
 
 Point = tuple[float, float]
 
@@ -37,11 +37,9 @@ class Reader:
             value = read_value(item.kind, text)
         except ValueError:
             return None  # told already, as a problem of the schema
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            if (item.low is not None and value < item.low) or (
-                item.high is not None and value > item.high
-            ):
-                self.problem(node, "out-of-range", f'{name} "{text}" is out of range.', name)
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and not within(float(value), item.low, item.high):
+            self.problem(node, "out-of-range", f'{name} "{text}" is out of range.', name)
         return value
 
     def problem(

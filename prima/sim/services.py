@@ -22,7 +22,7 @@ class Services:
         if replies is None:
             reply = Reply(1, error=f'there is no service "{name}"')
         elif not replies:
-            reply = Reply(1)
+            return  # it takes what it is sent and says nothing
         else:
             reply = replies[min(self._asked.get(name, 0), len(replies) - 1)]
         self._asked[name] = self._asked.get(name, 0) + 1

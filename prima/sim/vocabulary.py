@@ -336,7 +336,8 @@ SCENARIO = Vocabulary(
         ),
         Element(
             "service",
-            "A service that applications send to. Its replies are given in order; the last repeats.",
+            "A service that applications send to. Its replies are given in order; the last repeats. One"
+            " without replies takes what it is sent and says nothing.",
             (attribute("name", "id", "its name", "required"),),
             ("reply", "failure"),
         ),

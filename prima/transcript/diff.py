@@ -49,7 +49,7 @@ class Difference:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows changed in each way."""
-        counts = {kind: 0 for kind in MARKS if kind != "same"}
+        counts: dict[str, int] = {kind: 0 for kind in MARKS if kind != "same"}
         for change in self.changes:
             if change.kind != "same":
                 counts[change.kind] += 1

@@ -8,7 +8,47 @@ from collections.abc import Iterable, Iterator
 from prima.errors import UsageError
 from prima.messages import Record
 
-ORDER = ["time", "phase", "actor", "app", "behavior", "tree", "command", "text", "args", "extra", "parent", "parents", "devices", "priority", "reactive", "cause", "feedback", "leaves", "engages", "order", "state", "unit", "event", "serial", "rule", "winner", "losers", "losers_count", "by", "floor", "outcome", "goal", "resumed", "device", "loop", "message", "data", "source", "inbound"]
+ORDER = [
+    "time",
+    "phase",
+    "actor",
+    "app",
+    "behavior",
+    "tree",
+    "command",
+    "text",
+    "args",
+    "extra",
+    "parent",
+    "parents",
+    "devices",
+    "priority",
+    "reactive",
+    "cause",
+    "feedback",
+    "leaves",
+    "engages",
+    "order",
+    "state",
+    "unit",
+    "event",
+    "serial",
+    "rule",
+    "winner",
+    "losers",
+    "losers_count",
+    "by",
+    "floor",
+    "outcome",
+    "goal",
+    "resumed",
+    "device",
+    "loop",
+    "message",
+    "data",
+    "source",
+    "inbound",
+]
 """The order of a record's fields; a test holds it to the model's."""
 
 MAX_LINE = 1_000_000

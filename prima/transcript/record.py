@@ -6,7 +6,35 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-PHASES = ["run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail", "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision", "starve", "emergency", "listening", "event", "sensed", "note", "send", "log", "error", "over"]
+PHASES = [
+    "run",
+    "load",
+    "unload",
+    "request",
+    "decision",
+    "start",
+    "end",
+    "cancel",
+    "fail",
+    "hold",
+    "suspend",
+    "resume",
+    "floor",
+    "window",
+    "stream-end",
+    "stop",
+    "collision",
+    "starve",
+    "emergency",
+    "listening",
+    "event",
+    "sensed",
+    "note",
+    "send",
+    "log",
+    "error",
+    "over",
+]
 
 
 class Record(BaseModel):

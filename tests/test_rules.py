@@ -1,0 +1,672 @@
+"""Each rule of the mediator, by its number, on the smallest case that shows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from prima.commands import TABLE_4_2
+from prima.messages import Command, Group, Step
+from tests.stage import Stage, ask, chain, command, move, say, search
+
+EVENT = 7
+
+
+# Information Units ------------------------------------------------------------------
+
+
+def test_u1_a_command_makes_one_ab() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    assert stage.select() == ["ea#1"]
+
+
+def test_u2_a_feedback_command_makes_one_ab_a_loop_until_its_goal() -> None:
+    stage = Stage()
+    stage.request("ea", move(), say())
+    assert stage.select() == ["ea#1.1"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"]
+    stage.at(1000).end("ea#1.2", goal=True)
+    assert stage.select() == ["ea#2"]
+
+
+def test_u2_a_feedback_command_that_was_interrupted_starts_afresh() -> None:
+    stage = Stage()
+    stage.request("ea", search("Where are you?"))
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1"]
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["ea#1.2"]
+    assert [order.resumed for order in stage.orders if order.behavior == "ea#1.2"] == [True]
+
+
+def test_u3_branches_share_a_parent_and_what_follows_waits_for_all() -> None:
+    stage = Stage()
+    steps = [
+        Step(say()),
+        Step(command("move-head", pan=10), (0,)),
+        Step(command("point-by-hand", angle=0), (0,)),
+        Step(say("Done."), (1, 2)),
+    ]
+    stage.request("ea", steps=steps)
+    assert stage.select() == ["ea#1"]
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2", "ea#3"]
+    stage.at(20).end("ea#3")
+    assert stage.select() == []
+    stage.at(30).end("ea#2")
+    assert stage.select() == ["ea#4"]
+
+
+def test_u3_branches_that_share_a_device_run_in_document_order() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("One.")), Step(say("Two."))])
+    assert stage.select() == ["ea#1"]
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+
+
+def test_u4_a_group_is_one_ab_with_the_devices_of_all_branches() -> None:
+    stage = Stage()
+    group = Group([Step(say()), Step(command("gesture", name="nod"), (0,))])
+    stage.request("ea", group)
+    stage.request("fa", command("move-head", pan=5), cause=EVENT)
+    # The reaction ranks first, so it has the neck; the group waits for all its devices.
+    assert stage.select() == ["fa#1"]
+    stage.at(10).end("fa#1")
+    assert stage.select() == ["ea#1", "ea#2"]
+    stage.request("fa", command("move-head", pan=0), cause=EVENT + 1)
+    stage.at(20).end("ea#2")
+    assert stage.select() == ["ea#3"], "the neck belongs to the group until its end"
+    stage.at(30).end("ea#3")
+    assert stage.select() == ["fa#2"]
+
+
+def test_u4_neither_feedback_nor_leaving_commands_stand_in_a_group() -> None:
+    stage = Stage()
+    stage.request("ea", Group([Step(say()), Step(move(), (0,))]))
+    assert stage.select() == []
+    assert stage.told("ea") == ["error.semantic"]
+
+
+def test_u5_a_unit_spans_requests_and_owns_its_devices_until_it_is_left() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "speech-recognition")
+    stage.request("ea", ask(), unit=1)
+    assert stage.select() == ["ea#1", "ea#2"]
+    stage.request("fa", say(), cause=EVENT)
+    stage.at(10).end("ea#2", then=lambda: stage.request("ea", say("Thanks."), unit=1))
+    assert stage.select() == ["ea#3"]
+    stage.at(20).end("ea#3", then=lambda: stage.close("ea", 1))
+    assert stage.select() == ["fa#1"]
+
+
+def test_u5_what_runs_finishes_when_the_unit_is_left_and_the_rest_is_deleted() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("One."), say("Two."), unit=1)
+    stage.select()
+    stage.request("fa", say("Me."), cause=EVENT)
+    stage.at(5).close("ea", 1)
+    assert stage.select() == []
+    stage.at(10).end("ea#2")
+    assert stage.select() == ["fa#1"]
+    assert [r["behavior"] for r in stage.phases("cancel")] == ["ea#3"]
+
+
+def test_u5_a_unit_that_takes_too_long_ends_and_its_application_is_told() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", longest=1000)
+    stage.request("ea", say(), unit=1)
+    stage.select()
+    assert stage.mediator.deadline() == 1000
+    stage.at(1000).mediator.expire()
+    stage.select()
+    assert "error.unit.timeout" in stage.told("ea")
+    assert stage.running == {"ea#1", "ea#2"}, "the Command that runs finishes"
+    stage.at(1500).end("ea#2")
+    stage.select()
+    assert stage.running == set()
+
+
+def test_u6_a_running_ab_is_not_interrupted_by_another_application() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    stage.request("fa", say(), cause=EVENT)
+    assert stage.select() == []
+    assert stage.running == {"ea#1"}
+
+
+# Orders -------------------------------------------------------------------------------
+
+
+def test_o1_after_follows_the_latest_command_while_it_is_in_memory() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."))
+    stage.select()
+    stage.request("ea", command("move-head", pan=3))
+    assert stage.select() == [], "it has the neck to itself, but follows the first"
+    assert stage.phases("request")[1]["parent"] == "ea#1"
+    assert stage.phases("request")[1]["tree"] == "ea:1"
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+
+
+def test_o1_else_a_new_tree_starts() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    stage.at(10).end("ea#1")
+    stage.select()
+    stage.at(20).request("ea", say())
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2"]
+
+
+def test_o1_a_reaction_never_waits_behind_its_own_application() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("ea", say("Ouch."), cause=EVENT)
+    assert stage.select() == ["ea#2"]
+
+
+def test_o2_now_cancels_the_trees_that_share_a_device() -> None:
+    stage = Stage()
+    stage.request("ea", move(), say("There."))
+    stage.select()
+    stage.at(100).request("ea", command("stop-moving"), cause=EVENT)
+    assert stage.select() == ["ea#3"]
+    assert stage.told("ea") == ["cancel.speak", "cancel.topological-move"]
+    assert any(order.verb == "abort" and order.behavior == "ea#1.1" for order in stage.orders)
+    assert stage.phases("request")[-1]["tree"] == "ea:1", "it continues the cancelled stream"
+
+
+def test_o2_what_runs_on_other_devices_finishes() -> None:
+    stage = Stage()
+    steps = [Step(say("A long story.")), Step(command("turn", angle=90))]
+    stage.request("ea", steps=steps)
+    stage.select()
+    stage.at(10).request("ea", command("stop-moving"))
+    assert stage.select() == ["ea#3"]
+    assert stage.running == {"ea#1", "ea#3"}
+
+
+def test_o2_another_applications_abs_are_left_alone() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", command("stop-moving"))
+    assert stage.select() == []
+    assert stage.running == {"ea#1.1"}
+
+
+def test_o3_leaving_a_state_deletes_what_has_not_started_and_ends_loops() -> None:
+    stage = Stage()
+    stage.request("ea", move(), say("There."))
+    stage.select()
+    stage.at(100).leave("ea")
+    assert stage.select() == []
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == []
+    assert stage.running == set()
+    assert stage.told("ea") == [], "nobody hears of its end"
+
+
+def test_o3_a_question_that_listens_ends_at_once() -> None:
+    stage = Stage()
+    stage.request("ea", ask())
+    stage.select()
+    stage.mediator.listening("ea#1")
+    stage.at(100).leave("ea")
+    assert stage.running == set()
+    asking = Stage()
+    asking.request("ea", ask())
+    asking.select()
+    asking.at(50).leave("ea")
+    assert asking.running == {"ea#1"}, "the question itself is said to its end"
+    asking.at(100).mediator.listening("ea#1")
+    assert asking.running == set()
+
+
+def test_o3_what_is_requested_in_the_same_instant_continues_the_stream() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.at(100).leave("ea")
+    stage.request("ea", say(), state=2, cause=EVENT)
+    stage.select()
+    assert {r["tree"] for r in stage.phases("request")} == {"ea:1"}
+
+
+# Selection ------------------------------------------------------------------------------
+
+
+def test_s1_an_ab_waits_for_its_devices() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.at(1).request("fa", say())
+    assert stage.select() == ["ea#1"]
+    assert stage.holds("fa#1") == ["S1"]
+
+
+def test_s2a_the_higher_priority_goes_first() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.at(5).request("fa", command("turn", angle=10))
+    assert stage.select() == ["fa#1"]
+    assert stage.rule("fa#1") == "S2a"
+
+
+def test_s2b_of_reactions_the_latest_event_goes_first() -> None:
+    stage = Stage()
+    stage.request("ea", say(), cause=1)
+    stage.at(1).request("fa", say(), cause=2)
+    assert stage.select() == ["fa#1"]
+    assert stage.rule("fa#1") == "S2b"
+
+
+def test_s2b_of_one_events_reactions_the_active_applications_goes_first() -> None:
+    stage = Stage()
+    stage.request("ea", command("move-head", pan=1))
+    stage.select()
+    stage.request("fa", say(), cause=EVENT)
+    stage.request("ea", say(), cause=EVENT)
+    assert stage.select() == ["ea#2"]
+
+
+def test_s2c_a_parent_that_has_just_ended_goes_before_others() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert stage.rule("ea#2") == "S2c"
+
+
+def test_s2d_the_stream_suspended_last_goes_first() -> None:
+    apps = {"a": "fa", "b": "ea", "c": "ea"}
+    stage = Stage(apps=apps)
+    stage.request("a", say("a1"), say("a2"))
+    stage.select()
+    stage.request("b", say("b1"), say("b2"), cause=1)
+    stage.at(10).end("a#1")
+    stage.select()
+    stage.request("c", say("c1"), cause=2)
+    stage.at(20).end("b#1")
+    assert stage.select() == ["c#1"]
+    stage.at(30).end("c#1")
+    assert stage.select() == ["b#2"], "a stack of topics is unwound"
+    stage.at(40).end("b#2")
+    assert stage.select() == ["a#2"]
+
+
+def test_s2e_and_s2f_the_earlier_request_then_the_declared_order() -> None:
+    stage = Stage()
+    stage.at(5).request("ea", say())
+    stage.at(6).request("fa", say())
+    assert stage.select() == ["ea#1"]
+    assert stage.rule("ea#1") == "S2e"
+    same = Stage()
+    same.request("ea", say())
+    same.request("fa", say())
+    assert same.select() == ["fa#1"]
+    assert same.rule("fa#1") == "S2f"
+
+
+def test_s3_a_waiting_reaction_holds_its_devices_back() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    # The reaction needs speaker and locomotion; only the speaker is taken.
+    stage.at(1).request("fa", command("turn-and-speak", "Hey.", angle=90), cause=EVENT)
+    stage.request("ea", steps=[Step(command("turn", angle=5))], cause=None)
+    stage.at(2).request("fa", command("turn", angle=5), cause=None)
+    assert stage.select() == []
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+def test_s3_holds_a_device_from_another_applications_ab() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    stage.at(1).request("fa", command("turn-and-speak", "Hey.", angle=90), cause=EVENT)
+    third = Stage(apps={"a": "fa", "b": "ea", "c": "ea"})
+    third.request("b", say())
+    third.select()
+    third.at(1).request("a", command("turn-and-speak", "Hey.", angle=90), cause=EVENT)
+    third.request("c", command("turn", angle=5))
+    assert third.select() == []
+    assert third.holds("c#1") == ["S3"]
+
+
+def test_s4_abs_without_a_common_device_run_together() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.request("fa", say("Hello."))
+    assert sorted(stage.select()) == ["ea#1.1", "fa#1"]
+
+
+# Streams ------------------------------------------------------------------------------------
+
+
+def test_c1_a_stream_ends_with_its_last_ab_and_holds_no_floor_then() -> None:
+    stage = Stage()
+    stage.request("fa", say(), cause=EVENT)
+    stage.select()
+    assert stage.floor == ["fa:1"]
+    stage.at(10).end("fa#1")
+    stage.select()
+    assert stage.floor == []
+    assert [r["tree"] for r in stage.phases("stream-end")] == ["fa:1"]
+
+
+def test_c2_a_suspended_stream_resumes_where_it_was() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."), say("Three."))
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    assert [r["tree"] for r in stage.phases("suspend")] == ["ea:1"]
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    assert [r["tree"] for r in stage.phases("resume")] == ["ea:1"]
+
+
+def test_c3_what_is_requested_in_the_window_belongs_to_the_stream() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."))
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.at(10).end("ea#1", then=lambda: stage.request("ea", say("Two.")))
+    assert stage.select() == ["ea#2"]
+    assert stage.phases("request")[-1]["tree"] == "ea:1"
+
+
+def test_c4_an_answer_opens_the_window_too() -> None:
+    stage = Stage()
+    stage.request("ea", ask())
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.at(10).end("ea#1", then=lambda: stage.request("ea", say("I see.")))
+    assert stage.select() == ["ea#2"]
+
+
+# Floor -----------------------------------------------------------------------------------------
+
+
+def test_f1_a_reaction_suspends_the_others_whatever_devices_they_need() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == [], "nothing of the EA moves while the FA talks"
+    assert stage.holds("ea#1.1") == ["F2"]
+
+
+def test_f2_a_reaction_to_another_event_may_break_in_and_one_to_the_same_may_not() -> None:
+    stage = Stage()
+    stage.request("fa", say(), cause=1)
+    stage.select()
+    stage.request("ea", command("move-head", pan=1), cause=1)
+    assert stage.select() == []
+    stage.request("ea", command("point-by-hand", angle=1), cause=2)
+    assert "ea#2" in stage.select()
+
+
+def test_f2_a_higher_priority_than_all_of_the_floors_stream_may_start() -> None:
+    stage = Stage()
+    stage.request("fa", search())
+    stage.select()
+    stage.request("ea", say(), move(), cause=1)
+    stage.at(500).end("fa#1.1", goal=False)
+    assert stage.select() == ["ea#1"]
+    stage.at(900).end("ea#1")
+    assert stage.select() == ["fa#1.2"], "the search outranks the move (Figure 5.3, rows 15-16)"
+    assert stage.rule("fa#1.2") == "F2"
+    assert stage.floor == ["ea:1", "fa:1"]
+
+
+def test_f3_the_floor_falls_back_when_its_holder_ends() -> None:
+    stage = Stage()
+    stage.request("fa", ask("1"), ask("2"), cause=1)
+    stage.select()
+    stage.request("ea", say(), cause=2)
+    stage.at(10).end("fa#1")
+    stage.select()
+    assert stage.floor == ["fa:1", "ea:1"]
+    stage.at(20).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    assert stage.floor == ["fa:1"]
+
+
+def test_f4_without_a_floor_only_devices_and_the_channel_count() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.request("fa", command("turn", angle=5))
+    assert sorted(stage.select()) == ["ea#1", "fa#1"]
+    assert stage.floor == []
+
+
+def test_f5_a_motion_that_gets_no_next_loop_is_stopped_for_certain() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    stage.select()
+    stage.at(500).end("ea#1.1", goal=False)
+    stage.select()
+    assert [order.verb for order in stage.orders][-1] == "stop"
+    assert [r["rule"] for r in stage.phases("stop")] == ["F5"]
+
+
+def test_f5_no_stop_where_something_else_takes_the_wheels_or_the_goal_is_met() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", command("turn", angle=9), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1"]
+    assert stage.phases("stop") == []
+    done = Stage()
+    done.request("ea", move())
+    done.select()
+    done.at(500).end("ea#1.1", goal=True)
+    done.select()
+    assert done.phases("stop") == []
+
+
+# Channel -------------------------------------------------------------------------------------
+
+
+def test_k1_a_leaving_ab_waits_while_another_application_engages_the_user() -> None:
+    stage = Stage()
+    stage.request("fa", ask("Shall we?"))
+    stage.select()
+    stage.request("ea", move())
+    assert stage.select() == [], "not even though the wheels are free"
+    assert stage.holds("ea#1") == ["K1"]
+    stage.at(10).end("fa#1")
+    assert stage.select() == ["ea#1.1"]
+
+
+def test_k1_a_stream_that_leaves_itself_engages_nobody() -> None:
+    table = {
+        **TABLE_4_2,
+        "glide": replace(TABLE_4_2["set-position"], name="glide", devices=frozenset({"arm"})),
+    }
+    stage = Stage(table=table)
+    stage.request("fa", ask(), Command("glide", {"x": 1, "y": 1}))
+    stage.select()
+    stage.at(10).end("fa#1")
+    assert stage.select() == ["fa#2.1"]
+    stage.request("ea", move())
+    assert stage.select() == ["ea#1.1"]
+
+
+def test_k2_leaving_commands_have_low_priority() -> None:
+    low = {name for name, row in TABLE_4_2.items() if row.priority == 0}
+    assert low == {"topological-move", "set-position", "set-position-and-direction"}
+
+
+# When things go wrong -------------------------------------------------------------------------
+
+
+def test_e1_a_failing_device_ends_the_ab_and_the_rest_of_its_tree() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.request("fa", say("Me."))
+    stage.select()
+    stage.at(10).mediator.failed(min(stage.running), "speaker", "broken")
+    stage.settle()
+    assert "error.device.speaker" in stage.told("fa")
+    assert stage.select() == ["ea#1"]
+
+
+def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    due = stage.mediator.deadline()
+    assert due is not None
+    stage.at(due).mediator.expire()
+    stage.settle()
+    assert stage.told("ea") == ["error.device.speaker"]
+    assert stage.running == set()
+
+
+def test_e1_a_robot_without_the_command_says_so() -> None:
+    table = {name: row for name, row in TABLE_4_2.items() if name != "gesture"}
+    stage = Stage(table=table)
+    stage.request("ea", command("gesture", name="nod"))
+    stage.select()
+    assert stage.told("ea") == ["error.unsupported.gesture"]
+
+
+def test_e2_an_unloaded_application_gives_back_what_it_holds() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.mediator.unload("ea", "crash")
+    assert stage.select() == []
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        Command("fly"),
+        Command("turn", {"angle": 1000}),
+        Command("turn", {"speed": 1}),
+        Command("turn"),
+        Command("speak"),
+        Command("speak", text="Hi", extra={"volume": 1}),
+        Command("turn", {"angle": float("nan")}),
+        Command("turn", {"angle": None}),
+    ],
+)
+def test_e3_a_bad_command_never_enters_memory(bad: Command) -> None:
+    stage = Stage()
+    stage.request("ea", say(), bad)
+    assert stage.select() == []
+    assert stage.told("ea") == ["error.semantic"]
+    assert stage.phases("fail")[0]["rule"] == "E3"
+
+
+def test_e4_starving_is_reported_and_can_be_bounded() -> None:
+    def loops(bound: int | None) -> int:
+        stage = Stage(bound=bound)
+        stage.request("fa", Command("tracking-human"))
+        stage.select()
+        stage.at(1).request("ea", command("turn", angle=3))
+        for loop in range(1, 60):
+            stage.at(500 * loop).end(f"fa#1.{loop}", goal=False)
+            if "ea#1" in stage.select():
+                return loop
+        assert [r["rule"] for r in stage.phases("starve")] == ["E4"]
+        return -1
+
+    assert loops(None) == -1
+    assert 0 < loops(30) <= 32
+
+
+def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).mediator.emergency(True, True)
+    stage.select()
+    assert stage.running == set()
+    stage.request("fa", say(), cause=EVENT)
+    assert stage.select() == []
+    stage.at(20).mediator.emergency(False, True)
+    assert stage.select() == ["fa#1"]
+    stage.at(30).end("fa#1")
+    assert stage.select() == ["ea#1"], "what was cut is done again"
+
+
+def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).mediator.emergency(True, True)
+    stage.at(20).mediator.emergency(False, False)
+    assert stage.select() == []
+    assert stage.told("ea") == ["cancel.speak", "cancel.speak"]
+
+
+# Baselines -----------------------------------------------------------------------------------
+
+
+def test_fifo_is_the_order_of_requests() -> None:
+    stage = Stage("fifo")
+    stage.request("ea", move())
+    stage.at(1).request("fa", ask(), cause=EVENT)
+    stage.at(2).request("fa", command("turn", angle=3), cause=EVENT + 1)
+    assert stage.select() == ["ea#1.1", "fa#1"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"], "no reactivity"
+    assert stage.floor == []
+
+
+def test_fair_takes_turns() -> None:
+    stage = Stage("fair")
+    stage.request("ea", say("e1"), say("e2"))
+    stage.request("fa", say("f1"), say("f2"))
+    order = []
+    for time in range(1, 5):
+        order += stage.select()
+        stage.at(time).end(min(stage.running))
+    assert order == ["fa#1", "ea#1", "fa#2", "ea#2"]
+
+
+@pytest.mark.parametrize(("policy", "first"), [("fixed", "fa#1"), ("fixed:ea", "ea#1")])
+def test_fixed_lets_one_application_always_go_first(policy: str, first: str) -> None:
+    stage = Stage(policy)
+    stage.request("ea", say())
+    stage.at(1).request("fa", say())
+    assert stage.select() == [first]
+
+
+def test_none_displaces_and_records_the_collision() -> None:
+    stage = Stage("none")
+    stage.request("ea", say())
+    stage.request("fa", say())
+    assert sorted(stage.select()) == ["ea#1", "fa#1"]
+    assert [r["device"] for r in stage.phases("collision")] == ["speaker"]
+
+
+def test_a_chain_is_what_a_run_of_commands_becomes() -> None:
+    assert [step.after for step in chain(say(), say(), say())] == [(), (0,), (1,)]
