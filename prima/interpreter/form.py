@@ -64,7 +64,7 @@ MAX_STEPS = 20_000
 MAX_FIBERS = 64
 """Handlers that may be under way at once in a state."""
 MAX_DEPTH = 32
-"""Subdialogs inside subdialogs."""
+"""Subdialogs inside subdialogs, and events thrown while one is handled."""
 MAX_TIMERS = 256
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
 
@@ -529,8 +529,11 @@ class Interpreter:
             yield from self._execute.run(handler.content, fiber)
         except Thrown as again:
             self.count_step(handler.node)
-            if depth > 100:
-                raise
+            if depth > MAX_DEPTH:
+                place = source(handler.node)
+                raise GoOut(
+                    f"{place}: error.semantic: its handlers throw without end", True, place
+                ) from None
             yield from self._handle_thrown(frame, fiber, item, again, depth + 1)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:

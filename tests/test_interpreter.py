@@ -1,0 +1,558 @@
+"""The Form Interpretation Algorithm and executable content, on small documents."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.robot import Bench, document
+
+# Items and content -------------------------------------------------------------------
+
+
+def test_items_are_visited_in_document_order_while_undefined_and_their_condition_holds() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block name="one" cond="false"><log>one</log></block>
+          <block name="two" expr="true"><log>two</log></block>
+          <block name="three"><log>three</log><clear namelist="two"/></block>
+          <block name="four"><log>four</log></block>
+        </form>"""
+    )
+    assert bench.logs() == ["three", "two", "four"]
+
+
+def test_what_stands_behind_commands_runs_when_they_have_ended() -> None:
+    bench = Bench(
+        """<form id="a"><block>
+          <log>before</log><speak>One.</speak><speak>Two.</speak><log>after</log>
+        </block></form>"""
+    )
+    assert bench.logs() == ["before"]
+    bench.finish("One.")
+    assert bench.logs() == ["before"], "both are one run"
+    bench.finish("Two.")
+    assert bench.logs() == ["before", "after"]
+
+
+def test_a_handler_that_does_not_leave_the_state_lets_it_go_on() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><speak>A story.</speak><log>told</log></block>
+          <on event="touch"><move-head pan="20"/><log>nodded</log></on>
+        </form>"""
+    )
+    bench.event("touch.head")
+    assert bench.saying() == ["A story.", "move-head"]
+    bench.finish("move-head")
+    bench.finish("A story.")
+    assert bench.logs() == ["nodded", "told"]
+
+
+def test_goto_leaves_the_state_and_what_it_had_not_begun() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><speak>One.</speak><speak>Two.</speak></block>
+          <on event="touch"><goto next="#b"/></on>
+        </form>
+        <form id="b"><block><speak>Here.</speak></block></form>"""
+    )
+    bench.event("touch")
+    assert bench.saying() == ["One."]
+    bench.finish("One.")
+    assert bench.saying() == ["Here."]
+
+
+def test_goto_takes_effect_when_the_commands_before_it_have_ended() -> None:
+    bench = Bench(
+        """<form id="a"><block><speak>Bye.</speak><goto next="#b"/></block></form>
+        <form id="b"><block><speak>Gone.</speak><exit/></block></form>"""
+    )
+    assert bench.saying() == ["Bye."]
+    bench.finish("Bye.")
+    assert bench.saying() == ["Gone."]
+    bench.finish("Gone.")
+    assert bench.session.over
+
+
+def test_now_inside_content_comes_after_what_stands_before_it() -> None:
+    bench = Bench(
+        """<form id="a"><block>
+          <topological-move to="x"/><stop-moving/><speak>There.</speak>
+        </block></form>"""
+    )
+    assert bench.saying() == ["topological-move"]
+    bench.finish("topological-move", goal=True)
+    assert bench.saying() == ["stop-moving"]
+    bench.finish("stop-moving")
+    assert bench.saying() == ["There."]
+
+
+def test_cancelled_content_is_given_up_and_the_form_waits() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><topological-move to="x"/></block>
+          <block><speak>I am there.</speak></block>
+          <on event="touch"><stop-moving/><speak>Yes?</speak></on>
+          <on event="cancel.topological-move"><log>gave up</log></on>
+        </form>"""
+    )
+    bench.event("touch")
+    bench.finish("stop-moving")
+    bench.finish("Yes?")
+    assert bench.saying() == [], "it must not say that it is there"
+    assert bench.logs() == ["gave up"]
+
+
+def test_a_waiting_form_goes_on_when_a_handler_makes_an_item_eligible() -> None:
+    bench = Bench(
+        """<form id="a">
+          <var name="ready" expr="false"/>
+          <block cond="ready"><speak>Now.</speak></block>
+          <on event="go"><assign name="ready" expr="true"/></on>
+        </form>"""
+    )
+    assert bench.saying() == []
+    bench.event("go")
+    assert bench.saying() == ["Now."]
+
+
+def test_conditions_loops_and_scopes() -> None:
+    bench = Bench(
+        """<var name="n" expr="1"/>
+        <script>function twice(x) { return 2 * x; }</script>
+        <form id="a"><var name="m" expr="n + 1"/>
+          <block>
+            <var name="list" expr="[1, 2, 3]"/>
+            <foreach item="one" array="list">
+              <if cond="one == 1"><log expr="'first ' + one"/>
+              <elseif cond="one == 2"/><log expr="'second ' + twice(one)"/>
+              <else/><log>last <value expr="m"/></log></if>
+            </foreach>
+            <assign name="document.n" expr="n + 10"/><assign name="m" expr="m + n"/>
+            <log expr="document.n + ' ' + dialog.m + ' ' + typeof list"/>
+          </block>
+          <block><log expr="typeof list"/></block>
+        </form>"""
+    )
+    assert bench.logs() == ["first 1", "second 4", "last 2", "11 13 object", "undefined"]
+
+
+def test_par_and_seq_make_one_tree() -> None:
+    bench = Bench(
+        """<form id="a"><block>
+          <par>
+            <seq><speak>One.</speak><speak>Two.</speak></seq>
+            <move-head pan="10"/>
+          </par>
+          <speak>Three.</speak><log>done</log>
+        </block></form>"""
+    )
+    assert bench.saying() == ["One.", "move-head"]
+    bench.finish("One.")
+    bench.finish("Two.")
+    assert bench.saying() == ["move-head"], "what follows a par waits for all branches"
+    bench.finish("move-head")
+    assert bench.saying() == ["Three."]
+    assert len({record["tree"] for record in bench.phases("request")}) == 1
+
+
+# Questions --------------------------------------------------------------------------------
+
+ASK = """<form id="a"><field name="colour">
+  <prompt>Which colour?</prompt><prompt count="2">Red or blue?</prompt>
+  <option value="r">red</option><option>blue</option>
+  {}
+  <filled><log expr="colour + '/' + colour$.utterance"/></filled>
+</field></form>"""
+
+
+@pytest.mark.parametrize(
+    ("said", "value"),
+    [("Red!", "r/Red!"), ("ＢＬＵＥ", "blue/ＢＬＵＥ"), (" blue. ", "blue/ blue.")],
+)
+def test_options_fold_case_width_and_punctuation(said: str, value: str) -> None:
+    bench = Bench(ASK.format(""))
+    bench.hears(said)
+    assert bench.logs() == [value]
+
+
+def test_without_handlers_silence_and_nonsense_ask_again_with_tapered_prompts() -> None:
+    bench = Bench(ASK.format(""))
+    bench.silence()
+    bench.hears("green")
+    bench.hears("red")
+    assert bench.said() == ["Which colour?", "Red or blue?", "Red or blue?"]
+    assert bench.logs() == ["r/red"]
+
+
+def test_a_handler_without_reprompt_listens_without_asking_again() -> None:
+    bench = Bench(ASK.format("<noinput><speak>Hello?</speak></noinput>"))
+    bench.silence()
+    bench.finish("Hello?")
+    assert bench.said() == ["Which colour?", "Hello?"]
+    assert bench.saying() == ["q-and-a"]
+    bench.silence()
+    bench.finish("Hello?")
+    bench.hears("red")
+    assert bench.logs() == ["r/red"]
+
+
+def test_handlers_are_chosen_by_count_over_the_whole_list() -> None:
+    handlers = """<noinput><log>first</log><reprompt/></noinput>
+      <noinput count="3"><log>third</log></noinput>"""
+    bench = Bench(
+        '<noinput count="2"><log>document second</log><reprompt/></noinput>' + ASK.format(handlers)
+    )
+    for _ in range(4):
+        bench.silence()
+    assert bench.logs() == ["first", "document second", "third", "third"]
+
+
+def test_a_prefix_takes_an_event_token_by_token_and_the_innermost_scope_wins() -> None:
+    bench = Bench(
+        """<on event="touch"><log>document</log></on>
+        <form id="a">
+          <on event="touch.he"><log>not a token</log></on>
+          <on event="touch.head" cond="false"><log>condition</log></on>
+          <on event="touch.back touch.head"><log expr="'form ' + event.name"/></on>
+        </form>"""
+    )
+    bench.event("touch.head")
+    bench.event("touch.side")
+    assert bench.logs() == ["form touch.head", "document"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "said", "value"),
+    [
+        ("boolean", "Yes, please.", "true"),
+        ("boolean", "いいえ", "false"),
+        ("number", "twenty one", "21"),
+        ("number", "１２", "12"),
+        ("digits", "0 4 2", '"042"'),
+        ("time", "7 p.m.", '"19:00"'),
+        ("date", "2026-11-21", '"2026-11-21"'),
+        ("text", "  Whatever  you say. ", '"Whatever you say."'),
+    ],
+)
+def test_built_in_types(kind: str, said: str, value: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><field name="x" type="{kind}"><prompt>?</prompt>
+        <filled><log expr="JSON.stringify(x)"/></filled></field></form>"""
+    )
+    bench.hears(said)
+    assert bench.logs() == [value]
+
+
+def test_a_grammar_of_rules() -> None:
+    bench = Bench(
+        """<form id="a"><field name="x"><prompt>?</prompt>
+          <grammar root="order">
+            <rule id="order"><item repeat="0-1">please</item> bring me
+              <ruleref uri="#drink"/> <item repeat="0-2">now</item></rule>
+            <rule id="drink"><one-of><item>tea <tag>T</tag></item><item>coffee <tag>C</tag></item></one-of></rule>
+          </grammar>
+          <filled><log expr="x"/></filled></field></form>"""
+    )
+    bench.hears("Please bring me, coffee. Now! Now!")
+    assert bench.logs() == ["C"]
+    again = Bench(
+        """<form id="a"><field name="x"><prompt>?</prompt>
+        <grammar><item>tea</item></grammar><nomatch><log>no</log></nomatch></field></form>"""
+    )
+    again.hears("teapot")
+    assert again.logs() == ["no"]
+
+
+def test_the_answer_goes_first_to_the_question_then_to_links_then_is_no_match() -> None:
+    asking = document(ASK.format("<nomatch><log>nomatch</log></nomatch>"), name="asker")
+    other = document(
+        """<link event="stop"><grammar>stop it</grammar></link>
+        <form id="a"><on event="stop"><log>stopping</log></on></form>""",
+        name="other",
+    )
+    bench = Bench(asking, other)
+    bench.listens()
+    bench.hears("stop it")
+    assert bench.logs() == ["stopping"]
+    assert bench.saying() == ["Which colour?"], "the question goes on listening"
+    bench.hears("what?")
+    assert bench.logs() == ["stopping", "nomatch"]
+
+
+def test_a_question_without_barge_in_does_not_hear_before_it_is_said() -> None:
+    bench = Bench(
+        """<property name="bargein" value="false"/>"""
+        + ASK.format("<nomatch><log>nomatch</log></nomatch>")
+    )
+    bench.hears("red")
+    assert bench.logs() == []
+    bench.listens()
+    bench.hears("red")
+    assert bench.logs() == ["r/red"]
+
+
+def test_form_level_filled_waits_for_all_or_any() -> None:
+    body = """<form id="a">
+      <field name="x" type="number"><prompt>x?</prompt></field>
+      <field name="y" type="number"><prompt>y?</prompt></field>
+      <filled mode="any" namelist="x y"><log>any</log></filled>
+      <filled><log expr="'all ' + (x + y)"/></filled>
+    </form>"""
+    bench = Bench(body)
+    bench.hears("1")
+    bench.hears("2")
+    assert bench.logs() == ["any", "any", "all 3"]
+
+
+# Events and errors ----------------------------------------------------------------------------
+
+
+def test_the_first_command_because_of_an_event_is_a_reaction_even_through_goto_and_throw() -> None:
+    bench = Bench(
+        """<form id="a"><on event="touch"><throw event="my.own"/></on>
+          <on event="my"><goto next="#b"/></on></form>
+        <form id="b"><block><assign name="n" expr="1"/><speak>One.</speak></block>
+          <block><speak>Two.</speak></block><var name="n"/></form>"""
+    )
+    bench.event("touch")
+    bench.finish("One.")
+    flags = [record["reactive"] for record in bench.phases("request")]
+    assert flags == [True, False]
+
+
+def test_a_handler_may_say_that_it_is_no_reaction() -> None:
+    bench = Bench(
+        '<form id="a"><on event="touch" reactive="false"><speak>Later.</speak></on></form>'
+    )
+    bench.event("touch")
+    assert [record["reactive"] for record in bench.phases("request")] == [False]
+
+
+def test_end_events_of_commands_reach_handlers_in_the_command_and_in_scope() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><speak>One.<on event="end"><log>in the command</log></on></speak>
+            <speak>Two.</speak></block>
+          <on event="end.speak"><log>in the form</log></on>
+        </form>"""
+    )
+    bench.finish("One.")
+    bench.finish("Two.")
+    assert bench.logs() == ["in the command", "in the form"]
+
+
+def test_a_failing_device_is_an_event_with_its_place() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><speak>One.</speak><log>never</log></block>
+          <block><log>next</log></block>
+          <error><log expr="event.name + ' ' + event.message"/></error>
+        </form>"""
+    )
+    bench.fail("One.")
+    assert bench.logs() == ["error.device.speaker app.xml:2: broken", "next"]
+
+
+def test_an_error_that_nobody_handles_ends_this_application_alone() -> None:
+    bad = document(
+        '<form id="a"><block><log expr="nowhere.to"/></block></form>'.replace(
+            "nowhere.to", "JSON.nowhere.to"
+        ),
+        name="bad",
+    )
+    good = document('<form id="a"><block><speak>Fine.</speak></block></form>', name="good")
+    bench = Bench(bad, good)
+    assert bench.saying() == ["Fine."]
+    assert bench.session.failures == [
+        "bad: error.semantic: bad.xml:1: JSON.nowhere.to: TypeError: cannot read property 'to'"
+        " of undefined"
+    ]
+
+
+@pytest.mark.parametrize(
+    "expr",
+    [
+        "(function () { throw new Error('thrown'); })()",
+        "(function () { for (;;); })()",
+        "(function f() { return f(); })()",
+        "'x'.repeat(1e9)",
+        "(() => { const a = []; for (;;) a.push('x'.repeat(1000) + a.length); })()",
+        "/(a+)+$/.test('a'.repeat(40) + 'b')",
+        "Array.prototype.join.call({length: 2 ** 53 - 1}, '')",
+        "String.raw({raw: {length: 2 ** 53 - 1}})",
+        "Symbol('s').nothing.more",
+    ],
+)
+def test_an_expression_that_fails_is_a_timely_error_semantic(expr: str) -> None:
+    escaped = expr.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    bench = Bench(
+        f"""<form id="a"><block><assign name="x" expr="{escaped}"/></block><var name="x"/>
+        <on event="error.semantic"><log expr="event.message"/></on></form>"""
+    )
+    assert len(bench.logs()) == 1
+    assert bench.logs()[0].startswith("app.xml:1: ")
+    assert not bench.session.over
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form id="a"><block><goto next="#b"/></block></form><form id="b"><block><goto next="#a"/></block></form>',
+        '<form id="a"><block name="x"><clear/></block></form>',
+        '<form id="a"><on event="t"><throw event="t"/></on><block><throw event="t"/></block></form>',
+        '<form id="a"><subdialog src="#a"/></form>',
+        '<form id="a"><on event="e"><log>x</log></on><block><foreach item="i" array="Array(9999).fill(0)">'
+        '<foreach item="j" array="Array(9999).fill(0)"><log>x</log></foreach></foreach></block></form>',
+    ],
+)
+def test_a_document_that_loops_without_waiting_ends(body: str) -> None:
+    bench = Bench(body)
+    assert bench.session.over
+    assert "error.semantic" in bench.session.failures[0]
+
+
+def test_applications_do_not_see_each_others_variables() -> None:
+    one = document(
+        '<var name="secret" expr="1"/><form id="a"><block><script>globalThis.leak = 1; Math.leak = 2;</script>'
+        "</block></form>",
+        name="one",
+    )
+    two = document(
+        '<form id="a"><block><log expr="typeof secret + typeof leak + typeof Math.leak"/></block></form>'.replace(
+            "typeof secret + typeof leak", "typeof globalThis.secret + typeof globalThis.leak"
+        ),
+        name="two",
+    )
+    assert Bench(one, two).logs() == ["undefinedundefinedundefined"]
+
+
+def test_a_document_scripts_random_numbers_are_the_same_in_every_run() -> None:
+    body = '<form id="a"><block><log expr="Math.random()"/></block></form>'
+    assert Bench(body).logs() == Bench(body).logs()
+
+
+# Subdialogs -------------------------------------------------------------------------------------
+
+
+def test_a_subdialog_has_its_own_context_and_gives_values_back() -> None:
+    bench = Bench(
+        """<var name="n" expr="1"/>
+        <form id="a"><subdialog name="r" src="#sub"><param name="p" expr="n + 1"/>
+            <filled><log expr="r.q + ' ' + n"/></filled></subdialog>
+          <block><log>after</log></block></form>
+        <form id="sub"><var name="p"/><var name="q"/>
+          <block><assign name="n" expr="99"/><speak>Inside.</speak>
+            <assign name="q" expr="p * 10"/><return namelist="q"/></block></form>"""
+    )
+    assert bench.saying() == ["Inside."]
+    bench.finish("Inside.")
+    assert bench.logs() == ["20 1", "after"]
+
+
+def test_a_subdialog_that_never_waits_and_one_that_goes_on_elsewhere() -> None:
+    bench = Bench(
+        """<form id="a"><subdialog name="r" src="#sub"><filled><log expr="r.x"/></filled></subdialog></form>
+        <form id="sub"><block><goto next="#more"/></block></form>
+        <form id="more"><var name="x" expr="7"/><block><return namelist="x"/></block></form>"""
+    )
+    assert bench.logs() == ["7"]
+
+
+def test_a_subdialog_may_return_an_event() -> None:
+    bench = Bench(
+        """<form id="a"><subdialog name="r" src="#sub"><on event="nope"><log>nope</log></on></subdialog></form>
+        <form id="sub"><block><speak>Hm.</speak><return event="nope"/></block></form>"""
+    )
+    bench.finish("Hm.")
+    assert "nope" in bench.logs()
+
+
+# Units ------------------------------------------------------------------------------------------
+
+UNIT = """<form id="a">
+  <iu name="u" longest="20s">
+    <field name="x" type="boolean"><prompt>May I?</prompt>{}</field>
+    <block cond="x"><speak>Smile!</speak></block>
+  </iu>
+  <block><speak>Bye.</speak></block>
+  <on event="error.unit.timeout"><log>too long</log></on>
+</form>"""
+
+
+def test_a_unit_around_items_owns_its_devices_from_question_to_the_last_word() -> None:
+    other = document(
+        '<form id="a"><on event="touch"><speak>Ouch.</speak></on></form>', name="other"
+    )
+    bench = Bench(document(UNIT.format(""), name="photo"), other)
+    bench.event("touch")
+    assert bench.saying() == ["May I?", "iu"]
+    bench.hears("yes")
+    assert bench.saying() == ["Smile!", "iu"]
+    bench.finish("Smile!")
+    assert bench.saying() == ["Ouch."], "the unit has ended; the reaction goes before Bye"
+    bench.finish("Ouch.")
+    assert bench.saying() == ["Bye."]
+
+
+def test_leaving_a_unit_by_goto_ends_it() -> None:
+    bench = Bench(
+        UNIT.format('<noinput><goto next="#b"/></noinput>')
+        + '<form id="b"><block><speak>Never mind.</speak></block></form>'
+    )
+    bench.silence()
+    assert bench.saying() == ["Never mind."]
+
+
+def test_a_unit_that_takes_too_long_throws_and_ends() -> None:
+    bench = Bench(UNIT.format(""))
+    bench.listens()
+    bench.step(at=20_100)
+    assert bench.logs() == ["too long"]
+    assert bench.saying() == ["Bye."]
+
+
+# Services, timers, watches ------------------------------------------------------------------------
+
+
+def test_send_asks_a_service_and_its_answer_is_a_reaction() -> None:
+    bench = Bench(
+        """<form id="a"><block><send to="library"><param name="title" value="C"/></send></block>
+        <on event="reply.library"><speak><value expr="event.data.shelf"/></speak></on></form>"""
+    )
+    assert [order.data for order in bench.orders] == [{"to": "library", "params": {"title": "C"}}]
+    bench.event("reply.library", shelf="Shelf 7")
+    assert bench.saying() == ["Shelf 7"]
+    assert bench.phases("request")[0]["reactive"] is True
+
+
+def test_an_unhandled_service_failure_ends_the_application() -> None:
+    bench = Bench('<form id="a"><block><send to="x"/></block></form>')
+    bench.event("error.service.x", message="down")
+    assert bench.session.failures == ["app: error.service.x: down"]
+
+
+def test_a_delayed_event_comes_unless_its_state_is_left() -> None:
+    body = """<form id="a"><block><send event="late" delay="2s"/></block>
+      <on event="late"><log>late</log></on><on event="go"><goto next="#b"/></on></form>
+      <form id="b"><on event="late"><log>wrong</log></on></form>"""
+    bench = Bench(body)
+    assert bench.session.deadline() == 2100
+    bench.step(at=2100)
+    assert bench.logs() == ["late"]
+    left = Bench(body)
+    left.event("go")
+    assert left.session.deadline() is None
+
+
+def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> None:
+    from prima.messages import Sensed
+
+    bench = Bench(
+        """<form id="a"><watch name="near" when="sensor.human.distance &lt; 1"/>
+        <on event="near"><speak>Hello.</speak></on></form>"""
+    )
+    for distance in (3, 0.8, 0.5, 2, 0.9):
+        bench.step(Sensed({"human.distance": distance}))
+    assert len([r for r in bench.phases("event") if r["event"] == "near"]) == 2
+    assert bench.phases("request")[0]["reactive"] is True
