@@ -462,7 +462,7 @@ def check_expression(context: Any, code: str) -> None:
     Raises:
         ScriptError: with the line and column inside the expression.
     """
-    _check(context, f"return (\n{code}\n)", 1)
+    _check(context, code, f"return (\n{code}\n)", 1)
 
 
 def check_script(context: Any, code: str) -> None:
@@ -471,18 +471,21 @@ def check_script(context: Any, code: str) -> None:
     Raises:
         ScriptError: with the line and column inside the script.
     """
-    _check(context, f"\n{code}\n", 1)
+    _check(context, code, f"\n{code}\n", 1)
 
 
-def _check(context: Any, body: str, before: int) -> None:
+def _check(context: Any, code: str, body: str, before: int) -> None:
     try:
         context.eval(f"(void new Function({json.dumps(body)}))")
     except (quickjs.JSException, quickjs.StackOverflow) as error:
         failure = _script_error(error)
         place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", str(error))
         if place:
-            failure.line = max(int(place[0][0]) - 2 - before, 1)
-            failure.column = int(place[0][1])
+            line, column = max(int(place[0][0]) - 2 - before, 1), int(place[0][1])
+            lines = code.splitlines()
+            if line > len(lines):  # it ends too early: say so where it ends
+                line, column = len(lines), len(lines[-1]) + 1
+            failure.line, failure.column = line, column
         raise failure from None
 
 

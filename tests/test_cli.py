@@ -1,0 +1,165 @@
+"""The command line as a user meets it: output, exit codes, and files."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
+
+
+def prima(*args: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "prima", *map(str, args)],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        timeout=60,
+        cwd=cwd,
+        check=False,
+    )
+
+
+def test_what_the_readme_promises(tmp_path: Path) -> None:
+    documents = sorted((ROOT / "documents").glob("*a/*.xml"))
+    checked = prima("validate", *documents)
+    assert (checked.returncode, checked.stdout) == (0, "")
+    mediated, fifo = tmp_path / "mediated.jsonl", tmp_path / "fifo.jsonl"
+    assert prima("run", DEMO, "-o", mediated).returncode == 0
+    assert prima("run", DEMO, "--policy", "fifo", "-o", fifo).returncode == 0
+    differs = prima("diff", mediated, fifo)
+    assert differs.returncode == 1
+    assert differs.stdout.splitlines()[-1].startswith("rows: ")
+    assert "\x1b" not in differs.stdout
+    same = prima("diff", mediated, mediated)
+    assert same.returncode == 0
+    assert same.stdout.splitlines()[-1].startswith("rows: all the same")
+    assert prima("replay", mediated, DEMO).returncode == 0
+    assert prima("show", mediated).stdout == prima("run", DEMO).stdout
+
+
+def test_json_where_a_machine_may_read(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.xml"
+    bad.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n  <from/></prima>'
+    )
+    result = prima("validate", bad, "--format", "json")
+    assert result.returncode == 1
+    first = json.loads(result.stdout)[0]
+    assert (first["line"], first["column"]) in {(1, 1), (2, 3)}
+    lines = prima("run", DEMO, "--format", "json").stdout.splitlines()
+    assert json.loads(lines[0])["phase"] == "run"
+    assert json.loads(lines[-1])["phase"] == "over"
+    a = tmp_path / "a.jsonl"
+    a.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    assert json.loads(prima("diff", a, a, "--format", "json").stdout)["differs"] is False
+
+
+def test_explain_a_code_and_a_row(tmp_path: Path) -> None:
+    assert "declares" in prima("explain", "undeclared-variable").stdout
+    wrong = prima("explain", "undeclared-varable")
+    assert wrong.returncode == 2
+    assert 'Did you mean "undeclared-variable"?' in wrong.stderr
+    out = tmp_path / "t.jsonl"
+    prima("run", DEMO, "-o", out)
+    table = prima("show", out).stdout
+    row = next(line.split()[1] for line in table.splitlines() if "resumes Active" in line)
+    why = prima("explain", out, row).stdout
+    assert "rule F2" in why
+    assert "follow.xml:" in why
+
+
+@pytest.mark.parametrize(
+    ("args", "hint"),
+    [
+        (("vaildate", "x"), "validate"),
+        (("run", "--polcy", "x"), "--policy"),
+        (("run", str(DEMO), "--policy", "fifa"), "fifo"),
+    ],
+)
+def test_a_misspelt_word_gets_a_suggestion(args: tuple[str, ...], hint: str) -> None:
+    result = prima(*args)
+    assert result.returncode == 2
+    assert hint in result.stderr
+
+
+def test_every_command_has_help_with_an_example() -> None:
+    top = prima("--help")
+    assert top.returncode == 0
+    for name in ("validate", "run", "show", "diff", "replay", "explain"):
+        assert name in top.stdout
+        assert f"prima {name} " in prima(name, "--help").stdout
+
+
+def test_ctrl_c_leaves_what_was_written_readable(tmp_path: Path) -> None:
+    app = tmp_path / "busy.xml"
+    app.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="busy"><form id="a">'
+        '<block><speak>Still here.</speak><goto next="#a"/></block></form></prima>'
+    )
+    scenario = tmp_path / "long.xml"
+    scenario.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="long" until="86400s"'
+        f' world="{ROOT}/documents/worlds/office.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<application src="busy.xml"/></scenario>'
+    )
+    out = tmp_path / "out.jsonl"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "prima", "run", str(scenario), "-o", str(out)],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    for _ in range(200):
+        time.sleep(0.05)
+        if out.exists() and out.stat().st_size > 10_000:
+            break
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    shown = prima("show", out)
+    assert shown.returncode == 0, shown.stderr
+    assert "Still here." in shown.stdout
+
+
+def test_the_same_bytes_under_every_hash_seed(tmp_path: Path) -> None:
+    made = []
+    for seed in ("0", "1", "4242"):
+        out = tmp_path / f"{seed}.jsonl"
+        subprocess.run(
+            [sys.executable, "-m", "prima", "run", str(DEMO), "-o", str(out)],
+            check=True,
+            capture_output=True,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+        )
+        made.append(out.read_bytes())
+    assert made[0] == made[1] == made[2]
+
+
+def test_a_wheel_holds_schemas_and_documents_and_works_from_any_folder(tmp_path: Path) -> None:
+    subprocess.run(
+        [sys.executable, "-m", "build", "--wheel", "--outdir", str(tmp_path), str(ROOT)],
+        check=True,
+        capture_output=True,
+    )
+    wheel = next(tmp_path.glob("*.whl"))
+    target = tmp_path / "site"
+    subprocess.run([sys.executable, "-m", "zipfile", "-e", str(wheel), str(target)], check=True)
+    code = (
+        f"import sys; sys.path.insert(0, {str(target)!r})\n"
+        "import prima, pathlib\n"
+        f"assert pathlib.Path(prima.__file__).is_relative_to({str(target)!r})\n"
+        "path = prima.documents_folder() / 'scenarios' / 'follow-during-navigation.xml'\n"
+        f"assert path.is_relative_to({str(target)!r})\n"
+        "assert prima.validate([path]) == []\n"
+        "assert len(prima.rehearse(path).rows()) > 20\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)

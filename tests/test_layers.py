@@ -1,0 +1,170 @@
+"""The house plan, held by a test: each layer imports only what stands below it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent / "prima"
+
+LAYERS = [
+    {"errors"},
+    {"values"},
+    {"commands"},
+    {"messages"},
+    {"markup", "transcript", "codes"},
+    {"interpreter", "scheduler"},
+    {"session"},
+    {"sim", "replay"},
+    {"api"},
+    {"cli", "__init__", "reference"},
+    {"__main__"},
+]
+"""Lowest first; parts of one layer do not know each other."""
+
+INSIDE = {
+    "scheduler": [
+        {"behavior"},
+        {"chronicle", "memory", "intake"},
+        {"selection"},
+        {"selector"},
+        {"mediator"},
+        {"__init__"},
+    ],
+    "markup": [{"vocabulary", "tree"}, {"check", "schema"}, {"reader"}, {"__init__"}],
+    "interpreter": [
+        {"vocabulary", "expressions", "grammar"},
+        {"elements"},
+        {"build", "checks", "frame", "selection"},
+        {"reader", "content"},
+        {"form"},
+        {"__init__"},
+    ],
+    "sim": [
+        {"vocabulary", "voice"},
+        {"scenario"},
+        {"world"},
+        {"routes"},
+        {"robot"},
+        {"person", "services"},
+        {"rehearsal"},
+        {"__init__"},
+    ],
+}
+
+ALONE = {
+    "lxml": {"markup.reader"},
+    "pymunk": {"sim.world"},
+    "networkx": {"sim.routes"},
+    "_quickjs": {"interpreter.expressions"},
+    "pydantic": {"transcript.record", "transcript.lines"},
+    "click": {"cli"},
+}
+"""Libraries that one module alone knows."""
+
+OUTSIDE = {"time", "threading", "random", "datetime", "asyncio", "socket", "subprocess", "os"}
+CORE = (
+    "interpreter",
+    "scheduler",
+    "session",
+    "messages",
+    "commands",
+    "markup",
+    "transcript",
+    "sim",
+)
+
+
+def modules() -> dict[str, ast.Module]:
+    found = {}
+    for path in sorted(ROOT.rglob("*.py")):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        found[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return found
+
+
+MODULES = modules()
+
+
+def imported(tree: ast.Module, types_too: bool = False) -> set[str]:
+    """Names of modules imported anywhere in a module, inside functions as well."""
+    names: set[str] = set()
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        typing = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+        if typing and not types_too:
+            skipped.update(ast.walk(node))
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+    return names
+
+
+def rank(layers: list[set[str]], part: str) -> int:
+    for index, layer in enumerate(layers):
+        if part in layer:
+            return index
+    raise AssertionError(f"{part} has no layer")
+
+
+@pytest.mark.parametrize("name", sorted(MODULES))
+def test_a_module_imports_only_what_stands_below(name: str) -> None:
+    package = name.split(".")[0]
+    for target in imported(MODULES[name]):
+        parts = target.split(".")
+        if parts[0] != "prima" or len(parts) < 2:
+            continue
+        if parts[1] == package:
+            inside = INSIDE.get(package)
+            if inside and len(parts) > 2 and f"{package}.{parts[2]}" in MODULES:
+                own = name.split(".")[1]
+                if own != parts[2]:
+                    assert rank(inside, parts[2]) < rank(inside, own), f"{name} imports {target}"
+        elif parts[1] in MODULES or any(key.startswith(f"{parts[1]}.") for key in MODULES):
+            assert rank(LAYERS, parts[1]) < rank(LAYERS, package), f"{name} imports {target}"
+
+
+@pytest.mark.parametrize(("library", "homes"), sorted(ALONE.items()))
+def test_a_library_is_known_in_its_own_place_alone(library: str, homes: set[str]) -> None:
+    users = {
+        name
+        for name, tree in MODULES.items()
+        if any(target.split(".")[0] == library for target in imported(tree))
+    }
+    assert users <= homes
+
+
+def test_the_core_has_no_clock_thread_chance_or_socket() -> None:
+    for name, tree in MODULES.items():
+        if name.split(".")[0] in CORE:
+            used = {target.split(".")[0] for target in imported(tree)}
+            assert not used & OUTSIDE, name
+
+
+def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
+    code = (
+        "import sys\nfrom prima.cli import cli\n"
+        "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def test_validating_an_application_imports_neither_simulator_nor_graph_library() -> None:
+    path = ROOT.parent / "documents" / "fa" / "follow.xml"
+    code = (
+        "import sys\nfrom prima import api\n"
+        f"assert api.validate([{str(path)!r}]) == []\n"
+        "heavy = {'pymunk', 'networkx', 'pydantic'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,171 @@
+"""Reading and validation: exact places, all problems at once, the author's words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima.errors import DocumentError, Problem
+from prima.interpreter.reader import read_document
+from prima.sim.scenario import read_robot, read_scenario, read_world
+from tests.robot import read, xml
+
+
+def problems(body: str, kind: str = "fa") -> list[str]:
+    return [f"{p.place.line}:{p.place.column} {p.severity} {p.code}" for p in read(body, kind)[1]]
+
+
+def found(body: str, code: str, kind: str = "fa") -> Problem:
+    made = [p for p in read(body, kind)[1] if p.code == code]
+    assert len(made) == 1, [str(p) for p in read(body, kind)[1]]
+    return made[0]
+
+
+def test_all_problems_of_a_file_at_once_with_exact_places() -> None:
+    body = """
+<form id="a">
+  <blok/>
+  <block>
+    <speak volume="3">Hi</speak>
+    <topological-move
+        to="x"
+        too="y"/>
+    <goto next="#bb"/>
+    <assign name="nix" expr="1 +"/>
+  </block>
+</form>
+<form id="b"><block><turn angle="ninety"/></block></form>
+"""
+    assert problems(body) == [
+        "3:3 error unknown-element",
+        "5:12 error unknown-attribute",
+        "8:9 error unknown-attribute",
+        "9:17 error no-such-form",
+        "10:5 warning dead-content",
+        "10:19 error undeclared-variable",
+        "10:33 error bad-expression",
+        "13:11 warning unreachable",
+        "13:34 error bad-value",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "remedy"),
+    [
+        ('<form id="a"><block><speek>Hi</speek></block></form>', "unknown-element", '"speak"'),
+        ('<form id="a"><catch event="x"/></form>', "unknown-element", '<on event="...">'),
+        ('<form id="a"><speak>Hi</speak></form>', "misplaced-element", "block"),
+        ('<form id="a"><block tame="x"/></form>', "unknown-attribute", '"name"'),
+        ('<form id="ask"><block><goto next="#aks"/></block></form>', "no-such-form", '"ask"'),
+        ('<var name="goal"/><form id="a"><block><log expr="gaol"/></block></form>', "undeclared-variable", '"goal"'),
+        ('<form id="a"><block>Hello</block></form>', "stray-text", "<speak>"),
+    ],
+)  # fmt: skip
+def test_a_problem_says_what_to_write_instead(body: str, code: str, remedy: str) -> None:
+    assert remedy in found(body, code).remedy
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        ('<form id="a"/><form id="a"/>', "duplicate-id"),
+        ('<form id="a"><field name="x"><prompt>?</prompt></field></form>', "no-answer"),
+        ('<form id="a"><block><turn angle="900"/></block></form>', "out-of-range"),
+        ('<form id="a"><block><turn angle="1" angle-expr="2"/></block></form>', "exclusive"),
+        ('<form id="a"><block><speak/></block></form>', "nothing-to-say"),
+        ('<form id="a"><block><iu><speak>x</speak><tracking-human/></iu></block></form>', "not-in-unit"),
+        ('<form id="a"><iu><block><topological-move to="x"/></block></iu></form>', "not-in-unit"),
+        ('<form id="a"><block><par><speak>x</speak><stop-moving/></par></block></form>', "now-inside"),
+        ('<form id="a"><block><if cond="1"><else/><elseif cond="1"/></if></block></form>', "after-else"),
+        ('<form id="a"><field name="x" type="text"/><block name="x"/></form>', "duplicate-name"),
+        ('<form id="a"><field name="x"><grammar><ruleref uri="#no"/></grammar></field></form>', "no-such-rule"),
+        ('<form id="a"><block><goto/></block></form>', "missing-attribute"),
+        ('<form id="a"><block><goto nextitem="b"/></block></form>', "no-such-item"),
+        ('<form id="a"><block><set-direction/></block></form>', "missing-attribute"),
+        ("", "no-form"),
+    ],
+)  # fmt: skip
+def test_meaning(body: str, code: str) -> None:
+    assert found(body, code).severity == "error"
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        ('<form id="a"><block><exit/></block></form><form id="b"><block><exit/></block></form>', "unreachable"),
+        ('<form id="a"><block><speak>x</speak></block></form>', "dead-end"),
+        ('<form id="a"><block><exit/><speak>x</speak></block></form>', "dead-content"),
+        ('<form id="a"><block><par><speak>x</speak><speak>y</speak></par><exit/></block></form>', "shared-device"),
+        ('<form id="a"><block><tracking-human/><exit/></block></form>', "endless"),
+        (f'<form id="a"><block><iu><speak>{"long " * 100}</speak></iu><exit/></block></form>', "long-unit"),
+    ],
+)  # fmt: skip
+def test_warnings(body: str, code: str) -> None:
+    assert found(body, code).severity == "warning"
+
+
+def test_additional_arguments_are_for_an_fa_alone() -> None:
+    body = '<form id="a"><block><speak>Hi<param name="volume" value="3"/></speak><exit/></block></form>'
+    assert problems(body, "fa") == []
+    assert found(body, "fa-only", "ea").place.line == 1
+
+
+def test_an_expression_without_fault_is_left_in_peace() -> None:
+    body = """<var name="n" expr="3"/><form id="a"><block>
+      <var name="f" expr="function (a, b) { var c = a + b; return c * n; }"/>
+      <var name="g" expr="[1, 2].map((x, i) => x * i).filter(y => y > n)"/>
+      <var name="h" expr="{ a: n, b: 'n.m', c: /x+y/.test('z') }"/>
+      <log expr="f(1, 2) + g.length + h.a + `t ${n}` + Math.max(n, 2) + (event ? 1 : 2)"/><exit/>
+    </block></form>"""
+    assert problems(body) == []
+
+
+DOCTYPE = '<!DOCTYPE prima PUBLIC "-//X//Y" "http://example.invalid/x.dtd">'
+
+
+def test_an_external_doctype_is_accepted_and_an_internal_one_refused() -> None:
+    body = xml('<form id="a"><block><exit/></block></form>')
+    assert read_document("x.xml", DOCTYPE.encode() + body)[1] == []
+    bomb = b'<!DOCTYPE prima [<!ENTITY a "aaaa">]>\n' + body
+    with pytest.raises(DocumentError) as refused:
+        read_document("x.xml", bomb)
+    assert [p.code for p in refused.value.problems] == ["doctype"]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "iso-8859-1", "shift_jis", "euc-jp"])
+def test_listed_encodings_are_transcoded(encoding: str) -> None:
+    word = (
+        "café"
+        if encoding == "iso-8859-1"
+        else "日本語"
+        if encoding != "utf-8"
+        else "caf\u00e9 日本語"
+    )
+    text = (
+        f'<?xml version="1.0" encoding="{encoding}"?>'
+        + xml(
+            f'<form id="a"><block><speak>{word}</speak><exit/></block></form>'.encode().decode()
+        ).decode()
+    )
+    assert read_document("x.xml", text.encode(encoding))[1] == []
+
+
+def test_columns_count_characters() -> None:
+    body = '<form id="日本語"><block><speak>日本語</speak><x/></block></form>'
+    place = found(body, "unknown-element").place
+    assert place.column == xml(body).decode().index("<x/>") + 1
+
+
+def test_other_documents_are_checked_alike(tmp_path: Path) -> None:
+    world = b'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n<place id="a" x="0" y="0"/>\n<way from="a" to="b"/></world>'
+    with pytest.raises(DocumentError) as wrong:
+        read_world("w.xml", world)
+    assert str(wrong.value) == 'w.xml:3:19: error: There is no place "b". [no-such-name]'
+    robot = b'<robot xmlns="urn:prima:robot:1" version="1.0" id="r" speed="99"/>'
+    with pytest.raises(DocumentError, match="out of range"):
+        read_robot("r.xml", robot)
+    scenario = b'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w" robot="r"><when><say>x</say></when></scenario>'
+    with pytest.raises(DocumentError) as several:
+        read_scenario("s.xml", scenario)
+    assert [p.code for p in several.value.problems] == ["missing-element", "missing-attribute"]
