@@ -483,7 +483,7 @@ def _check(context: Any, code: str, body: str, before: int) -> None:
         if place:
             line, column = max(int(place[0][0]) - 2 - before, 1), int(place[0][1])
             lines = code.splitlines()
-            if line > len(lines):  # it ends too early: say so where it ends
+            if lines and line > len(lines):  # it ends too early: say so where it ends
                 line, column = len(lines), len(lines[-1]) + 1
             failure.line, failure.column = line, column
         raise failure from None
