@@ -41,7 +41,8 @@ INSIDE = {
         {"elements"},
         {"build", "checks", "frame", "selection"},
         {"reader", "content"},
-        {"form"},
+        {"form", "handling"},
+        {"application"},
         {"__init__"},
     ],
     "sim": [

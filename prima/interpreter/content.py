@@ -43,7 +43,7 @@ from prima.messages import Command, Group, Json, Notice, Say, Step
 from prima.values import read_value
 
 if TYPE_CHECKING:
-    from prima.interpreter.form import Interpreter
+    from prima.interpreter.application import Interpreter
 
 MAX_TEXT = 4000
 """Characters that a Command may say."""

@@ -9,6 +9,9 @@ from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
 from prima.interpreter.expressions import Scope
 from prima.messages import Event, Notice
 
+MAX_DEPTH = 32
+"""Subdialogs inside subdialogs, and events thrown while one is handled."""
+
 Content = Generator[int, Notice, None]
 """A piece of content as a coroutine: it yields the run it waits for and is sent its fate."""
 

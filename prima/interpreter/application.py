@@ -1,0 +1,420 @@
+"""An application as a state machine without I/O or clock.
+
+An :class:`Interpreter` is told what happens (``start``, ``event``, ``notice``,
+``sensed``, ``expire``) and appends what its application wants to ``actions``.
+Between two calls it waits; a call takes no simulated time. What it does in a form
+is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter.handling`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import count
+
+from prima.interpreter.content import Executor, source
+from prima.interpreter.elements import Declare, Document, Field, Form, Link, Script, all_items
+from prima.interpreter.expressions import Engine, Scope, ScriptError
+from prima.interpreter.form import Algorithm
+from prima.interpreter.frame import (
+    Abandoned,
+    Fiber,
+    Frame,
+    GoBack,
+    GoForm,
+    GoItem,
+    GoOut,
+    Thrown,
+    Transfer,
+)
+from prima.interpreter.handling import Handling
+from prima.markup.tree import Node
+from prima.messages import (
+    Action,
+    CloseUnit,
+    Command,
+    Data,
+    Event,
+    Json,
+    LeaveState,
+    Notice,
+    Quit,
+    Request,
+    Say,
+    Send,
+    Step,
+)
+
+MAX_STEPS = 20_000
+"""Pieces of content that an application may go through in one instant."""
+MAX_TIMERS = 256
+
+
+class Interpreter:
+    """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands."""
+
+    def __init__(
+        self, document: Document, arguments: Mapping[str, frozenset[str]] | None = None
+    ) -> None:
+        self.document = document
+        self.name = document.id
+        self.kind = document.kind
+        self.arguments = arguments or {}
+        self.engine = Engine()
+        self.actions: list[Action] = []
+        self.now = 0
+        self.over = False
+        self.application = self.engine.scope()
+        self.execute = Executor(self)
+        self.handling = Handling(self)
+        self.algorithm = Algorithm(self)
+        self.frame: Frame | None = None
+        self._waiting: dict[int, Fiber] = {}
+        self._runs = count(1)
+        self.states = count(1)
+        self.units = count(1)
+        self._sends = count(1)
+        self._timers: list[tuple[int, int, str, Data, int]] = []
+        """Delayed events: when, serial number, name, data, and the state they belong to."""
+        self._timer_serial = count(1)
+        self.armed: dict[int, bool] = {}
+        self.sensors: dict[str, Json] = {}
+        self.cause: int | None = None
+        self.serial = 0
+        self._steps = 0
+        self._instant = -1
+
+    def start(self, now: int) -> None:
+        """Begin with the first form."""
+        self._tick(now)
+        first = next(iter(self.document.forms.values()))
+        self._guard(lambda: self._enter(first, None))
+
+    def event(self, now: int, event: Event) -> None:
+        """Something happened that every application is told of, or this one alone."""
+        self._tick(now)
+        self.serial = event.serial
+        if self.frame is not None:
+            frame = self.frame
+            self._guard(lambda: self.handling.dispatch(event, frame))
+        self.cause = None
+
+    def notice(self, now: int, notice: Notice) -> None:
+        """The mediator tells the fate of Commands."""
+        self._tick(now)
+        if self.over:
+            return
+        if notice.what == "unit-timeout":
+            self._guard(lambda: self.handling.unit_timeout(notice))
+        elif notice.what == "ended":
+            self._guard(lambda: self.handling.command_event(notice, "end"))
+        else:
+            fiber = self._waiting.pop(notice.run, None)
+            if fiber is not None and fiber.waiting == notice.run:
+                self._guard(lambda: self._resume(fiber, notice))
+            if notice.what == "cancelled":
+                self._guard(lambda: self.handling.command_event(notice, "cancel"))
+
+    def sensed(self, now: int, values: Data) -> list[str]:
+        """Sensor values changed: gives the events whose conditions turned true (C6)."""
+        self._tick(now)
+        self.sensors.update(values)
+        if self.over:
+            return []
+        raised: list[str] = []
+        watches = self.handling.watches()
+        if watches:
+            self._guard(lambda: raised.extend(self.handling.check_watches(watches)))
+        return raised
+
+    def listens_to(self, text: str) -> Link | None:
+        """The link that takes what the user said, innermost scope first (V1)."""
+        frame = self.frame
+        if frame is None:
+            return None
+        for link in (*frame.form.links, *self.document.links):
+            if link.grammar.match(text) is not None:
+                return link
+        return None
+
+    def follow(self, now: int, link: Link, event: Event) -> None:
+        """The user has said what a link listens for."""
+        self._tick(now)
+        if link.event:
+            self.event(now, Event(link.event, event.serial, event.data))
+            return
+        self.serial = self.cause = event.serial
+        frame = self.frame
+        if frame is not None:
+            self._guard(lambda: self._transfer(frame, GoForm(link.form)))
+        self.cause = None
+
+    def answer(self, run: int, text: str) -> Json:
+        """The value of the asking field for what the user said, or None if it takes no such."""
+        fiber = self._waiting.get(run)
+        item = fiber.frame.item if fiber is not None else None
+        return item.answers.match(text) if isinstance(item, Field) else None
+
+    @property
+    def deadline(self) -> int | None:
+        """When :meth:`expire` wants to be called, if ever."""
+        return None if self.over else min((timer[0] for timer in self._timers), default=None)
+
+    def expire(self, now: int) -> list[tuple[str, Data]]:
+        """Give the application's own delayed events that are due."""
+        due = sorted((t for t in self._timers if t[0] <= now), key=lambda t: t[:2])
+        self._timers = [timer for timer in self._timers if timer[0] > now]
+        return [(name, data) for _, _, name, data, _ in due]
+
+    def stop(self) -> None:
+        """The application is taken out of the robot."""
+        self._quit("unloaded")
+
+    def internal(self, name: str, message: str, command: Command | None = None) -> Event:
+        """An event of the application's own."""
+        data: dict[str, Json] = {"message": message}
+        if command is not None:
+            data["command"] = command.type
+        return Event(name, self.serial, data, reactive=False)
+
+    def count_step(self, node: Node) -> None:
+        """Bound what an application does in one instant; a document may loop for ever."""
+        self._steps += 1
+        if self._steps > MAX_STEPS:
+            place = source(node)
+            raise GoOut(f"{place}: error.semantic: it loops without ever waiting", True, place)
+
+    def request(self, steps: list[Step], fiber: Fiber) -> int:
+        """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
+        number = next(self._runs)
+        cause, self.cause = self.cause, None
+        self.actions.append(Request(number, steps, fiber.frame.state, cause, fiber.unit))
+        self._waiting[number] = fiber
+        fiber.waiting = number
+        return number
+
+    def send(self, service: str, data: Json, place: str) -> None:
+        """Ask a service something."""
+        self.actions.append(Send(service, data, next(self._sends), place))
+
+    def delay(self, name: str, data: Data, milliseconds: int, fiber: Fiber) -> None:
+        """Raise an event here later, unless the state is left before."""
+        if len(self._timers) >= MAX_TIMERS:
+            raise Thrown(self.internal("error.semantic", f"more than {MAX_TIMERS} delayed events"))
+        due = self.now + max(milliseconds, 1)
+        self._timers.append((due, next(self._timer_serial), name, data, fiber.frame.state))
+
+    def _tick(self, now: int) -> None:
+        if now != self._instant:
+            self._instant = self.now = now
+            self._steps = 0
+            if not self.over:
+                self.engine.set(self.application, "session", {"time": now / 1000})
+
+    def _guard(self, act: Callable[[], object]) -> None:
+        """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""
+        try:
+            act()
+        except Thrown as thrown:
+            self._unhandled(thrown)
+        except GoOut as out:
+            self._quit(out.reason, out.failed, out.source)
+        except ScriptError as error:
+            self._quit(f"error.semantic: {error}", failed=True)
+
+    def _unhandled(self, thrown: Thrown) -> None:
+        event = thrown.event
+        message = str(event.data.get("message", ""))
+        self.actions.append(Say("error", f"{event.name}: {message}", thrown.source))
+        self._quit(f"{event.name}: {message}", failed=True, place=thrown.source)
+
+    def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
+        if self.over:
+            return
+        self.over = True
+        while self.frame is not None:
+            self.leave(self.frame)
+            self.frame = self.frame.caller
+        self._timers.clear()
+        self.actions.append(Quit(reason, failed, place))
+
+    def _resume(self, fiber: Fiber, notice: Notice) -> None:
+        """Go on with content whose Commands have met their fate."""
+        fiber.waiting = None
+        self.drive(fiber, notice)
+
+    def drive(self, fiber: Fiber, notice: Notice | None) -> None:
+        """Run a fiber until it waits or ends, then carry out a transfer of control."""
+        assert fiber.content is not None
+        try:
+            if notice is None:
+                next(fiber.content)
+            else:
+                fiber.content.send(notice)
+            return
+        except StopIteration:
+            self._drop(fiber)
+            self._go_on(fiber.frame)
+        except Abandoned:
+            self._drop(fiber)
+            fiber.frame.stalled = fiber.frame.stalled or fiber.main
+        except Transfer as transfer:
+            self._drop(fiber)
+            self._transfer(fiber.frame, transfer)
+
+    def _go_on(self, frame: Frame) -> None:
+        """A handler has ended: a form that was waiting looks for items to visit again."""
+        if frame is not self.frame or frame.stalled or any(one.main for one in frame.fibers):
+            return
+        pending = self.begin(frame, setup=False)
+        if pending is not None:
+            self._transfer(*pending)
+
+    def _drop(self, fiber: Fiber) -> None:
+        if fiber in fiber.frame.fibers:
+            fiber.frame.fibers.remove(fiber)
+
+    def _transfer(self, frame: Frame, transfer: Transfer) -> None:
+        """Leave a state for another; goto chains go round here, not deeper."""
+        while self.frame is not None and self.frame is not frame:
+            self.leave(self.frame)  # a subdialog that the state had called
+            self.frame = self.frame.caller
+        pending: tuple[Frame, Transfer] | None = (frame, transfer)
+        while pending is not None:
+            frame, transfer = pending
+            if isinstance(transfer, GoOut):
+                raise transfer
+            if isinstance(transfer, GoItem):
+                pending = self.go_item(frame, transfer)
+            elif isinstance(transfer, GoForm):
+                self.leave(frame)
+                form = self.document.forms[transfer.form]
+                self.count_step(form.node)
+                pending = self.begin(self.frame_for(form, frame))
+            else:
+                assert isinstance(transfer, GoBack)
+                pending = self._go_back(frame, transfer)
+
+    def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
+        """Go on with another item of the same form; the form's own content starts anew there."""
+        if any(fiber.main for fiber in frame.fibers):
+            # A handler leaves what the state was doing: O3 for the item instead of the form.
+            self.leave(frame)
+            frame.state = next(self.states)
+        frame.next_item = transfer.item
+        frame.reprompt = True
+        return self.begin(frame, setup=False)
+
+    def _go_back(self, frame: Frame, transfer: GoBack) -> tuple[Frame, Transfer] | None:
+        """Come back from a subdialog, with values or an event (VoiceXML 2.3.4, 5.3.10)."""
+        caller = frame.caller
+        if caller is None:
+            raise GoOut("return")
+        fiber = Fiber(frame, local=self.engine.scope())
+        result = {}
+        scopes = self.execute.scopes(fiber)
+        for name in transfer.names:
+            result[name] = self.engine.value(name, scopes)
+        self.leave(frame)
+        self.frame = caller
+        main = next((one for one in caller.fibers if one.main), None)
+        if main is None or main.content is None:
+            return None
+        data = {"result": result}
+        notice = Notice("done", 0, data=data, event=transfer.event)
+        try:
+            main.content.send(notice)
+        except (StopIteration, Abandoned):
+            self._drop(main)
+        except Transfer as further:
+            self._drop(main)
+            return caller, further
+        return None
+
+    def forget(self, fiber: Fiber) -> None:
+        """Give up a piece of content; nobody hears any more of what it waited for."""
+        if fiber.waiting is not None:
+            self._waiting.pop(fiber.waiting, None)
+        self._drop(fiber)
+        if fiber.content is not None:
+            try:
+                fiber.content.close()
+            except ValueError:
+                pass  # it is the fiber that brought us here
+
+    def leave(self, frame: Frame) -> None:
+        """O3: the state's content ends, its units are concluded, its Commands are given up."""
+        for fiber in list(frame.fibers):
+            self.forget(fiber)
+        self.close_units(frame)
+        self._timers = [timer for timer in self._timers if timer[4] != frame.state]
+        self.actions.append(LeaveState(frame.state))
+
+    def close_units(self, frame: Frame) -> None:
+        """U5: conclude every unit that the state is in."""
+        for number, _ in reversed(frame.units):
+            self.actions.append(CloseUnit(number))
+        frame.units.clear()
+
+    def _enter(self, form: Form, caller: Frame | None) -> None:
+        frame = self.frame_for(form, None)
+        pending = self.begin(frame)
+        if pending is not None:
+            self._transfer(*pending)
+
+    def frame_for(self, form: Form, before: Frame | None) -> Frame:
+        """A frame for a form entered by goto (keeping the document's scope) or at the start."""
+        document = before.document if before else self.new_document()
+        frame = Frame(form, next(self.states), document, self.engine.scope())
+        if before is not None:
+            frame.caller, frame.called_by = before.caller, before.called_by
+        return frame
+
+    def new_document(self) -> object:
+        """A document scope with the document's variables and scripts (VoiceXML 5.1.2)."""
+        scope = self.engine.scope()
+        self.engine.put(scope, "document", scope)
+        self.engine.put(self.application, "application", self.application)
+        frame = Frame(next(iter(self.document.forms.values())), 0, scope, self.engine.scope())
+        fiber = Fiber(frame, local=self.engine.scope())
+        self._set_up(self.document.setup, scope, fiber)
+        return scope
+
+    def _set_up(self, setup: list[Declare | Script], scope: Scope, fiber: Fiber) -> None:
+        for act in setup:
+            if isinstance(act, Declare):
+                self.execute.declare(act, scope, fiber)
+            else:
+                self.execute.script(act, scope, fiber)
+
+    def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
+        """Start a form's own content; gives a transfer of control that it ends in at once."""
+        self.frame = frame
+        frame.stalled = False
+        fiber = Fiber(frame, main=True, local=self.engine.scope())
+        fiber.content = self.algorithm.interpret(frame, fiber, setup)
+        frame.fibers.append(fiber)
+        try:
+            next(fiber.content)
+        except (StopIteration, Abandoned):
+            self._drop(fiber)
+        except Transfer as transfer:
+            self._drop(fiber)
+            return frame, transfer
+        return None
+
+    def initialise(self, frame: Frame, fiber: Fiber) -> None:
+        """Declare the form's variables and items (the algorithm's initialisation)."""
+        self.engine.put(frame.dialog, "dialog", frame.dialog)
+        call = frame.called_by
+        given: set[str] = set()
+        if call is not None and frame.caller is not None:
+            outer = Fiber(frame.caller, local=self.engine.scope())
+            for name, value in self.execute.named(call.params, outer).items():
+                self.engine.set(frame.dialog, name, value)
+                given.add(name)
+        setup = [
+            act for act in frame.form.setup if not (isinstance(act, Declare) and act.name in given)
+        ]
+        self._set_up(setup, frame.dialog, fiber)
+        for item in all_items(frame.form.items):
+            self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)

@@ -1,0 +1,195 @@
+"""Events: which handler takes one, and how it runs beside what its state is doing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.interpreter.elements import Expression, Handler, Item, Watch
+from prima.interpreter.expressions import Scope
+from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, GoOut, Thrown
+from prima.interpreter.selection import prefixes, select_handler
+from prima.messages import Event, Json, Notice
+
+if TYPE_CHECKING:
+    from prima.interpreter.application import Interpreter
+
+MAX_FIBERS = 64
+"""Handlers that may be under way at once in a state."""
+REPROMPTED = frozenset({"noinput", "nomatch", "help"})
+"""Events after which a field asks again where nobody handles them (VoiceXML 5.2.5)."""
+
+
+class Handling:
+    """Finds and runs the handlers of one application's events."""
+
+    def __init__(self, owner: Interpreter) -> None:
+        self.owner = owner
+
+    def handle_thrown(
+        self, frame: Frame, fiber: Fiber, item: Item | None, thrown: Thrown, depth: int
+    ) -> Content:
+        """Run the handler of an event thrown in content, in the same piece of content."""
+        event = thrown.event
+        self.count_event(frame, item, event.name)
+        handler = self.find_handler(frame, fiber, item, event)
+        if handler is None:
+            if event.name in REPROMPTED:
+                frame.reprompt = True
+                return
+            if event.name.startswith(("cancel.", "end.")):
+                return
+            raise thrown
+        fiber.local = self._event_scope(event)
+        fiber.commands = []
+        if handler.reactive is not None:  # else a throw keeps what it has (C5)
+            self._allow_reaction(handler, event)
+        try:
+            yield from self.owner.execute.run(handler.content, fiber)
+        except Thrown as again:
+            self.owner.count_step(handler.node)
+            if depth > MAX_DEPTH:
+                place = source(handler.node)
+                raise GoOut(
+                    f"{place}: error.semantic: its handlers throw without end", True, place
+                ) from None
+            yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
+
+    def dispatch(self, event: Event, frame: Frame) -> None:
+        """An event from outside: the handler runs beside what the state is doing (O4)."""
+        item = frame.item
+        self.count_event(frame, item, event.name)
+        fiber = Fiber(frame, local=self._event_scope(event))
+        handler = self.find_handler(frame, fiber, item, event)
+        if handler is None:
+            if event.name.startswith("error."):
+                raise Thrown(event)
+            return
+        self._allow_reaction(handler, event)
+        self._launch(fiber, handler)
+
+    def _launch(self, fiber: Fiber, handler: Handler) -> None:
+        frame = fiber.frame
+        if len(frame.fibers) >= MAX_FIBERS:
+            place = source(handler.node)
+            raise GoOut(f"{place}: error.semantic: too many handlers under way", True, place)
+        for number, unit in frame.units:
+            if handler in unit.handlers or any(handler in one.handlers for one in unit.items):
+                fiber.unit = number
+        fiber.content = self._handler_content(fiber, handler)
+        frame.fibers.append(fiber)
+        self.owner.drive(fiber, None)
+
+    def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
+        frame = fiber.frame
+        try:
+            yield from self.owner.execute.run(handler.content, fiber)
+        except Thrown as thrown:
+            yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
+
+    def command_event(self, notice: Notice, kind: str) -> None:
+        """The end or cancellation of a Command, for handlers in it or in scope."""
+        frame, command = self.owner.frame, notice.command
+        if frame is None or command is None:
+            return
+        name = f"{kind}.{command.type}"
+        event = Event(name, self.owner.serial, dict(notice.data), reactive=False)
+        fiber = Fiber(frame, commands=command.hook or [])
+        handlers = [*fiber.commands, *self._in_scope(frame, frame.item)]
+        if not any(name.startswith(word) for one in handlers for word in one.events):
+            return
+        fiber.local = self._event_scope(event)
+        self.count_event(frame, frame.item, name)
+        handler = self.find_handler(frame, fiber, frame.item, event)
+        if handler is not None:
+            self._allow_reaction(handler, event)
+            self._launch(fiber, handler)
+        self.owner.cause = None
+
+    def unit_timeout(self, notice: Notice) -> None:
+        """The unit took too long: error.unit.timeout is thrown in it, and it ends (U5)."""
+        frame, unit = self.owner.frame, None
+        while frame is not None:
+            unit = next((unit for number, unit in frame.units if number == notice.run), None)
+            if unit is not None:
+                break
+            frame = frame.caller
+        if frame is None or unit is None:
+            return
+        for fiber in [fiber for fiber in frame.fibers if fiber.main or fiber.unit == notice.run]:
+            self.owner.forget(fiber)
+        self.owner.close_units(frame)
+        frame.item = unit
+        event = self.owner.internal(notice.event, f"{source(unit.node)}: {notice.message}")
+        fiber = Fiber(frame, main=True, local=self._event_scope(event))
+        fiber.content = self.owner.algorithm.after_timeout(frame, fiber, unit, event)
+        frame.fibers.append(fiber)
+        self.owner.drive(fiber, None)
+
+    def _allow_reaction(self, handler: Handler, event: Event) -> None:
+        """C5: what is requested first because of the event is a reaction, or not."""
+        reactive = event.reactive if handler.reactive is None else handler.reactive
+        self.owner.cause = event.serial if reactive else None
+
+    def _event_scope(self, event: Event) -> Scope:
+        data = dict(event.data)
+        message = str(data.get("message", ""))
+        value = {"name": event.name, "data": data, "message": message}
+        return self.owner.engine.scope(event=value, _event=event.name, _message=message)
+
+    def count_event(self, frame: Frame, item: Item | None, name: str) -> None:
+        """Count an occurrence for the item being visited, under all the event's prefixes."""
+        where = item.name if item is not None else ""
+        for prefix in prefixes(name):
+            key = (where, prefix)
+            frame.counters[key] = frame.counters.get(key, 0) + 1
+
+    def _in_scope(self, frame: Frame, item: Item | None) -> list[Handler]:
+        """Handlers of the item, its unit, the form and the document, in this order."""
+        found = list(item.handlers) if item is not None else []
+        for _, unit in reversed(frame.units):
+            if unit is not item:
+                found += unit.handlers
+        return [*found, *frame.form.handlers, *self.owner.document.handlers]
+
+    def find_handler(
+        self, frame: Frame, fiber: Fiber, item: Item | None, event: Event
+    ) -> Handler | None:
+        """The handler that takes an event here (VoiceXML 5.2.4)."""
+        where = item.name if item is not None else ""
+
+        def holds(cond: Expression) -> bool:
+            return self.owner.execute.condition(cond, fiber)
+
+        return select_handler(
+            [fiber.commands, self._in_scope(frame, item)],
+            event.name,
+            lambda name: frame.counters.get((where, name), 0),
+            holds,
+        )
+
+    def watches(self) -> list[Watch]:
+        """The watches of the active form and of the document."""
+        frame = self.owner.frame
+        return [*(frame.form.watches if frame else []), *self.owner.document.watches]
+
+    def check_watches(self, watches: list[Watch]) -> list[str]:
+        """C6: raised when the condition turns true, armed again when it turns false."""
+        tree: dict[str, Json] = {}
+        for name, value in self.owner.sensors.items():
+            *path, last = name.split(".")
+            held = tree
+            for part in path:
+                held = held.setdefault(part, {})
+            held[last] = value
+        self.owner.engine.set(self.owner.application, "sensor", tree)
+        raised = []
+        frame = self.owner.frame
+        assert frame is not None
+        fiber = Fiber(frame, local=self.owner.engine.scope())
+        for watch in watches:
+            true = self.owner.execute.condition(watch.when, fiber)
+            if true and not self.owner.armed.get(id(watch), False):
+                raised.append(watch.name)
+            self.owner.armed[id(watch)] = true
+        return raised
