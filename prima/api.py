@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 from prima.codes import CODES
@@ -25,7 +26,7 @@ from prima.sim.scenario import read_robot, read_scenario, read_world
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript.diff import Difference, compare
 from prima.transcript.lines import finished, line, read_lines
-from prima.transcript.measures import Summary, summarize
+from prima.transcript.measures import Measure, Summary, summarize
 from prima.transcript.table import Row, format_rows, make_rows
 
 VERSION = "1.0.0"
@@ -179,11 +180,14 @@ class Transcript:
     """Records of a run, times in seconds, with the views that people want of them."""
 
     records: list[Record]
+    """Empty where a run was told not to keep them."""
     name: str = ""
     failures: list[str] = field(default_factory=list)
     """Applications that ended by an error, as ``NAME: what``."""
     outcome: str = ""
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+    measure: Measure | None = None
+    """What was counted while the run went on."""
 
     def rows(self) -> list[Row]:
         """The rows of the table."""
@@ -195,7 +199,7 @@ class Transcript:
 
     def summary(self) -> Summary:
         """What can be counted in it."""
-        return summarize(self.records)
+        return self.measure.summary() if self.measure else summarize(self.records)
 
     def dumps(self) -> str:
         """The transcript as JSON lines."""
@@ -211,6 +215,7 @@ def rehearse(
     policy: str | None = None,
     bound: int | None = None,
     sink: Sink | None = None,
+    keep: bool = True,
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -220,6 +225,7 @@ def rehearse(
             by default the scenario's own.
         bound: rule E4's bound on loops of a feedback Command.
         sink: is given each line of the transcript as soon as it is made.
+        keep: whether the records are kept in memory; without, only the sink has them.
 
     Raises:
         DocumentError: documents are wrong.
@@ -245,20 +251,18 @@ def rehearse(
             "files": loaded.files,
         },
     }
-    made = Transcript([], cast.scenario.id)
-    _keep(made, [head], sink)
-    for records in rehearsal.run():
-        _keep(made, records, sink)
+    measure = Measure()
+    made = Transcript([], cast.scenario.id, measure=measure)
+    for records in chain([[head]], rehearsal.run()):
+        for record in records:
+            measure.add(record, record["time"] / 1000)
+            if keep:
+                made.records.append(finished(record))
+            if sink is not None:
+                sink(line(record))
     made.failures = list(rehearsal.session.failures)
     made.outcome = rehearsal.outcome
     return made
-
-
-def _keep(transcript: Transcript, records: Iterable[Record], sink: Sink | None) -> None:
-    for record in records:
-        transcript.records.append(finished(record))
-        if sink is not None:
-            sink(line(record))
 
 
 def read(path: str | Path) -> Transcript:

@@ -143,10 +143,12 @@ def run(
         click.echo(str(problem), err=True)
     _start_watchdog()
     if output is not None:
-        transcript = _run_into(output, lambda sink: api.rehearse(loaded, policy, bound, sink))
+        transcript = _run_into(
+            output, lambda sink: api.rehearse(loaded, policy, bound, sink, keep=False)
+        )
         click.echo(f"{output}: {_outline(transcript)}", err=True)
     elif form == "json":
-        transcript = api.rehearse(loaded, policy, bound, lambda text: sys.stdout.write(text))
+        transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, keep=False)
     else:
         transcript = api.rehearse(loaded, policy, bound)
         _print(transcript.table(why))
@@ -174,7 +176,7 @@ def _run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
 def _outline(transcript: Transcript) -> str:
     summary = transcript.summary()
     return (
-        f"{len(transcript.records)} records of {summary.seconds:.1f} s,"
+        f"{transcript.measure.records if transcript.measure else 0} records of {summary.seconds:.1f} s,"
         f" {summary.streams_broken} streams broken, {summary.reactions} reactions"
         f" after {summary.reaction_mean:.2f} s on average"
     )

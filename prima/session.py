@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from prima.commands import CommandType
+from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
-from prima.interpreter.form import Interpreter
 from prima.messages import (
     CloseUnit,
     Emergency,

@@ -556,3 +556,25 @@ def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> No
         bench.step(Sensed({"human.distance": distance}))
     assert len([r for r in bench.phases("event") if r["event"] == "near"]) == 2
     assert bench.phases("request")[0]["reactive"] is True
+
+
+@pytest.mark.parametrize(
+    "grammar",
+    [
+        '<item repeat="0-"><item repeat="0-"><one-of><item>a</item><item>a a</item></one-of></item></item>',
+        '<rule id="r"><ruleref uri="#r"/>a</rule>',
+        '<rule id="r"><item repeat="0-1"><ruleref uri="#r"/></item><item repeat="0-999"/>a</rule>',
+        '<rule id="r"><item repeat="0-999"><item repeat="0-999">a</item></item></rule>',
+    ],
+)
+def test_a_grammar_that_explodes_or_refers_to_itself_is_matched_in_time(grammar: str) -> None:
+    from time import process_time
+
+    bench = Bench(
+        f"""<form id="a"><field name="x"><prompt>?</prompt><grammar>{grammar}</grammar>
+        <nomatch><log>no</log></nomatch></field></form>"""
+    )
+    began = process_time()
+    bench.hears("a " * 60 + "b")
+    assert bench.logs() == ["no"]
+    assert process_time() - began < 5

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -183,9 +183,13 @@ class Tag:
 Part = Words | Sequence | Choice | Reference | Tag
 
 
+Ends = dict[int, str | None]
+"""Where an expansion may end, with the value of the last tag on the way there."""
+
+
 @dataclass(slots=True)
 class Grammar:
-    """Rules by name, the root rule's name, and matching over folded characters."""
+    """Rules by name, and the root rule's name."""
 
     rules: dict[str, Part] = field(default_factory=dict)
     root: str = ""
@@ -193,63 +197,71 @@ class Grammar:
     def match(self, text: str) -> str | None:
         """The value of an utterance (the last tag met, else the utterance), or None."""
         said = fold(text)
-        budget = [MAX_STEPS]
-        for end, tag in self._at(Reference(self.root), said, 0, budget, 0):
-            if end == len(said):
-                return text.strip() if tag is None else tag
-        return None
+        ends = _Matching(self.rules, said).ends(Reference(self.root), 0)
+        if len(said) not in ends:
+            return None
+        tag = ends[len(said)]
+        return text.strip() if tag is None else tag
 
-    def _at(
-        self, part: Part, said: str, start: int, budget: list[int], depth: int
-    ) -> Iterator[tuple[int, str | None]]:
-        budget[0] -= 1
-        if budget[0] < 0 or depth > 200:
-            return
+
+class _Matching:
+    """Matches one utterance; every part is matched at every place only once."""
+
+    def __init__(self, rules: dict[str, Part], said: str) -> None:
+        self.rules = rules
+        self.said = said
+        self.left = MAX_STEPS
+        self.known: dict[tuple[int, int], Ends] = {}
+
+    def ends(self, part: Part, start: int) -> Ends:
+        """Where a part that begins at ``start`` may end."""
+        key = (id(part), start)
+        if key not in self.known:
+            self.known[key] = {}  # what refers to itself before saying anything leads nowhere
+            self.left -= 1
+            if self.left > 0:
+                self.known[key] = self._ends(part, start)
+        return self.known[key]
+
+    def _ends(self, part: Part, start: int) -> Ends:
         match part:
             case Words(words):
-                end = _said(said, start, words)
-                if end is not None:
-                    yield end, None
+                end = _said(self.said, start, words)
+                return {} if end is None else {end: None}
             case Tag(value):
-                yield start, value
+                return {start: value}
             case Reference(rule):
-                yield from self._at(self.rules[rule], said, start, budget, depth + 1)
+                return self.ends(self.rules[rule], start)
             case Choice(parts):
+                found: Ends = {}
                 for choice in parts:
-                    yield from self._at(choice, said, start, budget, depth + 1)
-            case Sequence(parts, low, high):
-                yield from self._times(part, said, start, budget, depth + 1, low, high)
+                    for end, tag in self.ends(choice, start).items():
+                        found.setdefault(end, tag)
+                return found
+            case Sequence():
+                return self._times(part, start)
 
-    def _times(
-        self,
-        part: Sequence,
-        said: str,
-        start: int,
-        budget: list[int],
-        depth: int,
-        low: int,
-        high: int,
-    ) -> Iterator[tuple[int, str | None]]:
-        if high > 0:
-            for end, tag in self._parts(part.parts, said, start, budget, depth):
-                if end == start and low <= 0:
-                    continue  # saying nothing once more leads nowhere
-                for last, later in self._times(
-                    part, said, end, budget, depth + 1, low - 1, high - 1
-                ):
-                    yield last, tag if later is None else later
-        if low <= 0:
-            yield start, None
+    def _times(self, part: Sequence, start: int) -> Ends:
+        """A sequence said between ``low`` and ``high`` times."""
+        found: Ends = {start: None} if part.low == 0 else {}
+        here: Ends = {start: None}
+        for times in range(1, part.high + 1):
+            here = self._once(part.parts, here)
+            new = {end: tag for end, tag in here.items() if end not in found}
+            if times >= part.low:
+                found |= new
+            if not here or (times >= part.low and not new):
+                break
+        return found
 
-    def _parts(
-        self, parts: list[Part], said: str, start: int, budget: list[int], depth: int
-    ) -> Iterator[tuple[int, str | None]]:
-        if not parts:
-            yield start, None
-            return
-        for end, tag in self._at(parts[0], said, start, budget, depth + 1):
-            for last, later in self._parts(parts[1:], said, end, budget, depth + 1):
-                yield last, tag if later is None else later
+    def _once(self, parts: list[Part], here: Ends) -> Ends:
+        for part in parts:
+            after: Ends = {}
+            for start, tag in here.items():
+                for end, later in self.ends(part, start).items():
+                    after.setdefault(end, tag if later is None else later)
+            here = after
+        return here
 
 
 def _said(said: str, start: int, words: str) -> int | None:

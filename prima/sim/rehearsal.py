@@ -17,7 +17,7 @@ from prima.sim.scenario import Map, Point, Profile, Scenario
 from prima.sim.services import Services
 from prima.sim.world import STEP_MS, World
 
-MAX_RECORDS = 1_000_000
+MAX_RECORDS = 500_000
 """Records that a run may make."""
 
 

@@ -22,24 +22,50 @@ class Summary:
     reaction_max: float
 
 
-def summarize(records: Iterable[Record]) -> Summary:
-    """Measure a run: how long it took, what broke, how soon events were answered."""
-    last, broken, collisions = 0.0, 0, 0
-    events: dict[int, float] = {}
-    answered: dict[tuple[str, int], float] = {}
-    for record in records:
-        last = record["time"]
+class Measure:
+    """Counts while a run goes on; ``records`` need not be kept."""
+
+    def __init__(self) -> None:
+        self.records = 0
+        self._last = 0.0
+        self._broken = 0
+        self._collisions = 0
+        self._events: dict[int, float] = {}
+        self._waits: dict[tuple[str, int], float] = {}
+
+    def add(self, record: Record, time: float) -> None:
+        """Take a record in; ``time`` in seconds."""
+        self.records += 1
+        self._last = time
         phase = record["phase"]
         if phase == "suspend":
-            broken += 1
+            self._broken += 1
         elif phase == "collision":
-            collisions += 1
+            self._collisions += 1
         elif phase == "event" and record.get("serial"):
-            events[record["serial"]] = last
-        elif phase == "start" and record.get("cause") in events:
-            answered.setdefault((record["app"], record["cause"]), last)
-    waits = [time - events[cause] for (_, cause), time in answered.items()]
-    mean = sum(waits) / len(waits) if waits else 0.0
-    return Summary(
-        last, broken, collisions, len(waits), round(mean, 3), round(max(waits, default=0.0), 3)
-    )
+            self._events[record["serial"]] = time
+        elif phase == "start" and record.get("cause") in self._events:
+            key = (record["app"], record["cause"])
+            self._waits.setdefault(key, time - self._events[record["cause"]])
+
+    def summary(self) -> Summary:
+        """What has been counted so far."""
+        waits = self._waits.values()
+        mean = sum(waits) / len(waits) if waits else 0.0
+        longest = max(waits, default=0.0)
+        return Summary(
+            self._last,
+            self._broken,
+            self._collisions,
+            len(waits),
+            round(mean, 3),
+            round(longest, 3),
+        )
+
+
+def summarize(records: Iterable[Record]) -> Summary:
+    """Measure a transcript: how long it took, what broke, how soon events were answered."""
+    measure = Measure()
+    for record in records:
+        measure.add(record, record["time"])
+    return measure.summary()
