@@ -82,6 +82,8 @@ class Interpreter:
         self.serial = 0
         self._steps = 0
         self._instant = -1
+        self._timed = "session" in document.node.source.text
+        """Whether the document looks at the clock at all."""
 
     def start(self, now: int) -> None:
         """Begin with the first form."""
@@ -207,8 +209,8 @@ class Interpreter:
         if now != self._instant:
             self._instant = self.now = now
             self._steps = 0
-            if not self.over:
-                self.engine.set(self.application, "session", {"time": now / 1000})
+            if self._timed and not self.over:
+                self.engine.clock(self.application, now / 1000)
 
     def _guard(self, act: Callable[[], object]) -> None:
         """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""
@@ -309,7 +311,7 @@ class Interpreter:
         caller = frame.caller
         if caller is None:
             raise GoOut("return")
-        fiber = Fiber(frame, local=self.engine.scope())
+        fiber = Fiber(frame)
         result = {}
         scopes = self.execute.scopes(fiber)
         for name in transfer.names:
@@ -364,7 +366,7 @@ class Interpreter:
     def frame_for(self, form: Form, before: Frame | None) -> Frame:
         """A frame for a form entered by goto (keeping the document's scope) or at the start."""
         document = before.document if before else self.new_document()
-        frame = Frame(form, next(self.states), document, self.engine.scope())
+        frame = Frame(form, next(self.states), document, self.engine.dialog())
         if before is not None:
             frame.caller, frame.called_by = before.caller, before.called_by
         return frame
@@ -375,7 +377,7 @@ class Interpreter:
         self.engine.put(scope, "document", scope)
         self.engine.put(self.application, "application", self.application)
         frame = Frame(next(iter(self.document.forms.values())), 0, scope, self.engine.scope())
-        fiber = Fiber(frame, local=self.engine.scope())
+        fiber = Fiber(frame)
         self._set_up(self.document.setup, scope, fiber)
         return scope
 
@@ -390,7 +392,7 @@ class Interpreter:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
         frame.stalled = False
-        fiber = Fiber(frame, main=True, local=self.engine.scope())
+        fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
         frame.fibers.append(fiber)
         try:
@@ -404,11 +406,10 @@ class Interpreter:
 
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items (the algorithm's initialisation)."""
-        self.engine.put(frame.dialog, "dialog", frame.dialog)
         call = frame.called_by
         given: set[str] = set()
         if call is not None and frame.caller is not None:
-            outer = Fiber(frame.caller, local=self.engine.scope())
+            outer = Fiber(frame.caller)
             for name, value in self.execute.named(call.params, outer).items():
                 self.engine.set(frame.dialog, name, value)
                 given.add(name)

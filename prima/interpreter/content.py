@@ -61,7 +61,13 @@ class Executor:
     def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
         """The scopes that content sees, outermost first."""
         frame = fiber.frame
-        return (self.owner.application, frame.document, frame.dialog, fiber.local)
+        return (self.owner.application, frame.document, frame.dialog, self.local(fiber))
+
+    def local(self, fiber: Fiber) -> Scope:
+        """The innermost scope of a piece of content."""
+        if fiber.local is None:
+            fiber.local = self.engine.scope()
+        return fiber.local
 
     # Expressions --------------------------------------------------------------
 
@@ -144,9 +150,9 @@ class Executor:
             case Assign():
                 self.assign(act, fiber)
             case Declare():
-                self.declare(act, fiber.local, fiber)
+                self.declare(act, self.local(fiber), fiber)
             case Script():
-                self.script(act, fiber.local, fiber)
+                self.script(act, self.local(fiber), fiber)
             case Clear():
                 self.clear(act, fiber)
             case Goto():
@@ -172,23 +178,8 @@ class Executor:
 
     def assign(self, act: Assign, fiber: Fiber) -> None:
         """Give a declared variable a value; innermost scope first (VoiceXML 5.3.2)."""
-        name, prefix = act.name, ""
-        scopes = dict(
-            zip(("application", "document", "dialog", "local"), self.scopes(fiber), strict=True)
-        )
-        head, dot, tail = name.partition(".")
-        if dot and head in scopes:
-            prefix, name = head, tail
-        chosen = [scopes[prefix]] if prefix else list(reversed(scopes.values()))
-        head, dot, tail = name.partition(".")
         try:
-            scope = next((scope for scope in chosen if self.engine.has(scope, head)), None)
-            if scope is None:
-                raise ScriptError(f'the variable "{act.name}" is not declared')
-            if dot:
-                self.engine.raw(f"{head}.{tail} = ({act.expr.code}\n)", self.scopes(fiber))
-            else:
-                self.engine.assign(scope, name, act.expr.code, self.scopes(fiber))
+            self.engine.assign_declared(act.name, act.expr.code, self.scopes(fiber))
         except ScriptError as error:
             raise self.failure(error, act.expr) from None
 
@@ -264,7 +255,7 @@ class Executor:
             raise self.failure(error, act.array) from None
         for element in elements:
             self.owner.count_step(act.node)
-            self.engine.put(fiber.local, act.item, element)
+            self.engine.put(self.local(fiber), act.item, element)
             yield from self.run(act.content, fiber)
 
     # Commands -----------------------------------------------------------------

@@ -72,7 +72,8 @@ PRELUDE = r"""
     });
   }
   define(String, 'raw', function (strings, ...given) {
-    const raw = strings.raw, length = Math.min(Number(raw.length) || 0, LONGEST);
+    const raw = strings.raw, length = Number(raw.length) || 0;
+    if (length > LONGEST) throw new RangeError('the text is too long');
     let made = '';
     for (let i = 0; i < length; i++) made += raw[i] + (i + 1 < length && i < given.length ? given[i] : '');
     return made;
@@ -89,11 +90,16 @@ PRELUDE = r"""
 HELPERS = r"""
 ({
   scope: function () { return {}; },
+  dialog: function () { const made = {}; made.dialog = made; return made; },
+  event: function (name, message, data) {
+    return { event: { name, message, data: data === null ? {} : data },
+      _event: name, _message: message };
+  },
+  clock: function (o, t) { o.session = { time: t }; },
   set: function (o, k, v) { o[k] = v; },
   unset: function (o, k) { o[k] = undefined; },
   has: function (o, k) { return k in o; },
   defined: function (o, k) { return o[k] !== undefined; },
-  type: function (v) { return v === null ? 'null' : typeof v; },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? JSON.stringify(v) : String(v); },
   json: function (v) { return JSON.stringify(v); },
@@ -312,19 +318,7 @@ class Engine:
         helpers = context.eval(HELPERS)
         context.set("__h", helpers)
         self._help = {
-            name: context.eval(f"__h.{name}")
-            for name in [
-                "scope",
-                "set",
-                "unset",
-                "has",
-                "defined",
-                "type",
-                "text",
-                "json",
-                "items",
-                "item",
-            ]
+            name: context.eval(f"__h.{name}") for name in re.findall(r"(\w+): function", HELPERS)
         }
         context.eval("delete globalThis.__h")
         context.eval(PRELUDE)
@@ -362,6 +356,19 @@ class Engine:
         for name, value in values.items():
             self.set(scope, name, value)
         return scope
+
+    def dialog(self) -> Scope:
+        """A new dialog scope; it has itself as its variable ``dialog`` (VoiceXML 5.1.2)."""
+        return self._call(self._help["dialog"])
+
+    def event(self, name: str, message: str, data: Json) -> Scope:
+        """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
+        given = self.into(data) if data else None
+        return self._call(self._help["event"], name, message, given)
+
+    def clock(self, scope: Scope, seconds: float) -> None:
+        """Tell a scope the time of the run, as ``session.time``."""
+        self._call(self._help["clock"], scope, seconds)
 
     def into(self, value: Json) -> Any:
         """A Python value as one the engine takes."""
@@ -431,6 +438,19 @@ class Engine:
         """Evaluate an expression and give its value to a variable of a scope."""
         self._call(self._help["set"], scope, name, self.raw(code, scopes))
 
+    def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
+        """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
+
+        Raises:
+            ScriptError: no scope declares it, or the expression fails.
+        """
+        key = f"assign {name}\n{code}"
+        function = self._compiled.get(key)
+        if function is None:
+            check_expression(self._context, code)
+            function = self._compiled[key] = self._compile(_assignment(name, code))
+        self._call(function, *scopes)
+
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the engine's own values."""
         self._call(self._help["set"], scope, name, value)
@@ -454,6 +474,18 @@ class Engine:
         if len(text) > RESULT_LIMIT:
             raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
         return text
+
+
+def _assignment(name: str, code: str) -> str:
+    """The body of an assignment that fails where the variable is not declared."""
+    head, dot, rest = name.partition(".")
+    where = [f"{scope[0:2]}_" for scope in reversed(SCOPES)]
+    if dot and head in SCOPES:
+        where, head = [f"{head[0:2]}_"], rest.partition(".")[0]
+    declared = " || ".join(f"{json.dumps(head)} in {scope}" for scope in where)
+    missing = json.dumps(f'the variable "{name}" is not declared')
+    target = f"{where[0]}.{rest}" if len(where) == 1 else name
+    return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
 
 
 def check_expression(context: Any, code: str) -> None:

@@ -75,7 +75,7 @@ class Algorithm:
         match item:
             case Block():
                 self.owner.engine.set(frame.dialog, item.name, True)
-                fiber.local = self.owner.engine.scope()
+                fiber.local = None
                 yield from self.owner.execute.run(item.content, fiber)
             case Field():
                 yield from self._collect(frame, fiber, item)
@@ -132,7 +132,7 @@ class Algorithm:
     def _process(self, frame: Frame, fiber: Fiber, item: Item, own: list[Filled]) -> Content:
         """Run the filled elements that an answer has satisfied (VoiceXML 2.4)."""
         for filled in own:
-            fiber.local = self.owner.engine.scope()
+            fiber.local = None
             yield from self.owner.execute.run(filled.content, fiber)
         inputs = [
             one.name for one in all_items(frame.form.items) if isinstance(one, Field | Subdialog)
@@ -144,7 +144,7 @@ class Algorithm:
             if filled.mode == "any" or all(
                 self.owner.engine.defined(frame.dialog, name) for name in names
             ):
-                fiber.local = self.owner.engine.scope()
+                fiber.local = None
                 yield from self.owner.execute.run(filled.content, fiber)
 
     def _call(self, frame: Frame, fiber: Fiber, item: Subdialog) -> Content:
@@ -160,7 +160,7 @@ class Algorithm:
             form,
             next(self.owner.states),
             self.owner.new_document(),
-            self.owner.engine.scope(),
+            self.owner.engine.dialog(),
             frame,
             item,
         )
@@ -181,7 +181,7 @@ class Algorithm:
 
     def _returned(self, frame: Frame, back: GoBack) -> Notice:
         """What a subdialog gives that returned without ever waiting."""
-        scopes = self.owner.execute.scopes(Fiber(frame, local=self.owner.engine.scope()))
+        scopes = self.owner.execute.scopes(Fiber(frame))
         result = {name: self.owner.engine.value(name, scopes) for name in back.names}
         self.owner.leave(frame)
         self.owner.frame = frame.caller

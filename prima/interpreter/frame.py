@@ -47,6 +47,7 @@ class Fiber:
     content: Content | None = None
     main: bool = False
     local: Scope = None
+    """The innermost scope, made when something first looks into it."""
     unit: int | None = None
     commands: list[Handler] = field(default_factory=list)
     """Handlers written inside the Command whose event is being handled."""

@@ -133,9 +133,7 @@ class Handling:
 
     def _event_scope(self, event: Event) -> Scope:
         data = dict(event.data)
-        message = str(data.get("message", ""))
-        value = {"name": event.name, "data": data, "message": message}
-        return self.owner.engine.scope(event=value, _event=event.name, _message=message)
+        return self.owner.engine.event(event.name, str(data.get("message", "")), data)
 
     def count_event(self, frame: Frame, item: Item | None, name: str) -> None:
         """Count an occurrence for the item being visited, under all the event's prefixes."""
@@ -186,7 +184,7 @@ class Handling:
         raised = []
         frame = self.owner.frame
         assert frame is not None
-        fiber = Fiber(frame, local=self.owner.engine.scope())
+        fiber = Fiber(frame)
         for watch in watches:
             true = self.owner.execute.condition(watch.when, fiber)
             if true and not self.owner.armed.get(id(watch), False):
