@@ -89,8 +89,7 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 def _validate_one(path: str) -> list[Problem]:
     data = read_file(path)
     try:
-        root, _ = parse(path, data)
-        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
+        vocabulary = check_root(parse(path, data), (DIALOGUE, WORLD, ROBOT, SCENARIO))
         if vocabulary is DIALOGUE:
             return read_document(path, data)[1]
         if vocabulary is WORLD:

@@ -28,7 +28,6 @@ CODES: dict[str, str] = {
     " 500ms), a number is written in digits, and so on.",
     "out-of-range": "A number is greater or smaller than the attribute or argument allows.",
     "exclusive": "Two attributes say the same thing in different ways; keep one.",
-    "schema": "The document does not fit its XML Schema.",
     "duplicate-id": "Two things have one id, so that nobody could tell which is meant.",
     "duplicate-name": "Two items of a form have one name: they would share their variable.",
     "duplicate-element": "The element may be there only once.",

@@ -119,7 +119,14 @@ class Quit:
     source: str = ""
 
 
-Action = Request | OpenUnit | CloseUnit | LeaveState | Send | Say | Quit
+@dataclass(slots=True)
+class Raise:
+    """An event that the application itself has defined, for itself (C6)."""
+
+    event: str
+
+
+Action = Request | OpenUnit | CloseUnit | LeaveState | Send | Say | Raise | Quit
 
 
 # What comes in --------------------------------------------------------------

@@ -31,6 +31,7 @@ from prima.messages import (
     OpenUnit,
     Order,
     Quit,
+    Raise,
     Record,
     Request,
     Say,
@@ -63,6 +64,7 @@ class Session:
         """Applications that ended by an error, as ``NAME: what``."""
         self._serial = 0
         self._loaded: set[str] = set()
+        self._sensors: dict[str, Json] = {}
         self._sends: list[Order] = []
 
     # Driving ------------------------------------------------------------------
@@ -164,6 +166,7 @@ class Session:
         if name in self._loaded:
             return
         self._loaded.add(name)
+        app.sensors.update(self._sensors)
         self.mediator.load(name, app.kind)
         app.start(self.chronicle.now)
         self._act(app)
@@ -238,6 +241,7 @@ class Session:
 
     def _sensed(self, value: Sensed) -> None:
         self._record("sensed", "environment", data=dict(value.values))
+        self._sensors.update(value.values)
         for app in self._in_order():
             for name in app.sensed(self.chronicle.now, value.values):
                 self._own_event(app, name, {}, reactive=True)
@@ -302,6 +306,8 @@ class Session:
                         self._send(app, action)
                     case Say():
                         self._log(app, action)
+                    case Raise():
+                        self._own_event(app, action.event, {}, reactive=True)
                     case Quit():
                         self._quit(app, action)
 

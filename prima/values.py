@@ -14,11 +14,26 @@ from dataclasses import dataclass
 
 Value = str | int | float | bool
 
-DURATION = re.compile(r"\+?(\d+(?:\.\d*)?|\.\d+)(ms|s)")
-NAME = re.compile(r"[^\W\d][\w.\-]*")
-VARIABLE = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*|\$(?:\w)*")
-EVENT = re.compile(r"[\w\-]+(?:\.[\w\-]+)*\.?")
-NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+_START = (
+    "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c\u200d"
+    "\u2070-\u218f\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
+)
+"""Characters that begin a name, as in XML 1.0; ``\\i`` without the colon in XML Schema."""
+_REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
+"""Characters that go on with one, dot and hyphen apart; ``\\c`` in XML Schema."""
+
+DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
+NAME = re.compile(rf"[{_START}][{_REST}.\-]*")
+_WORD = rf"[{_START}$][{_REST}$]*"
+VARIABLE = re.compile(rf"{_WORD}(?:\.{_WORD})*")
+EVENT = re.compile(rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?")
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+XML_SPACE = " \t\r\n"
+
+_XSD_NAME = r"[\i-[:]][\c-[:]]*"
+_XSD_WORD = r"[\i$-[:]][\c$-[:.\-]]*"
+_XSD_VARIABLE = rf"{_XSD_WORD}(\.{_XSD_WORD})*"
+_XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
 
 
@@ -39,7 +54,7 @@ def _number(text: str) -> float:
 
 
 def _integer(text: str) -> int:
-    if re.fullmatch(r"[+-]?\d{1,9}", text) is None:
+    if re.fullmatch(r"[+-]?[0-9]{1,9}", text) is None:
         raise ValueError('is not a whole number. Write digits alone, as in "2".')
     return int(text)
 
@@ -60,21 +75,25 @@ def _pattern(pattern: re.Pattern[str], what: str) -> Callable[[str], str]:
 
 
 def _event_list(text: str) -> str:
-    for name in text.split():
+    if not text:
+        raise ValueError("names no event.")
+    for name in re.split(f"[{XML_SPACE}]+", text):
         if EVENT.fullmatch(name) is None:
             raise ValueError(f'holds "{name}", which is not an event name such as "touch.head".')
-    return " ".join(text.split())
+    return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
 def _name_list(text: str) -> str:
-    for name in text.split():
+    if not text:
+        raise ValueError("names no variable.")
+    for name in re.split(f"[{XML_SPACE}]+", text):
         if VARIABLE.fullmatch(name) is None:
             raise ValueError(f'holds "{name}", which is not a variable name.')
-    return " ".join(text.split())
+    return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
 def _filled(text: str) -> str:
-    if not text.strip():
+    if not text.strip(XML_SPACE):
         raise ValueError("is empty.")
     return text
 
@@ -107,31 +126,41 @@ KINDS: dict[str, Kind] = {
     "id": Kind(
         _pattern(NAME, 'a name. Begin with a letter; letters, digits, ".", "-", "_" follow.'),
         "xs:string",
-        r"[\p{L}_][\p{L}\p{M}\p{N}_.\-]*",
+        _XSD_NAME,
         "a name: a letter, then letters, digits, . - _",
     ),
     "variable": Kind(
         _pattern(VARIABLE, "a variable name. Use letters, digits and _, not first a digit."),
         "xs:string",
-        "",
+        _XSD_VARIABLE,
         "the name of a variable",
     ),
-    "variables": Kind(_name_list, "xs:string", "", "names of variables, separated by spaces"),
+    "variables": Kind(
+        _name_list,
+        "xs:string",
+        rf"{_XSD_VARIABLE}( {_XSD_VARIABLE})*",
+        "names of variables, separated by spaces",
+    ),
     "event": Kind(
         _pattern(EVENT, 'an event name such as "touch.head".'),
         "xs:string",
-        "",
+        _XSD_EVENT,
         "an event name: words joined by dots",
     ),
-    "events": Kind(_event_list, "xs:string", "", "event names, separated by spaces"),
+    "events": Kind(
+        _event_list,
+        "xs:string",
+        rf"{_XSD_EVENT}( {_XSD_EVENT})*",
+        "event names, separated by spaces",
+    ),
     "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
     "text": Kind(str, "xs:string", "", "any text"),
     "target": Kind(
         _pattern(
-            re.compile(r"#[^\W\d][\w.\-]*"), 'a place to go to. Write "#" and the id of a form.'
+            re.compile(f"#{NAME.pattern}"), 'a place to go to. Write "#" and the id of a form.'
         ),
         "xs:string",
-        r"#[\p{L}_][\p{L}\p{M}\p{N}_.\-]*",
+        f"#{_XSD_NAME}",
         "# and the id of a form",
     ),
     "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
@@ -153,7 +182,7 @@ def read_value(kind: str, text: str) -> Value:
         ValueError: the text is not of that kind; the message continues a
             sentence that begins with the quoted text.
     """
-    return KINDS[kind].read(text if kind == "text" else text.strip())
+    return KINDS[kind].read(text if kind == "text" else text.strip(XML_SPACE))
 
 
 def within(value: float, low: float | None, high: float | None) -> bool:

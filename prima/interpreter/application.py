@@ -38,6 +38,7 @@ from prima.messages import (
     LeaveState,
     Notice,
     Quit,
+    Raise,
     Request,
     Say,
     Send,
@@ -171,9 +172,11 @@ class Interpreter:
         """The application is taken out of the robot."""
         self._quit("unloaded")
 
-    def internal(self, name: str, message: str, command: Command | None = None) -> Event:
+    def internal(
+        self, name: str, message: str, command: Command | None = None, **more: Json
+    ) -> Event:
         """An event of the application's own."""
-        data: dict[str, Json] = {"message": message}
+        data: dict[str, Json] = {"message": message, **more}
         if command is not None:
             data["command"] = command.type
         return Event(name, self.serial, data, reactive=False)
@@ -392,6 +395,8 @@ class Interpreter:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
         frame.stalled = False
+        if setup:
+            self._arm_watches(frame)
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
         frame.fibers.append(fiber)
@@ -403,6 +408,14 @@ class Interpreter:
             self._drop(fiber)
             return frame, transfer
         return None
+
+    def _arm_watches(self, frame: Frame) -> None:
+        """C6: what a form watches for counts from its entry, true already or not."""
+        for watch in frame.form.watches:
+            self.armed.pop(id(watch), None)
+        if frame.form.watches and self.sensors:
+            names = self.handling.check_watches(frame.form.watches)
+            self.actions += [Raise(name) for name in names]
 
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items (the algorithm's initialisation)."""

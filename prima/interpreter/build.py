@@ -203,16 +203,15 @@ class Builder:
 
     def declare(self, node: Node) -> Declare:
         """A var."""
-        name = node.get("name")
+        self.plain_name(node, "name")
+        return Declare(node.get("name"), self.expression(node), node)
+
+    def plain_name(self, node: Node, attribute: str) -> None:
+        """A variable that is declared has a name without a scope's."""
+        name = node.get(attribute)
         if "." in name:
-            self.problem(
-                node,
-                "bad-value",
-                f'name "{name}" has a dot.',
-                "Declare it in its own scope.",
-                "name",
-            )
-        return Declare(name, self.expression(node), node)
+            remedy = "Declare it where it belongs, without a scope's name."
+            self.problem(node, "bad-value", f'{attribute} "{name}" has a dot.', remedy, attribute)
 
     def script(self, node: Node) -> Script:
         """A script."""
@@ -617,6 +616,7 @@ class Builder:
                 return self.condition(node)
             case "foreach":
                 array = Expression(node.get("array"), node, "array")
+                self.plain_name(node, "item")
                 return Foreach(node.get("item"), array, self.content(node), node)
             case "log":
                 text = self.text(node)

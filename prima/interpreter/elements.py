@@ -193,7 +193,7 @@ Act = (
 
 @dataclass(slots=True)
 class Handler:
-    """A handler of events: names with the empty one for all (VoiceXML 5.2.2)."""
+    """A handler of events, by their names or prefixes of them (VoiceXML 5.2.2)."""
 
     events: list[str]
     cond: Expression | None

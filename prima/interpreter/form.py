@@ -122,7 +122,9 @@ class Algorithm:
         self.owner.execute.check(notice, fiber)
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
-            raise Thrown(self.owner.internal(outcome, "", command), command.source)
+            heard = notice.data.get("utterance")
+            event = self.owner.internal(outcome, "", command, utterance=heard)
+            raise Thrown(event, command.source)
         self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
         self.owner.engine.set(
             frame.dialog, f"{field.name}$", {"utterance": notice.data.get("utterance")}

@@ -6,6 +6,7 @@ Matching folds case, width and punctuation (W3C SRGS works on tokens; a person's
 
 from __future__ import annotations
 
+import calendar
 import re
 import unicodedata
 from collections.abc import Callable
@@ -65,9 +66,12 @@ _KANJI = dict(zip("〇一二三四五六七八九", range(10), strict=True))
 
 def read_number(text: str) -> float | None:
     """A number said in digits, English words up to 99, or Japanese ones; or None."""
+    plain = unicodedata.normalize("NFKC", text).strip(" .!?。").replace("\u2212", "-")
+    if re.fullmatch(r"-?[0-9]{1,3}(?:,[0-9]{3})+(?:\.[0-9]+)?", plain):
+        return float(plain.replace(",", ""))
+    if re.fullmatch(r"-?[0-9]+(?:[.,][0-9]+)?", plain):
+        return float(plain.replace(",", "."))
     folded = fold(text)
-    if re.fullmatch(r"\d+(?:[.,]\d+)?", folded):
-        return float(folded.replace(",", "."))
     words = folded.split()
     if len(words) == 1 and words[0] in _SMALL:
         return float(_SMALL.index(words[0]))
@@ -119,8 +123,8 @@ def _date(text: str) -> Json:
     match = re.fullmatch(r"\s*(\d{4})[-/年](\d{1,2})[-/月](\d{1,2})日?[.。]?\s*", text)
     if match is None:
         return None
-    month, day = int(match[2]), int(match[3])
-    if not (1 <= month <= 12 and 1 <= day <= 31):
+    year, month, day = int(match[1]), int(match[2]), int(match[3])
+    if not (year and 1 <= month <= 12 and 1 <= day <= calendar.monthrange(year, month)[1]):
         return None
     return f"{match[1]}-{month:02d}-{day:02d}"
 

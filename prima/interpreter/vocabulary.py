@@ -255,7 +255,7 @@ ELEMENTS = (
             _COND,
             attribute("src", "target", "the form", "required"),
         ),
-        ("param", "property", "filled", *HANDLERS),
+        ("param", "filled", *HANDLERS),
         source="VoiceXML 2.3.4",
     ),
     Element(

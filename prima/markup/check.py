@@ -33,21 +33,19 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     )
 
 
-def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem] | None) -> None:
-    """Give every node its table key and, where ``problems`` is a list, add what is wrong."""
+def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
+    """Give every node its table key, and add what is wrong by the table of elements."""
     root.key = vocabulary.root
     stack = [root]
     while stack:
         node = stack.pop()
         element = vocabulary.elements[node.key]
-        if problems is not None:
-            _check_attributes(node, element, node is root, problems)
-            _check_text(node, element, problems)
+        _check_attributes(node, element, node is root, problems)
+        _check_text(node, element, problems)
         for child in node.nodes:
             key = vocabulary.child(node.key, child.tag)
             if key is None or child.namespace != vocabulary.namespace:
-                if problems is not None:
-                    problems.append(_misplaced(child, node, vocabulary))
+                problems.append(_misplaced(child, node, vocabulary))
             else:
                 child.key = key
                 stack.append(child)

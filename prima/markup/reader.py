@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import codecs
 import re
-from functools import lru_cache
-from importlib import resources
 from xml.parsers import expat
 
 from lxml import etree
@@ -120,8 +118,8 @@ def _check_prolog(source: Source) -> None:
         return  # what is not well-formed is told better below
 
 
-def parse(file: str, data: bytes) -> tuple[Node, etree._Element]:
-    """Parse bytes into nodes, and give lxml's own root for schema validation.
+def parse(file: str, data: bytes) -> Node:
+    """Parse bytes into nodes.
 
     Raises:
         DocumentError: not well-formed, or beyond a limit.
@@ -142,7 +140,7 @@ def parse(file: str, data: bytes) -> tuple[Node, etree._Element]:
         root = etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
         raise _syntax_error(source, error) from None
-    return _convert(root, source), root
+    return _convert(root, source)
 
 
 def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
@@ -221,33 +219,13 @@ def _convert(root: etree._Element, source: Source) -> Node:
     return top
 
 
-@lru_cache(maxsize=8)
-def compiled_schema(name: str) -> etree.XMLSchema:
-    """The package's own XML Schema of that name, compiled once."""
-    folder = resources.files("prima") / "schemas"
-    if not folder.is_dir():  # a checkout keeps them beside the package
-        folder = resources.files("prima") / ".." / "schemas"
-    with resources.as_file(folder) as path:
-        return etree.XMLSchema(etree.parse(str(path / f"{name}.xsd")))
-
-
 def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:
     """Read a document of one of the vocabularies; the problems are those of its schema.
-
-    The XML Schema says quickly whether anything is wrong; what is wrong is then
-    found, and said in the author's words, from the table of elements.
 
     Raises:
         DocumentError: no tree can be given: not XML, or not such a document at all.
     """
-    root, element = parse(file, data)
-    vocabulary = check_root(root, vocabularies)
+    root = parse(file, data)
     problems: list[Problem] = []
-    schema = compiled_schema(vocabulary.name)
-    valid = schema.validate(element)
-    check_tree(root, vocabulary, problems if not valid else None)
-    if not valid and not problems:
-        entry = schema.error_log[0]  # type: ignore[index]
-        message = re.sub(r"\{[^}]*\}", "", str(entry.message))
-        problems.append(Problem(Place(file, entry.line), "error", "schema", message))
+    check_tree(root, check_root(root, vocabularies), problems)
     return root, problems

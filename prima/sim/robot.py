@@ -23,6 +23,8 @@ ALIGNED = 1.5
 """How many degrees off a direction counts as turned to it."""
 BRAKING_MS = 200
 POINTING_MS = 1000
+FAILING_MS = 300
+"""How long a broken device tries before it says that it fails."""
 
 
 @dataclass(slots=True)
@@ -115,7 +117,8 @@ class Robot:
         broken = sorted(order.devices & self.broken.keys())
         if broken:
             if not self.broken[broken[0]]:
-                task.ends, task.fails = self._now + 1, (broken[0], "the device fails")
+                task.ends = self._now + FAILING_MS
+                task.fails = (broken[0], "the device fails")
             return
         row = self.profile.commands[command.type]
         if command.text and (order.loop <= 1 or order.resumed):
@@ -316,6 +319,8 @@ class Robot:
         times = [time for task in self.tasks.values() for time in (task.ends, task.listens) if time]
         if self._unseen_since is not None:
             times.append(self._unseen_since + LOST_AFTER_MS)
+        elif self._seen and not self.world.sees_person():
+            times.append(self._now + 1)  # somebody has just gone: begin to miss him
         return min(times, default=None)
 
     def collect(self, now: int) -> list[Inbound]:

@@ -36,7 +36,7 @@ WORLD = Vocabulary(
         ),
         Element(
             "wall",
-            "A straight wall; nobody sees or goes through it.",
+            "A straight wall: the robot neither sees nor goes through it. The user goes as told.",
             (
                 attribute("x1", "number", "metres east of one end", "required"),
                 attribute("y1", "number", "metres north of one end", "required"),

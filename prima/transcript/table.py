@@ -125,7 +125,7 @@ def describe(
 ) -> str:
     """A Command in words: what it says, or its title and what it was given."""
     row = TABLE_4_2.get(command)
-    title = row.title if row else command
+    title = row.title if row else command.replace("-", " ").capitalize()
     if command in ("speak", "q-and-a") and text:
         return f'"{text}"'
     if command == "q-and-a":

@@ -1,0 +1,524 @@
+"""What is generated from the tables in code: schemas, and the tables of the documentation.
+
+``python -m prima.reference`` writes them in place; with ``--check`` it writes
+nothing, names what differs and exits with 1. It works in a checkout.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import json
+import re
+import sys
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import prima
+from prima import api
+from prima.codes import CODES
+from prima.commands import TABLE_4_2, CommandType
+from prima.errors import UsageError
+from prima.interpreter import application, checks, content, expressions, frame, grammar, handling
+from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
+from prima.markup import reader
+from prima.markup.schema import XML_SCHEMA, make_schema
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.scheduler import mediator, selector
+from prima.sim import rehearsal
+from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.transcript import lines
+from prima.transcript.record import Record
+from prima.values import KINDS, LONGEST_MS
+
+ROOT = Path(__file__).resolve().parent.parent
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO)
+MARKER = re.compile(
+    r"(<!-- generated: (?P<name>[\w-]+) -->\n).*?(<!-- end: (?P=name) -->)", re.DOTALL
+)
+Groups = Mapping[str, tuple[str, ...]]
+GROUPS: Groups = {
+    "[executable content](#executable-content)": CONTENT,
+    "[Commands](#commands)": (*SPEAKING, "command"),
+    "[handlers](#handlers)": HANDLERS,
+}
+"""Children of the dialogue language that stand together in the tables."""
+
+
+# Tables ----------------------------------------------------------------------
+
+
+def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    """A Markdown table."""
+    shown = [head, tuple("---" for _ in head), *rows]
+    return "".join(f"| {' | '.join(_cell(cell) for cell in row)} |\n" for row in shown)
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def sentence(text: str) -> str:
+    """A phrase as a sentence: with a capital and a full stop."""
+    text = text.strip()
+    return text[:1].upper() + text[1:] + ("" if not text or text[-1] in ".]" else ".")
+
+
+def seconds(milliseconds: float) -> str:
+    """A time as documents write it."""
+    return f"{milliseconds:g}ms" if milliseconds < 1000 else f"{milliseconds / 1000:g}s"
+
+
+def bounds(kind: str, low: float | None, high: float | None) -> str:
+    """What a number may be, in words."""
+    shown: Callable[[float], str] = seconds if kind == "duration" else "{:g}".format
+    if low is not None and high is not None:
+        return f"From {shown(low)} to {shown(high)}."
+    if low is not None:
+        return f"At least {shown(low)}."
+    return f"At most {shown(high)}." if high is not None else ""
+
+
+def attribute_row(item: Attribute) -> tuple[str, ...]:
+    """A row of an element's table of attributes."""
+    name = f"`{item.name}` or `{item.name}-expr`" if item.dynamic else f"`{item.name}`"
+    kind = " or ".join(f"`{choice}`" for choice in item.choices) or item.kind
+    default = "*required*" if item.required else f"`{item.default}`" if item.default else ""
+    meaning = f"{sentence(item.doc)} {bounds(item.kind, item.low, item.high)}".strip()
+    return (name, kind, default, meaning)
+
+
+def children_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str:
+    """What an element may hold, groups of elements together."""
+    left = list(element.children)
+    words = []
+    for name, keys in groups.items():
+        if set(keys) <= set(left):
+            words.append(name)
+            left = [key for key in left if key not in keys]
+    words += [f"`{vocabulary.elements[key].tag}`" for key in left]
+    if element.text:
+        words.insert(0, "text")
+    return ", ".join(words) or "nothing"
+
+
+def parents_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str:
+    """In what an element may stand, groups of elements together."""
+    parents = [other for other in vocabulary.elements.values() if element.key in other.children]
+    keys = [other.key for other in parents]
+    words = []
+    for name, members in groups.items():
+        if len(members) > 1 and set(members) <= set(keys):
+            words.append(name)
+            keys = [key for key in keys if key not in members]
+    tags = dict.fromkeys(vocabulary.elements[key].tag for key in keys)
+    return ", ".join([*words, *(f"`{tag}`" for tag in tags)])
+
+
+def heading(vocabulary: Vocabulary, element: Element) -> str:
+    """An element's heading; one of two elements of a name says where it stands."""
+    same = [other for other in vocabulary.elements.values() if other.tag == element.tag]
+    if len(same) == 1:
+        return f"`<{element.tag}>`"
+    parents = vocabulary.parents(element.tag)
+    own = [tag for tag in parents if element.key in _children(vocabulary, tag)]
+    where = " and ".join(f"`<{tag}>`" for tag in own) if len(own) < 3 else "content"
+    return f"`<{element.tag}>` in {where}"
+
+
+def _children(vocabulary: Vocabulary, tag: str) -> set[str]:
+    return {
+        key for item in vocabulary.elements.values() if item.tag == tag for key in item.children
+    }
+
+
+def elements(vocabulary: Vocabulary, level: int, groups: Groups | None = None) -> str:
+    """The reference of all elements of a kind of document."""
+    parts = []
+    for element in vocabulary.elements.values():
+        parts.append(f"{'#' * level} {heading(vocabulary, element)}\n")
+        source = f" *{sentence(element.source)}*" if element.source else ""
+        parts.append(f"{sentence(element.doc)}{source}\n")
+        where = parents_of(vocabulary, element, groups or {})
+        stands = f" Stands in: {where}." if where else " The root element."
+        parts.append(f"Holds: {children_of(vocabulary, element, groups or {})}.{stands}\n")
+        if element.attributes:
+            head = ("attribute", "kind", "default", "meaning")
+            parts.append(table(head, map(attribute_row, element.attributes)))
+    return "\n" + "\n".join(parts) + "\n"
+
+
+def commands() -> str:
+    """The thesis's Table 4.2 as applications write it."""
+    return table(
+        ("element", "devices", "marks", "text", "arguments"), map(_command, TABLE_4_2.values())
+    )
+
+
+def _command(row: CommandType) -> tuple[str, ...]:
+    marks = {
+        "feedback": row.feedback,
+        "leaves the user": row.leaves,
+        "engages the user": row.engages,
+        "now": row.now,
+    }
+    name = "`field`" if row.name == "q-and-a" else f"`{row.name}`"
+    arguments = [
+        f"`{key}`" + ("*" if item.required else "°" if item.choice else "")
+        for key, item in row.arguments.items()
+    ]
+    return (
+        name,
+        ", ".join(sorted(row.devices)),
+        ", ".join(mark for mark, holds in marks.items() if holds),
+        "" if row.text == "none" else row.text,
+        ", ".join(arguments),
+    )
+
+
+def kinds() -> str:
+    """The simple types that attributes have."""
+    return table(("kind", "what it is"), ((name, sentence(k.doc)) for name, k in KINDS.items()))
+
+
+def limits() -> str:
+    """What a document and a run may take of the machine."""
+    mib = 1024 * 1024
+    rows = (
+        ("a file", f"{reader.MAX_BYTES:,} bytes", "`too-large`"),
+        ("elements in a file", f"{reader.MAX_ELEMENTS:,}", "`too-large`"),
+        ("attributes of an element", f"{reader.MAX_ATTRIBUTES}", "`too-large`"),
+        ("elements inside each other", f"{reader.MAX_DEPTH}", "`too-deep`"),
+        ("a time in an attribute", f"{LONGEST_MS // 3_600_000} h", "`bad-value`"),
+        (
+            "one evaluation of an expression or script",
+            f"{expressions.TIME_LIMIT:g} s of processor time",
+            "`error.semantic`",
+        ),
+        (
+            "memory of an application's ECMAScript",
+            f"{expressions.MEMORY_LIMIT // mib} MiB",
+            "`error.semantic`",
+        ),
+        (
+            "stack of an application's ECMAScript",
+            f"{expressions.STACK_LIMIT // 1024} KiB",
+            "`error.semantic`",
+        ),
+        (
+            "a value that leaves ECMAScript",
+            f"{expressions.RESULT_LIMIT:,} characters",
+            "`error.semantic`",
+        ),
+        ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
+        ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
+        ("steps of content in one instant", f"{application.MAX_STEPS:,}", "the application ends"),
+        ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
+        ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),
+        ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),
+        (
+            "steps of matching an utterance with a grammar",
+            f"{grammar.MAX_STEPS:,}",
+            "it does not match",
+        ),
+        (
+            "speech in one unit",
+            f"about {checks.LONG_UNIT_MS // 1000} s",
+            "the warning `long-unit`",
+        ),
+        (
+            "a Command, beyond the times it is given",
+            f"{mediator.HANG_MS // 1000} s",
+            "`error.device.DEVICE`",
+        ),
+        (
+            "loops that another application's equal Command waits",
+            f"{selector.STARVING_LOOPS}",
+            "a `starve` record",
+        ),
+        ("records of a run", f"{rehearsal.MAX_RECORDS:,}", "the run ends with exit code 3"),
+        (
+            "a line of a transcript that is read",
+            f"{lines.MAX_LINE:,} characters",
+            "it is no transcript",
+        ),
+    )
+    return table(("what", "limit", "beyond it"), rows)
+
+
+def fields() -> str:
+    """The fields of a transcript's record."""
+    properties = Record.model_json_schema()["properties"]
+    return table(
+        ("field", "type", "meaning"),
+        (
+            (f"`{name}`", _type(item), str(item.get("description", "")))
+            for name, item in properties.items()
+        ),
+    )
+
+
+def _type(item: Mapping[str, Any]) -> str:
+    for option in item.get("anyOf", [item]):
+        if "const" in option:
+            return f"`{option['const']}`"
+        if "enum" in option:
+            words = option["enum"]
+            return (
+                " or ".join(f"`{word}`" for word in words)
+                if len(words) < 6
+                else "one of the [phases](#phases)"
+            )
+        if option.get("type") == "array":
+            return f"array of {_type(option['items'])}s"
+        if option.get("type") != "null":
+            return str(option.get("type", ""))
+    return ""
+
+
+def codes() -> str:
+    """The codes of problems."""
+    return table(("code", "what it means"), ((f"`{name}`", text) for name, text in CODES.items()))
+
+
+def defaults() -> str:
+    """How long things take where nothing else is said."""
+    question = TABLE_4_2["q-and-a"].arguments
+    timeout = question["timeout"].default
+    assert isinstance(timeout, int)
+    return table(
+        ("property", "kind", "default", "meaning"),
+        (
+            ("`timeout`", "duration", f"`{seconds(timeout)}`", sentence(question["timeout"].doc)),
+            (
+                "`bargein`",
+                "boolean",
+                f"`{str(question['bargein'].default).lower()}`",
+                sentence(question["bargein"].doc),
+            ),
+        ),
+    )
+
+
+ACCEPTED = {
+    "boolean": (
+        "A word of assent or refusal: "
+        + "; ".join(words.replace("|", ", ") for words in (grammar.YES, grammar.NO)),
+        ("Yes, please.", "OK!", "No, thank you.", "はい"),
+    ),
+    "number": (
+        "A number in digits without a sign, in English words up to ninety-nine, or in Japanese"
+        " numerals up to 九十九",
+        ("12", "1.5", "twelve", "twenty-one", "二十三"),
+    ),
+    "digits": ("Digits, with or without spaces; they stay text", ("0 7 2", "0743")),
+    "date": ("Year, month and day in digits", ("2009-3-9", "2009/03/09", "2009年3月9日")),
+    "time": (
+        "A time of day in digits, of 24 hours or with a.m. or p.m.",
+        ("9", "9:30 p.m.", "21.15", "7 o'clock", "3時20分"),
+    ),
+    "text": ("Anything said, white space folded", ("Tell him  I'll wait.",)),
+}
+"""What each built-in type takes, and utterances whose values are shown."""
+
+
+def types() -> str:
+    """The built-in types of fields, with the values that utterances give."""
+    rows = []
+    for name, match in grammar.BUILT_IN.items():
+        what, said = ACCEPTED[name]
+        shown = [f"{one} → `{json.dumps(match(one), ensure_ascii=False)}`" for one in said]
+        rows.append((f"`{name}`", sentence(what), ", ".join(shown)))
+    return table(("type", "takes", "what is said, and the value"), rows)
+
+
+# The interface ----------------------------------------------------------------
+
+
+def interface() -> str:
+    """What the package exports: signatures and docstrings."""
+    parts = []
+    for name in sorted(prima.__all__, key=lambda name: (not _is_function(name), name.lower())):
+        thing = getattr(api, name)
+        if _is_function(name):
+            parts.append(f"## `{name}{_signature(thing)}`\n")
+            parts.append(_prose(thing))
+        else:
+            parts.append(f"## `{name}`\n")
+            parts.append(_prose(thing))
+            parts += _members(thing)
+    return "\n" + "\n".join(parts) + "\n"
+
+
+def _is_function(name: str) -> bool:
+    return inspect.isfunction(getattr(api, name))
+
+
+def _signature(function: Callable[..., object]) -> str:
+    return str(inspect.signature(function)).replace("'", "")
+
+
+def _members(thing: type) -> list[str]:
+    """Public fields, properties and methods of a class."""
+    told = _field_docs(thing)
+    rows = [
+        (f"`{name}: {kind}`", told.get(name, ""))
+        for name, kind in inspect.get_annotations(thing).items()
+        if not name.startswith("_")
+    ]
+    for name, member in vars(thing).items():
+        if name.startswith("_"):
+            continue
+        if isinstance(member, property):
+            rows.append((f"`{name}`", _marked(inspect.getdoc(member) or "")))
+        elif inspect.isfunction(member):
+            rows.append((f"`{name}{_signature(member)}`", _marked(inspect.getdoc(member) or "")))
+    return [table(("member", "meaning"), rows)] if rows else []
+
+
+def _field_docs(thing: type) -> dict[str, str]:
+    """The strings written behind the fields of a class."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(thing)))
+    body = tree.body[0].body if isinstance(tree.body[0], ast.ClassDef) else []
+    told: dict[str, str] = {}
+    for entry, behind in pairwise(body):
+        match entry, behind:
+            case (
+                ast.AnnAssign(target=ast.Name(id=name)),
+                ast.Expr(value=ast.Constant(value=str(text))),
+            ):
+                told[name] = _marked(text)
+    return told
+
+
+SECTION = re.compile(r"^(Args|Raises):$\n((?:[ ]{4}.*\n?|\n)+)", re.MULTILINE)
+ROLE = re.compile(r":\w+:`~?([^`]+)`")
+
+
+def _prose(thing: object) -> str:
+    """A docstring as Markdown."""
+    text = inspect.getdoc(thing) or ""
+    if text.startswith(f"{getattr(thing, '__name__', '')}("):
+        text = ""  # what dataclass writes where the author wrote nothing
+
+    def listed(match: re.Match[str]) -> str:
+        entries: list[str] = []
+        for row in inspect.cleandoc(match[2]).splitlines():
+            if row and not row[0].isspace():
+                entries.append(row)
+            elif row.strip():
+                entries[-1] += " " + row.strip()
+        shown = []
+        for entry in entries:
+            name, _, rest = entry.partition(": ")
+            shown.append(f"- `{name}`: {rest}")
+        return f"{match[1]}:\n\n" + "\n".join(shown) + "\n\n"
+
+    return _marked(SECTION.sub(listed, text + "\n")).strip() + "\n"
+
+
+def _marked(text: str) -> str:
+    """A docstring's marks as Markdown's."""
+    return ROLE.sub(r"`\1`", text).replace("``", "`")
+
+
+# Files ---------------------------------------------------------------------------
+
+SECTIONS: dict[str, Callable[[], str]] = {
+    "commands": commands,
+    "kinds": kinds,
+    "questions": defaults,
+    "types": types,
+    "limits": limits,
+    "dialogue": lambda: elements(DIALOGUE, 3, GROUPS),
+    "world": lambda: elements(WORLD, 4),
+    "robot": lambda: elements(ROBOT, 4),
+    "scenario": lambda: elements(SCENARIO, 4),
+    "fields": fields,
+    "codes": codes,
+    "interface": interface,
+}
+"""What may stand between markers in the documentation, by name."""
+
+
+def fill(name: str, text: str) -> str:
+    """Put the generated sections between a document's markers.
+
+    Raises:
+        UsageError: a marker names no section, or has no end.
+    """
+
+    def section(match: re.Match[str]) -> str:
+        make = SECTIONS.get(match["name"])
+        if make is None:
+            raise UsageError(f'{name}: there is no generated section "{match["name"]}".')
+        return f"{match[1]}{make()}{match[3]}"
+
+    filled = MARKER.sub(section, text)
+    if filled.count("<!-- generated: ") != len(MARKER.findall(filled)):
+        raise UsageError(f"{name}: a marker of a generated section has no end.")
+    return filled
+
+
+def record_schema() -> str:
+    """The JSON Schema of a transcript's record."""
+    schema = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **Record.model_json_schema(),
+    }
+    return json.dumps(schema, ensure_ascii=False, indent=2) + "\n"
+
+
+def outputs(root: Path) -> dict[Path, str]:
+    """Every generated file of a checkout with what it should hold.
+
+    Raises:
+        UsageError: this is no checkout, or a marker is wrong.
+    """
+    schemas, docs = root / "schemas", root / "docs"
+    if not docs.is_dir():
+        raise UsageError(f"{root} is no checkout: it has no docs folder.")
+    made = {schemas / f"{one.name}.xsd": make_schema(one) for one in VOCABULARIES}
+    made[schemas / "xml.xsd"] = XML_SCHEMA
+    made[schemas / "transcript.schema.json"] = record_schema()
+    for path in sorted(docs.glob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        if "<!-- generated: " in text:
+            made[path] = fill(path.name, text)
+    return made
+
+
+def differing(root: Path) -> list[str]:
+    """The generated files that do not hold what they should, relative to the checkout."""
+    return [
+        path.relative_to(root).as_posix()
+        for path, text in outputs(root).items()
+        if not path.is_file() or path.read_text(encoding="utf-8") != text
+    ]
+
+
+def main(arguments: list[str]) -> int:
+    """Write what is generated, or with ``--check`` name what differs."""
+    if arguments not in ([], ["--check"]):
+        print("usage: python -m prima.reference [--check]", file=sys.stderr)
+        return 2
+    try:
+        names = differing(ROOT)
+        made = outputs(ROOT)
+    except UsageError as error:
+        print(f"prima: {error}", file=sys.stderr)
+        return 2
+    for name in names:
+        if arguments:
+            print(f"{name} differs from the code; run python -m prima.reference", file=sys.stderr)
+        else:
+            (ROOT / name).write_text(made[ROOT / name], encoding="utf-8", newline="\n")
+            print(f"written: {name}")
+    return 1 if arguments and names else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
