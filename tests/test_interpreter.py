@@ -509,6 +509,8 @@ def test_a_unit_that_takes_too_long_throws_and_ends() -> None:
     bench.listens()
     bench.step(at=20_100)
     assert bench.logs() == ["too long"]
+    assert bench.saying() == ["May I?", "iu"], "the Command that runs finishes"
+    bench.silence()
     assert bench.saying() == ["Bye."]
 
 

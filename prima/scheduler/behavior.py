@@ -36,7 +36,8 @@ class Stream:
     members: dict[str, Behavior] = field(default_factory=dict)
     windows: int = 0
     engaged: bool = False
-    cause: int | None = None
+    causes: set[int] = field(default_factory=set)
+    """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: int | None = None
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
 
@@ -114,6 +115,9 @@ class Behavior:
     listening: bool = False
     last_loop: bool = False
     silent: bool = False
+    """Nobody hears of its end any more."""
+    left: bool = False
+    """Its state has been left (O3): a question ends as soon as it listens."""
     blocked: tuple[str, str] = ("", "")
     waited_loops: int = 0
     # Units only (U4, U5):

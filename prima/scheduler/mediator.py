@@ -227,6 +227,7 @@ class Mediator:
                 continue
             if ab.state is State.RUNNING:
                 self._silence(ab)
+                ab.left = True
                 if ab.listening:
                     self._delete(ab, rule)
             elif not ab.spans:
@@ -280,7 +281,7 @@ class Mediator:
         ab = self.running(behavior)
         if ab is not None:
             ab.listening = True
-            if ab.silent:
+            if ab.left:
                 self._delete(ab, "O3")
 
     def ended(self, behavior: str, goal: bool, data: Data, inbound: bool = True) -> bool:
@@ -336,14 +337,12 @@ class Mediator:
         for ab in list(reversed(list(unit.inner.values()))):
             if ab.state is State.RUNNING:
                 self._silence(ab)
-                if ab.listening:
-                    self._delete(ab, "U5")
             elif ab.state is not State.GONE:
                 self._delete(ab, "U5")
-        if unit.started < 0 and unit.name in self.memory.behaviors:
-            self._delete(unit, "U5")
-        else:
+        if unit.name in self.memory.running:
             self._settle(unit)
+        elif unit.name in self.memory.behaviors:
+            self._delete(unit, "U5")
 
     # Failures ------------------------------------------------------------------
 
@@ -450,14 +449,19 @@ class Mediator:
                         self._tell_cancelled(ab)
 
     def _halt(self, ab: Behavior) -> None:
-        for inner in [held for held in ab.inner.values() if held.state is State.RUNNING]:
-            self._halt(inner)
+        given_up = ab.silent or ab.last_loop or (ab.spans and not ab.open)
+        ab.open = ab.open or given_up  # it does not settle as done meanwhile
+        for inner in list(ab.inner.values()):
+            if given_up:
+                self._delete(inner, "E5")
+            elif inner.state is State.RUNNING:
+                self._halt(inner)
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
         self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")
         self.memory.release(ab)
         self._deadlines.pop(ab.name, None)
-        if ab.silent or ab.last_loop:
+        if given_up:
             self._remove(ab)
         else:
             ab.listening = False

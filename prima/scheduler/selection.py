@@ -63,7 +63,7 @@ def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
     holder = memory.holder
     if holder is None or holder.app is ab.app:
         return None
-    if ab.reaction is not None and ab.reaction != holder.cause:
+    if ab.reaction is not None and ab.reaction not in holder.causes:
         return None
     return None if outranks(ab, holder) else ("F2", holder.name)
 

@@ -34,11 +34,11 @@ class Selector:
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
         self.started = []
+        for unit in [ab for ab in self.memory.running.values() if ab.inner]:
+            self._advance(unit, now)
         again = bool(self.memory.waiting)
         while again:
             again = self._pass(now)
-        for unit in [ab for ab in self.memory.running.values() if ab.inner]:
-            self._advance(unit, now)
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true when the floor changed on the way."""
@@ -106,6 +106,7 @@ class Selector:
             rule = "S4" if others else "S1"
         self.chronicle.decision(ab, rule, [other for _, other in losers])
         self._record_start(ab, rule, reaction)
+        self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
             self._count_starving(ab)
         return changed
@@ -161,7 +162,7 @@ class Selector:
         """F1, F3: a reaction, or what started by F2, takes the floor; the loser stays beneath."""
         stream = ab.stream
         if reaction is not None:
-            stream.cause = reaction
+            stream.causes.add(reaction)
         if not self.policy.floor or (reaction is None and not by_floor_rule):
             return False
         floor = self.memory.floor

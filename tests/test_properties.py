@@ -1,0 +1,143 @@
+"""The nine invariants, over generated applications and the scenarios of the package.
+
+``PRIMA_EXAMPLES`` says how many runs are generated in all (300 unless it is
+set); under ``CI=true`` they are the same runs every time.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.generated import Play, Run, Script, drive, perform, plays, scripts
+from tests.invariants import check, numbers, unfinished
+
+EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
+ROOT = Path(__file__).resolve().parent.parent
+SCENARIOS = sorted(ROOT.glob("documents/scenarios/*.xml"))
+
+
+def examples(percent: int) -> settings:
+    """A part of the generated runs."""
+    return settings(
+        max_examples=max(EXAMPLES * percent // 100, 1),
+        derandomize=os.environ.get("CI") == "true",
+        deadline=None,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+    )
+
+
+def violations(run: Run, policy: str = "prima") -> list[str]:
+    """What a run violates."""
+    return check(run.records, policy) + run.problems
+
+
+@given(plays())
+@examples(35)
+def test_documents_keep_the_invariants(play: Play) -> None:
+    run = perform(play)
+    assert violations(run) == []
+
+
+@given(scripts())
+@examples(35)
+def test_requests_keep_the_invariants(script: Script) -> None:
+    run = drive(script)
+    assert violations(run) == []
+
+
+@given(plays(lively=True))
+@examples(15)
+def test_everything_ends_when_users_answer_and_devices_end(play: Play) -> None:
+    """Invariant 9, with 1 to 7."""
+    run = perform(play)
+    assert run.complete, "the run does not come to rest"
+    assert violations(run) == []
+    assert unfinished(run.records) == []
+
+
+@given(plays(), scripts(), st.sampled_from(("fifo", "fair", "fixed", "fixed:ea", "none")))
+@examples(10)
+def test_the_baselines_keep_what_applies_to_them(play: Play, script: Script, policy: str) -> None:
+    for run in (perform(play, policy), drive(script, policy)):
+        found = violations(run, policy)
+        if policy == "none":
+            # Nothing keeps devices apart there, and nothing else may be wrong.
+            found = [text for text in found if numbers([text]) != {1}]
+        assert found == []
+
+
+@given(plays(), scripts())
+@examples(5)
+def test_the_same_inputs_give_the_same_transcript(play: Play, script: Script) -> None:
+    """Invariant 8, within one process."""
+    assert perform(play).lines() == perform(play).lines()
+    assert drive(script).lines() == drive(script).lines()
+
+
+CHILD = """
+import sys
+from pathlib import Path
+from prima import load_scenario, rehearse
+from tests import generated, invariants
+from tests.generated import *
+from prima.messages import *
+
+for path in sys.argv[1:]:
+    print("".join(f"{record}\\n" for record in rehearse(path).records))
+for text in sys.stdin:
+    made = eval(text)
+    print((perform if isinstance(made, Play) else drive)(made).lines())
+"""
+
+
+def _some() -> list[Play | Script]:
+    """A few generated runs, always the same ones."""
+    found: list[Play | Script] = []
+
+    @given(plays(), scripts())
+    @settings(max_examples=12, derandomize=True, deadline=None, database=None)
+    def gather(play: Play, script: Script) -> None:
+        found.extend((play, script))
+
+    gather()
+    return found[-12:]
+
+
+@pytest.mark.parametrize("first, second", [("0", "1"), ("2", "random")])
+def test_no_hash_seed_decides_anything(first: str, second: str) -> None:
+    """Invariant 8, across processes: the scenarios and some generated runs."""
+    text = "".join(f"{made!r}\n" for made in _some())
+    command = [sys.executable, "-c", CHILD, *map(str, SCENARIOS)]
+    outputs = []
+    for seed in (first, second):
+        done = subprocess.run(
+            command,
+            input=text.encode(),
+            stdout=subprocess.PIPE,
+            cwd=ROOT,
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            check=True,
+        )
+        outputs.append(done.stdout)
+    assert len(outputs[0]) > 10_000
+    assert outputs[0] == outputs[1]
+
+
+@pytest.mark.parametrize("policy", ["prima", "fifo", "fair", "fixed", "none"])
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
+    """What the package shows keeps the rules too."""
+    from prima import rehearse
+
+    records = rehearse(path, policy).records
+    found = check(records, policy)
+    expected = {1} if policy == "none" else set()
+    assert numbers(found) <= expected, found
