@@ -57,5 +57,9 @@ def __getattr__(name: str) -> Any:
     if name in __all__:
         from prima import api
 
+        if name == "Difference":
+            from prima.transcript.diff import Difference
+
+            return Difference
         return getattr(api, name)
     raise AttributeError(f"module 'prima' has no attribute {name!r}")

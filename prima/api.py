@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from prima.codes import CODES
 from prima.errors import DocumentError, Place, Problem, RunError, UsageError, did_you_mean
@@ -21,13 +22,14 @@ from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.check import check_root
 from prima.markup.reader import MAX_BYTES, parse, too_large
 from prima.messages import Record
-from prima.scheduler.selection import policy_named
-from prima.sim.scenario import read_robot, read_scenario, read_world
-from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-from prima.transcript.diff import Difference, compare
-from prima.transcript.lines import finished, line, read_lines
-from prima.transcript.measures import Measure, Summary, summarize
-from prima.transcript.table import Row, format_rows, make_rows
+
+if TYPE_CHECKING:
+    from prima.sim.rehearsal import Cast
+    from prima.transcript.diff import Difference
+    from prima.transcript.measures import Measure, Summary
+    from prima.transcript.table import Row
+
+# What one use needs and another does not is imported where it is used: most commands are short.
 
 VERSION = "1.0.0"
 
@@ -69,7 +71,7 @@ def load(path: str | Path) -> Document:
 class Loaded:
     """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
 
-    cast: object
+    cast: Cast
     files: dict[str, str]
     problems: list[Problem] = field(default_factory=list)
 
@@ -89,9 +91,13 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 def _validate_one(path: str) -> list[Problem]:
     data = read_file(path)
     try:
-        vocabulary = check_root(parse(path, data), (DIALOGUE, WORLD, ROBOT, SCENARIO))
-        if vocabulary is DIALOGUE:
+        root = parse(path, data)
+        if root.namespace == DIALOGUE.namespace:
             return read_document(path, data)[1]
+        from prima.sim.scenario import read_robot, read_world
+        from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+
+        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
         if vocabulary is WORLD:
             read_world(path, data)
         elif vocabulary is ROBOT:
@@ -110,7 +116,9 @@ def load_scenario(path: str | Path) -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
+    from prima.scheduler.selection import policy_named
     from prima.sim.rehearsal import Cast, check_cast
+    from prima.sim.scenario import read_robot, read_scenario, read_world
 
     path = Path(path)
     data = read_file(path)
@@ -190,18 +198,26 @@ class Transcript:
 
     def rows(self) -> list[Row]:
         """The rows of the table."""
+        from prima.transcript.table import make_rows
+
         return make_rows(self.records)
 
     def table(self, why: bool = False) -> str:
         """The table as text; with ``why``, each row with the rule that put it there."""
+        from prima.transcript.table import format_rows
+
         return format_rows(self.rows(), why)
 
     def summary(self) -> Summary:
         """What can be counted in it."""
+        from prima.transcript.measures import summarize
+
         return self.measure.summary() if self.measure else summarize(self.records)
 
     def dumps(self) -> str:
         """The transcript as JSON lines."""
+        from prima.transcript.lines import line
+
         made = ({**record, "time": record["time"] * 1000} for record in self.records)
         return "".join(line(record) for record in made)
 
@@ -230,11 +246,13 @@ def rehearse(
         DocumentError: documents are wrong.
         UsageError: no such policy or file.
     """
-    from prima.sim.rehearsal import Cast, Rehearsal
+    from prima.scheduler.selection import policy_named
+    from prima.sim.rehearsal import Rehearsal
+    from prima.transcript.lines import finished, line
+    from prima.transcript.measures import Measure
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
-    assert isinstance(cast, Cast)
     name = policy or cast.scenario.policy
     rehearsal = Rehearsal(cast, policy_named(name), bound)
     head: Record = {
@@ -270,6 +288,8 @@ def read(path: str | Path) -> Transcript:
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
     """
+    from prima.transcript.lines import read_lines
+
     try:
         with Path(path).open(encoding="utf-8") as stream:
             records = list(read_lines(str(path), stream))
@@ -288,11 +308,10 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
         DocumentError: documents are wrong.
     """
     from prima.replay import replay_records
-    from prima.sim.rehearsal import Cast
+    from prima.transcript.lines import finished
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
-    assert isinstance(cast, Cast)
     head = transcript.records[0]
     if head["phase"] != "run":
         raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
@@ -305,6 +324,8 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
 
 def diff(before: Transcript, after: Transcript) -> Difference:
     """Compare two transcripts by behaviour."""
+    from prima.transcript.diff import compare
+
     difference = compare(before.rows(), after.rows())
     difference.before, difference.after = before.summary(), after.summary()
     return difference

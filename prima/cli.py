@@ -6,7 +6,6 @@ unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Callable
@@ -67,6 +66,12 @@ def _print(text: str) -> None:
     click.echo(text, nl=not text.endswith("\n"), color=_coloured())
 
 
+def _print_json(data: Any) -> None:
+    import json
+
+    click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+
+
 def _problem_data(problem: Problem) -> dict[str, Any]:
     return {
         "file": problem.place.file,
@@ -101,7 +106,7 @@ def validate(files: tuple[str, ...], form: str) -> None:
         except UsageError as error:
             unread.append(str(error))
     if form == "json":
-        _print(json.dumps([_problem_data(one) for one in problems], ensure_ascii=False, indent=2))
+        _print_json([_problem_data(one) for one in problems])
     else:
         for problem in problems:
             _print(str(problem))
@@ -239,7 +244,7 @@ def diff(before: str, after: str, form: str) -> None:
 
     difference = api.diff(api.read(before), api.read(after))
     if form == "json":
-        _print(json.dumps(difference_data(difference), ensure_ascii=False, indent=2))
+        _print_json(difference_data(difference))
     else:
         _print(format_difference(difference, _coloured()))
     if difference.differs:

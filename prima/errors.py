@@ -11,15 +11,12 @@ does wrong is an assertion.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from difflib import get_close_matches
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Severity = Literal["error", "warning"]
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Place:
+class Place(NamedTuple):
     """Where something stands: a file, and a line and column counted from 1.
 
     Columns count characters, not bytes.
@@ -33,8 +30,7 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Problem:
+class Problem(NamedTuple):
     """One thing wrong in a document, with what to write instead where that is known."""
 
     place: Place
@@ -70,6 +66,8 @@ class RunError(PrimaError):
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
+    from difflib import get_close_matches  # costs a third of a start, and is rarely needed
+
     nearest = get_close_matches(word, sorted(known), n=1, cutoff=0.6)
     return f'Did you mean "{nearest[0]}"?' if nearest else ""
 

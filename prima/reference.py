@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import prima
-from prima import api
 from prima.codes import CODES
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import UsageError
@@ -342,7 +341,7 @@ def interface() -> str:
     """What the package exports: signatures and docstrings."""
     parts = []
     for name in sorted(prima.__all__, key=lambda name: (not _is_function(name), name.lower())):
-        thing = getattr(api, name)
+        thing = getattr(prima, name)
         if _is_function(name):
             parts.append(f"## `{name}{_signature(thing)}`\n")
             parts.append(_prose(thing))
@@ -354,7 +353,7 @@ def interface() -> str:
 
 
 def _is_function(name: str) -> bool:
-    return inspect.isfunction(getattr(api, name))
+    return inspect.isfunction(getattr(prima, name))
 
 
 def _signature(function: Callable[..., object]) -> str:

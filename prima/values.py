@@ -23,10 +23,10 @@ _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
 """Characters that go on with one, dot and hyphen apart; ``\\c`` in XML Schema."""
 
 DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
-NAME = re.compile(rf"[{_START}][{_REST}.\-]*")
+NAME = rf"[{_START}][{_REST}.\-]*"
 _WORD = rf"[{_START}$][{_REST}$]*"
-VARIABLE = re.compile(rf"{_WORD}(?:\.{_WORD})*")
-EVENT = re.compile(rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?")
+VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
+EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 XML_SPACE = " \t\r\n"
 
@@ -35,6 +35,13 @@ _XSD_WORD = r"[\i$-[:]][\c$-[:.\-]]*"
 _XSD_VARIABLE = rf"{_XSD_WORD}(\.{_XSD_WORD})*"
 _XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
+
+
+def _fits(pattern: str, text: str) -> bool:
+    """Whether a text fits a pattern of names; most are ASCII, and the whole alphabet is slow."""
+    if text.isascii():
+        pattern = pattern.replace(_REST, "A-Za-z_0-9").replace(_START, "A-Za-z_")
+    return re.fullmatch(pattern, text) is not None
 
 
 def _duration(text: str) -> int:
@@ -65,9 +72,9 @@ def _boolean(text: str) -> bool:
     return text == "true"
 
 
-def _pattern(pattern: re.Pattern[str], what: str) -> Callable[[str], str]:
+def _pattern(pattern: str, what: str) -> Callable[[str], str]:
     def read(text: str) -> str:
-        if pattern.fullmatch(text) is None:
+        if not _fits(pattern, text):
             raise ValueError(f"is not {what}")
         return text
 
@@ -78,7 +85,7 @@ def _event_list(text: str) -> str:
     if not text:
         raise ValueError("names no event.")
     for name in re.split(f"[{XML_SPACE}]+", text):
-        if EVENT.fullmatch(name) is None:
+        if not _fits(EVENT, name):
             raise ValueError(f'holds "{name}", which is not an event name such as "touch.head".')
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
@@ -87,7 +94,7 @@ def _name_list(text: str) -> str:
     if not text:
         raise ValueError("names no variable.")
     for name in re.split(f"[{XML_SPACE}]+", text):
-        if VARIABLE.fullmatch(name) is None:
+        if not _fits(VARIABLE, name):
             raise ValueError(f'holds "{name}", which is not a variable name.')
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
@@ -156,18 +163,14 @@ KINDS: dict[str, Kind] = {
     "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
     "text": Kind(str, "xs:string", "", "any text"),
     "target": Kind(
-        _pattern(
-            re.compile(f"#{NAME.pattern}"), 'a place to go to. Write "#" and the id of a form.'
-        ),
+        _pattern(f"#{NAME}", 'a place to go to. Write "#" and the id of a form.'),
         "xs:string",
         f"#{_XSD_NAME}",
         "# and the id of a form",
     ),
     "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
     "language": Kind(
-        _pattern(
-            re.compile(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"), 'a language tag such as "en" or "ja".'
-        ),
+        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", 'a language tag such as "en" or "ja".'),
         "xs:string",
         r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
         "a language tag, as in en or ja",

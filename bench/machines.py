@@ -1,0 +1,147 @@
+"""The same state machine written for PRIMA, sismic and transitions.
+
+A ring of states; every ``tick`` adds one to a counter and goes on to the next.
+With guards, each state has three, of which the last holds.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+GUARDS = ("n < 0", "n < -1", "n >= 0")
+
+
+def prima_text(states: int, guards: bool = False) -> str:
+    """The ring as a PRIMA document."""
+    act = '<assign name="n" expr="n + 1"/><goto next="#s{}"/>'
+    forms = []
+    for index in range(states):
+        go = act.format((index + 1) % states)
+        if guards:
+            handlers = "".join(
+                f'<on event="tick" cond="{guard.replace("<", "&lt;")}">{go}</on>'
+                for guard in GUARDS
+            )
+        else:
+            handlers = f'<on event="tick">{go}</on>'
+        forms.append(f'<form id="s{index}">{handlers}</form>')
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="ring">'
+    return f'{head}<var name="n" expr="0"/>{"".join(forms)}</prima>'
+
+
+class Prima:
+    """The ring in a session of its own, with its records kept (the trace)."""
+
+    def __init__(self, text: str) -> None:
+        from prima.commands import TABLE_4_2
+        from prima.interpreter.reader import read_document
+        from prima.messages import Loaded
+        from prima.scheduler.selection import policy_named
+        from prima.session import Session
+
+        document, problems = read_document("ring.xml", text.encode())
+        assert not problems, problems
+        self.session = Session([document], policy_named("prima"), TABLE_4_2)
+        self.session.step(0, [Loaded("ring")])
+        self.now = 0
+
+    def tick(self, times: int) -> None:
+        """Take events in, one at an instant."""
+        from prima.messages import Occurred
+
+        event = [Occurred("tick")]
+        for now in range(self.now + 1, self.now + times + 1):
+            self.session.step(now, event)
+        self.now += times
+
+    def count(self) -> int:
+        """The counter, read by the application itself; the trace has to be there too."""
+        app = self.session.apps["ring"]
+        assert app.frame is not None
+        assert len(self.session.drain()) >= self.now, "records are missing"
+        return int(app.engine.get(app.frame.document, "n"))
+
+
+def sismic_text(states: int, guards: bool = False) -> str:
+    """The ring as a sismic statechart."""
+    lines = ["statechart:", "  name: ring", "  preamble: n = 0", "  root state:", "    name: root"]
+    lines += ["    initial: s0", "    states:"]
+    for index in range(states):
+        lines += [f"      - name: s{index}", "        transitions:"]
+        for guard in GUARDS if guards else ("",):
+            lines += [f"          - target: s{(index + 1) % states}", "            event: tick"]
+            lines += [f"            guard: {guard}"] if guard else []
+            lines += ["            action: n += 1"]
+    return "\n".join(lines)
+
+
+class Sismic:
+    """The ring in a sismic interpreter."""
+
+    def __init__(self, text: str) -> None:
+        from sismic.interpreter import Interpreter
+        from sismic.io import import_from_yaml
+
+        self.interpreter = Interpreter(import_from_yaml(text))
+        self.interpreter.execute()
+
+    def tick(self, times: int) -> None:
+        """Take events in."""
+        for _ in range(times):
+            self.interpreter.queue("tick")
+            self.interpreter.execute_once()
+
+    def count(self) -> int:
+        """The counter."""
+        return int(self.interpreter.context["n"])
+
+
+class Model:
+    """What a transitions machine works on; it has no expressions, so guards are Python."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def add(self) -> None:
+        self.n += 1
+
+    def first(self) -> bool:
+        return self.n < 0
+
+    def second(self) -> bool:
+        return self.n < -1
+
+    def third(self) -> bool:
+        return self.n >= 0
+
+
+class Transitions:
+    """The ring as a transitions machine, made from plain data."""
+
+    def __init__(self, states: int, guards: bool = False) -> None:
+        from transitions import Machine
+
+        self.model: Any = Model()
+        rows = []
+        for index in range(states):
+            for guard in ("first", "second", "third") if guards else (None,):
+                row: dict[str, Any] = {
+                    "trigger": "tick",
+                    "source": f"s{index}",
+                    "dest": f"s{(index + 1) % states}",
+                    "after": "add",
+                }
+                if guard:
+                    row["conditions"] = guard
+                rows.append(row)
+        names = [f"s{index}" for index in range(states)]
+        Machine(self.model, states=names, transitions=rows, initial="s0", auto_transitions=False)
+
+    def tick(self, times: int) -> None:
+        """Take events in."""
+        for _ in range(times):
+            self.model.tick()
+
+    def count(self) -> int:
+        """The counter."""
+        return int(self.model.n)
