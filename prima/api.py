@@ -89,8 +89,8 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 
 
 def _validate_one(path: str) -> list[Problem]:
-    data = read_file(path)
     try:
+        data = read_file(path)
         root = parse(path, data)
         if root.namespace == DIALOGUE.namespace:
             return read_document(path, data)[1]

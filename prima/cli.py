@@ -62,8 +62,21 @@ def _coloured() -> bool:
     return sys.stdout.isatty() and "NO_COLOR" not in os.environ
 
 
+def _clean(text: str) -> str:
+    """Text of a stranger's without control characters, which a terminal would obey."""
+    return "".join(
+        letter if letter.isprintable() or letter in "\n\t" else "\ufffd" for letter in text
+    )
+
+
 def _print(text: str) -> None:
-    click.echo(text, nl=not text.endswith("\n"), color=_coloured())
+    """Data, to stdout."""
+    click.echo(_clean(text), nl=not text.endswith("\n"))
+
+
+def _tell(text: str) -> None:
+    """A message, to stderr."""
+    click.echo(_clean(text), err=True)
 
 
 def _print_json(data: Any) -> None:
@@ -111,12 +124,12 @@ def validate(files: tuple[str, ...], form: str) -> None:
         for problem in problems:
             _print(str(problem))
     for message in unread:
-        click.echo(f"prima: {message}", err=True)
+        _tell(f"prima: {message}")
     errors = sum(problem.severity == "error" for problem in problems)
     if form == "text" and not unread:
         warnings = len(problems) - errors
         counts = f"{errors} errors, {warnings} warnings" if problems else "no problems"
-        click.echo(f"{len(files)} files: {counts}", err=True)
+        _tell(f"{len(files)} files: {counts}")
     if unread or errors:
         sys.exit(2 if unread else 1)
 
@@ -145,20 +158,20 @@ def run(
 
     loaded = api.load_scenario(scenario)
     for problem in loaded.problems:
-        click.echo(str(problem), err=True)
+        _tell(str(problem))
     _start_watchdog()
     if output is not None:
         transcript = _run_into(
             output, lambda sink: api.rehearse(loaded, policy, bound, sink, keep=False)
         )
-        click.echo(f"{output}: {_outline(transcript)}", err=True)
+        _tell(f"{output}: {_outline(transcript)}")
     elif form == "json":
         transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, keep=False)
     else:
         transcript = api.rehearse(loaded, policy, bound)
         _print(transcript.table(why))
     for failure in transcript.failures:
-        click.echo(f"prima: {failure}", err=True)
+        _tell(f"prima: {failure}")
     if transcript.outcome == "limit":
         raise RunError("the run made more records than a run may.")
     if transcript.failures:
@@ -168,14 +181,10 @@ def run(
 def _run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
     """Run with the transcript written line by line, so that nothing is lost on the way."""
     try:
-        stream = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
+        with open(output, "w", encoding="utf-8", buffering=1) as stream:
+            return rehearse(stream.write)
     except OSError as error:
         raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
-    with stream:
-        try:
-            return rehearse(stream.write)
-        except OSError as error:
-            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
 
 
 def _outline(transcript: Transcript) -> str:
@@ -246,7 +255,7 @@ def diff(before: str, after: str, form: str) -> None:
     if form == "json":
         _print_json(difference_data(difference))
     else:
-        _print(format_difference(difference, _coloured()))
+        click.echo(format_difference(difference, _coloured()), nl=False, color=_coloured())
     if difference.differs:
         sys.exit(1)
 
@@ -268,7 +277,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     if output is not None:
         _run_into(output, lambda write: (write(again.dumps()), again)[1])
     same = again.dumps() == original.dumps()
-    click.echo("the same, byte for byte" if same else "the replay differs", err=True)
+    _tell("the same, byte for byte" if same else "the replay differs")
     if not same:
         sys.exit(1)
 
@@ -301,25 +310,25 @@ def main() -> None:
         sys.exit(code if isinstance(code, int) else 0)
     except DocumentError as error:
         for problem in error.problems:
-            click.echo(str(problem), err=True)
+            _tell(str(problem))
         code = 1
     except UsageError as error:
-        click.echo(f"prima: {error}", err=True)
+        _tell(f"prima: {error}")
         code = 2
     except RunError as error:
-        click.echo(f"prima: {error}", err=True)
+        _tell(f"prima: {error}")
         code = 3
     except click.ClickException as error:
         error.show()
         code = 2
     except (click.Abort, KeyboardInterrupt):
-        click.echo("prima: interrupted", err=True)
+        _tell("prima: interrupted")
         code = 130
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except MemoryError:
-        click.echo("prima: out of memory", err=True)
+        _tell("prima: out of memory")
         code = 3
     except Exception as error:
         if "PRIMA_DEBUG" in os.environ:

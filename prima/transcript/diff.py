@@ -10,7 +10,7 @@ from typing import Literal
 
 from prima.messages import Json
 from prima.transcript.measures import Summary
-from prima.transcript.table import Row
+from prima.transcript.table import Row, printable
 
 DELAY = 0.5
 """Seconds by which a behaviour must come later, beyond what came before it, to count."""
@@ -196,7 +196,9 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
     for change in difference.changes:
         row = change.after or change.before
         assert row is not None
-        text = f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {row.what}"
+        text = (
+            f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {printable(row.what)}"
+        )
         text += _remark(change)
         if colour and change.kind != "same":
             text = f"\x1b[{codes[change.kind]}m{text}\x1b[0m"
@@ -212,7 +214,7 @@ def _remark(change: Change) -> str:
             return f"  (moved: was row {before.number}, at {before.time:.2f} s)"
         case "changed":
             assert before is not None
-            return f"  (was: {before.what})"
+            return f"  (was: {printable(before.what)})"
         case "delayed":
             return f"  ({'later' if change.delay > 0 else 'earlier'} by {abs(change.delay):.2f} s)"
         case "split":

@@ -85,7 +85,7 @@ def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
         if len(text) > MAX_LINE:
             raise UsageError(f"{name}:{number}: this line is too long for a transcript's.")
         try:
-            record = json.loads(text)
+            record = json.loads(text, parse_constant=_no_number)
             Model.model_validate(record)
         except (ValueError, RecursionError) as error:
             raise UsageError(f"{name}:{number}: {_why(error, text, ValidationError)}") from None
@@ -93,6 +93,10 @@ def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
         yield record
     if count == 0:
         raise UsageError(f"{name}: this is no transcript: it has no records.")
+
+
+def _no_number(word: str) -> None:
+    raise ValueError(f"{word} is no number of JSON's")
 
 
 def _why(error: Exception, text: str, invalid: type[Exception]) -> str:

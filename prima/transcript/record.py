@@ -46,7 +46,7 @@ class Record(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    time: float = Field(ge=0, description="Seconds since the run began.")
+    time: float = Field(ge=0, allow_inf_nan=False, description="Seconds since the run began.")
     phase: Literal[
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
         "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",

@@ -221,7 +221,7 @@ def _pad(text: str, columns: int) -> str:
     return text + " " * max(columns - width(text), 0)
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Text without control characters, which a terminal would obey."""
     return "".join(" " if unicodedata.category(letter) == "Cc" else letter for letter in text)
 
@@ -229,7 +229,7 @@ def _printable(text: str) -> str:
 def format_rows(rows: list[Row], why: bool = False) -> str:
     """The table as text: star and bracket, number, who, application, behaviour, event."""
     apps = max([3, *(width(row.app) for row in rows)])
-    shown = [_printable(row.what) for row in rows]
+    shown = [printable(row.what) for row in rows]
     column = min(max([8, *(width(what) for what in shown)]), 76)
     head = f"        No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
     lines = [head + ("  Rule" if why else "")]
