@@ -26,7 +26,7 @@ from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
 from prima.markup import reader
 from prima.markup.schema import XML_SCHEMA, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
-from prima.scheduler import mediator, selector
+from prima.scheduler import failures, selector
 from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
@@ -230,7 +230,7 @@ def limits() -> str:
         ),
         (
             "a Command, beyond the times it is given",
-            f"{mediator.HANG_MS // 1000} s",
+            f"{failures.HANG_MS // 1000} s",
             "`error.device.DEVICE`",
         ),
         (

@@ -41,7 +41,8 @@ from prima.messages import (
 )
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.chronicle import Chronicle
-from prima.scheduler.mediator import Mediator, Told
+from prima.scheduler.endings import Told
+from prima.scheduler.mediator import Mediator
 from prima.scheduler.selection import Policy
 
 

@@ -32,6 +32,8 @@ INSIDE = {
         {"chronicle", "memory", "intake"},
         {"selection"},
         {"selector"},
+        {"endings"},
+        {"failures"},
         {"mediator"},
         {"__init__"},
     ],

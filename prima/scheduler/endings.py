@@ -1,0 +1,207 @@
+"""How ABs leave working memory: by their own end, by O2, O3 and E2, and with their unit (U5)."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from prima.messages import Data, Notice, Order
+from prima.scheduler.behavior import Application, Behavior, Run, State, Stream
+from prima.scheduler.chronicle import Chronicle
+from prima.scheduler.intake import Maker, Table
+from prima.scheduler.memory import Memory
+from prima.scheduler.selection import Policy
+from prima.scheduler.selector import Selector
+
+
+@dataclass(slots=True)
+class Told:
+    """Notices for one application, to be handled in the window of ``stream`` if any (C3)."""
+
+    app: str
+    stream: Stream | None
+    notices: list[Notice]
+
+
+class Endings:
+    """Working memory, and every way out of it that is no failure."""
+
+    def __init__(
+        self, policy: Policy, table: Table, chronicle: Chronicle, bound: int | None = None
+    ) -> None:
+        self.chronicle = chronicle
+        self.memory = Memory()
+        self.told: deque[Told] = deque()
+        self._maker = Maker(table)
+        self._selector = Selector(self.memory, policy, self._maker, chronicle, bound)
+        self._deadlines: dict[str, int] = {}
+        self._rolling: Behavior | None = None
+        self._touched: dict[str, Stream] = {}
+        self.halted = False
+
+    @property
+    def orders(self) -> list[Order]:
+        """Orders for the devices, not yet drained."""
+        return self._selector.orders
+
+    def drain_orders(self) -> list[Order]:
+        """Give the orders made since the last time."""
+        orders, self._selector.orders = self._selector.orders, []
+        return orders
+
+    def _now(self) -> int:
+        return self.chronicle.now
+
+    def _cancel(self, behaviors: list[Behavior], devices: frozenset[str]) -> None:
+        """O2: delete ABs; one that runs on the devices is cut short, others finish."""
+        for ab in reversed(behaviors):
+            if ab.state is State.GONE or in_group(ab):
+                continue
+            heard = not ab.silent
+            if ab.state is State.RUNNING and not ab.devices & devices:
+                self._silence(ab)
+            else:
+                self._delete(ab, "O2")
+            if heard:
+                self._tell_cancelled(ab)
+
+    def _tell_cancelled(self, ab: Behavior) -> None:
+        if ab.run is not None and not ab.app.gone:
+            name = ab.command.type if ab.command else "iu"
+            notice = Notice("cancelled", ab.run.number, ab.command, event=f"cancel.{name}")
+            self.told.append(Told(ab.app.name, None, [notice]))
+
+    def _withdraw(self, behaviors: list[Behavior], rule: str) -> None:
+        """O3, E2: what has not started goes; what runs finishes, heard by nobody."""
+        for ab in reversed(behaviors):
+            if ab.state is State.GONE or in_group(ab):
+                continue
+            if ab.state is State.RUNNING:
+                self._silence(ab)
+                ab.left = True
+                if ab.listening:
+                    self._delete(ab, rule)
+            elif not ab.spans:
+                self._delete(ab, rule)
+
+    def _silence(self, ab: Behavior) -> None:
+        ab.silent = True
+        ab.last_loop = True
+
+    def _delete(self, ab: Behavior, rule: str) -> None:
+        """Take an AB out before its end; a running one is aborted."""
+        ab.open = True  # a unit that is deleted does not settle as done
+        for inner in list(ab.inner.values()):
+            self._delete(inner, rule)
+        if ab.state is State.RUNNING and ab.command is not None:
+            self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
+        self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state.value)
+        self._remove(ab)
+
+    def _remove(self, ab: Behavior) -> None:
+        unit = ab.unit
+        self.memory.remove(ab)
+        self._deadlines.pop(ab.name, None)
+        self._touched[ab.stream.name] = ab.stream
+        for child in ab.children:
+            child.waits_for.discard(ab.name)
+            if child.state is State.LINKED and not child.waits_for:
+                child.freed = self._now()
+                self.memory.wait(child)
+        if ab.group is not None:
+            ab.app.units = {key: held for key, held in ab.app.units.items() if held is not ab}
+        if unit is not None:
+            self._settle(unit)
+
+    def running(self, behavior: str) -> Behavior | None:
+        """The running AB of that name, if it runs still."""
+        ab = self.memory.running.get(behavior.partition(".")[0])
+        return ab if ab is not None and ab.id == behavior else None
+
+    def question(self) -> Behavior | None:
+        """The question that runs, if any (V1)."""
+        ab = self.memory.occupied.get("speech-recognition")
+        while ab is not None and ab.group is not None:
+            ab = ab.busy.get("speech-recognition")
+        return ab
+
+    def listening(self, behavior: str) -> None:
+        """A question has been said. One whose state was left ends at once (O3)."""
+        ab = self.running(behavior)
+        if ab is not None:
+            ab.listening = True
+            if ab.left:
+                self._delete(ab, "O3")
+
+    def ended(self, behavior: str, goal: bool, data: Data, inbound: bool = True) -> bool:
+        """An AB ends by itself, or one loop of a feedback Command does (U2)."""
+        ab = self.running(behavior)
+        if ab is None:
+            return False
+        ending = goal or ab.last_loop or not ab.feedback
+        self.chronicle.behavior(
+            "end",
+            ab,
+            outcome=str(data.get("outcome", "done")) if ending else "again",
+            goal=goal if ab.feedback else None,
+            data=dict(data) or None,
+            inbound=inbound or None,
+        )
+        if ab.feedback and not goal and "locomotion" in ab.devices:
+            self._rolling = ab
+        if ending:
+            self._finish(ab, data)
+        else:
+            self.memory.release(ab)
+            self._deadlines.pop(ab.name, None)
+            ab.freed = self._now()
+            self.memory.wait(ab)
+        return True
+
+    def _finish(self, ab: Behavior, data: Data) -> None:
+        run = ab.run
+        self._remove(ab)
+        if ab.silent or ab.app.gone or run is None:
+            return
+        run.left -= 1
+        notices = []
+        if ab.command is not None:
+            notices.append(Notice("ended", run.number, ab.command, data))
+        if run.left == 0:
+            notices.append(Notice("done", run.number, ab.command, data))
+        self.told.append(Told(ab.app.name, ab.stream, notices))
+
+    def _settle(self, unit: Behavior) -> None:
+        """End a unit when its Commands have ended, or what was left to run in it has."""
+        if unit.state is not State.RUNNING or unit.inner or unit.open:
+            return
+        self.chronicle.behavior("end", unit, outcome="done")
+        self._finish(unit, {})
+
+    def _close_unit(self, app: Application, number: int) -> None:
+        unit = app.units.pop(number, None)
+        if unit is None or unit.state is State.GONE:
+            return
+        unit.open = False
+        for ab in list(reversed(list(unit.inner.values()))):
+            if ab.state is State.RUNNING:
+                self._silence(ab)
+            elif ab.state is not State.GONE:
+                self._delete(ab, "U5")
+        if unit.name in self.memory.running:
+            self._settle(unit)
+        elif unit.name in self.memory.behaviors:
+            self._delete(unit, "U5")
+
+    def _delete_rest(self, tree: dict[str, Behavior], run: Run | None, rule: str) -> None:
+        """Delete what has not started of a failed tree; other runs in it are cancelled."""
+        for other in list(reversed(list(tree.values()))):
+            if other.state in (State.LINKED, State.WAITING) and not in_group(other):
+                self._delete(other, rule)
+                if other.run is not run and not other.silent:
+                    self._tell_cancelled(other)
+
+
+def in_group(ab: Behavior) -> bool:
+    """Whether an AB is a part of a unit that shares the unit's fate (U4)."""
+    return ab.unit is not None and not ab.unit.spans

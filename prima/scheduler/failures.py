@@ -1,0 +1,141 @@
+"""When things go wrong: devices that fail or hang, units that take too long, the emergency stop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from prima.messages import Notice, Order
+from prima.scheduler.behavior import Behavior, State
+from prima.scheduler.endings import Endings, Told, in_group
+
+HANG_MS = 120_000
+"""How long a Command may run beyond its own stated times before it has failed (E1)."""
+
+
+class Failures(Endings):
+    """The rules E1 and E5, and the longest duration of units (U4, U5)."""
+
+    def failed(self, behavior: str, device: str, reason: str) -> None:
+        """E1: a device fails; the AB ends as failed and the rest of its tree goes."""
+        ab = self.running(behavior)
+        if ab is not None:
+            self._fail(ab, f"error.device.{device}", reason, inbound=True)
+
+    def _fail(self, ab: Behavior, event: str, reason: str, inbound: bool = False) -> None:
+        self.chronicle.behavior(
+            "fail",
+            ab,
+            rule="E1",
+            event=event,
+            message=reason,
+            device=event.rpartition(".")[2],
+            inbound=inbound or None,
+        )
+        if ab.feedback and "locomotion" in ab.devices:
+            self._rolling = ab
+        told = ab.silent or ab.app.gone
+        # Inside a group the unit is the AB that fails (U4); a spanning unit stays its author's.
+        while ab.unit is not None and not ab.unit.spans:
+            unit = ab.unit
+            for inner in list(unit.inner.values()):
+                if inner is not ab:
+                    self._delete(inner, "E1")
+            unit.open = True  # so that it does not settle as done
+            self._remove(ab)
+            ab = unit
+            self.chronicle.behavior("fail", ab, rule="E1", event=event, message=reason)
+        stream, run, unit_of = ab.stream, ab.run, ab.unit
+        self._remove(ab)
+        self._delete_rest(stream.members if unit_of is None else unit_of.inner, run, "E1")
+        if run is not None and not told:
+            run.left = 0
+            notice = Notice("failed", run.number, ab.command, event=event, message=reason)
+            self.told.append(Told(ab.app.name, stream, [notice]))
+
+    def deadline(self) -> int | None:
+        """The next instant at which a unit or a device is too late, if any."""
+        return min(self._deadlines.values(), default=None)
+
+    def expire(self) -> None:
+        """U5, E1: end what has run longer than it may."""
+        late = [name for name, due in self._deadlines.items() if due <= self._now()]
+        for name in late:
+            self._deadlines.pop(name, None)
+            ab = self.memory.running.get(name)
+            if ab is not None and ab.group is not None:
+                self._unit_timeout(ab)
+            elif ab is not None:
+                self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
+                device = min(ab.devices, default="none")
+                self._fail(ab, f"error.device.{device}", "The device did not end in time.")
+
+    def _unit_timeout(self, unit: Behavior) -> None:
+        self.chronicle.behavior("fail", unit, rule="U5", event="error.unit.timeout")
+        number = next((key for key, ab in unit.app.units.items() if ab is unit), None)
+        run = unit.run
+        if number is not None:
+            self._close_unit(unit.app, number)
+        else:
+            told = unit.silent or unit.app.gone
+            self._silence(unit)
+            for ab in list(reversed(list(unit.inner.values()))):
+                if ab.state is not State.RUNNING:
+                    self._delete(ab, "U5")
+            self._delete_rest(unit.stream.members, run, "U5")
+            if told:
+                return
+        notice = Notice(
+            "failed" if number is None else "unit-timeout",
+            number if number is not None else run.number if run else 0,
+            event="error.unit.timeout",
+            message="The unit took too long.",
+        )
+        self.told.append(Told(unit.app.name, unit.stream, [notice]))
+
+    def emergency(self, pressed: bool, resume: bool) -> None:
+        """E5: every AB ends at once and nothing starts until the stop is released."""
+        self.chronicle.add("emergency", "mediator", rule="E5", outcome="pressed" if pressed else "released", inbound=True, data=None if pressed else {"resume": resume})  # fmt: skip
+        if pressed:
+            self.halted = True
+            running = [ab for ab in self.memory.running.values() if ab.unit is None]
+            for ab in running:
+                self._halt(ab)
+            return
+        self.halted = False
+        if not resume:
+            for ab in reversed(list(self.memory.behaviors.values())):
+                if ab.state is not State.GONE and not in_group(ab):
+                    self._delete(ab, "E5")
+                    if not ab.silent:
+                        self._tell_cancelled(ab)
+
+    def _halt(self, ab: Behavior) -> None:
+        given_up = ab.silent or ab.last_loop or (ab.spans and not ab.open)
+        ab.open = ab.open or given_up  # it does not settle as done meanwhile
+        for inner in list(ab.inner.values()):
+            if given_up:
+                self._delete(inner, "E5")
+            elif inner.state is State.RUNNING:
+                self._halt(inner)
+        if ab.command is not None:
+            self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
+        self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")
+        self.memory.release(ab)
+        self._deadlines.pop(ab.name, None)
+        if given_up:
+            self._remove(ab)
+        else:
+            ab.listening = False
+            self.memory.wait(ab)
+
+
+def allowance(ab: Behavior) -> int:
+    """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
+    row, command = ab.type, ab.command
+    assert row is not None and command is not None
+    stated: Iterable[int] = (
+        int(command.args[name])
+        for name, argument in row.arguments.items()
+        if argument.kind == "duration" and name in command.args
+    )
+    return HANG_MS + sum(stated)
