@@ -564,7 +564,8 @@ class Builder:
                 args[bare] = Expression(text, node, key)
                 continue
             try:
-                args[bare] = check_argument(bare, argument, text)
+                check_argument(bare, argument, text)
+                args[bare] = text  # the mediator reads it, as it reads what an expression gives
             except ValueError as error:
                 if "out of range" in str(error):
                     self.problem(node, "out-of-range", str(error), attribute=key)

@@ -17,8 +17,12 @@ PASSED = 0.25
 """How near a point on the way is passed (m)."""
 BLOCKED_MS = 10_000
 """How long a way may be blocked before the move has failed."""
-IN_THE_WAY = 0.45
-"""How near a person in front stops the robot (m)."""
+IN_THE_WAY = 0.8
+"""How near a person in front makes the robot go round him (m)."""
+TOO_NEAR = 0.1
+"""How near (m) its body may come to him in front."""
+PASSING = 70.0
+"""How many degrees off the person's direction it passes him."""
 ALIGNED = 1.5
 """How many degrees off a direction counts as turned to it."""
 BRAKING_MS = 200
@@ -246,18 +250,28 @@ class Robot:
     def _toward(self, point: Point, near: float) -> None:
         """Drive toward a point: turn on the spot first, then go, slower when near."""
         world, profile = self.world, self.profile
-        off = difference(bearing(world.position, point), world.heading)
+        heading, fastest = self._round_person(bearing(world.position, point), point)
+        off = difference(heading, world.heading)
         turning = max(min(off * 3.0, profile.turn_speed), -profile.turn_speed)
         if abs(off) > 30.0:
             world.drive = (0.0, turning)
-            return
-        forward = min(profile.speed, max(near * 1.5, 0.1))
+        else:
+            world.drive = (min(fastest, max(near * 1.5, 0.1)), turning)
+
+    def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
+        """The direction and speed that pass a person who stands in the way, if one does."""
+        world, profile = self.world, self.profile
         person = world.person
-        if person is not None and distance(world.position, person) < IN_THE_WAY:
-            ahead = difference(bearing(world.position, person), world.heading)
-            if abs(ahead) < 45.0:
-                forward = 0.0
-        world.drive = (forward, turning)
+        if person is None or distance(person, goal) < 0.05:
+            return heading, profile.speed
+        gap = distance(world.position, person)
+        toward = bearing(world.position, person)
+        aside = difference(heading, toward)
+        if gap > IN_THE_WAY or gap > distance(world.position, goal) or abs(aside) > PASSING:
+            return heading, profile.speed
+        if gap < profile.radius + TOO_NEAR and abs(difference(toward, world.heading)) < 60.0:
+            return toward + (PASSING if aside >= 0 else -PASSING), 0.0
+        return toward + (PASSING if aside >= 0 else -PASSING), profile.speed / 2
 
     def _drive_path(self, task: Task) -> bool:
         plan, world = task.plan, self.world

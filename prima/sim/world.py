@@ -117,6 +117,8 @@ class World:
         forward, turning = self.drive
         if forward or turning:
             body = self._body
+            if self._wall_ahead(forward, seconds):
+                forward = 0.0
             body.velocity = (forward * math.cos(body.angle), forward * math.sin(body.angle))
             body.angular_velocity = math.radians(turning)
             self._space.step(seconds)
@@ -124,6 +126,17 @@ class World:
             body.angular_velocity = 0.0
         if self._goal is not None and self.person is not None:
             self._step_person(self._goal, seconds)
+
+    def _wall_ahead(self, forward: float, seconds: float) -> bool:
+        """Whether going on would press the body against a wall."""
+        if not forward:
+            return False
+        angle = self._body.angle if forward > 0 else self._body.angle + math.pi
+        x, y = self.position
+        reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
+        ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
+        thick = self.profile.radius * 0.7
+        return self._space.segment_query_first((x, y), ahead, thick, WALLS) is not None
 
     def _step_person(self, goal: Point, seconds: float) -> None:
         assert self.person is not None

@@ -136,7 +136,11 @@ def describe(
         for name, value in {**(args or {}), **(extra or {})}.items()
         if name not in defaults or value != defaults[name].default
     }
-    shown = ", ".join(f"{name} {_value(value)}" for name, value in given.items())
+    times = {name for name, argument in defaults.items() if argument.kind == "duration"}
+    shown = ", ".join(
+        f"{name} {value / 1000:g}s" if name in times else f"{name} {_value(value)}"
+        for name, value in given.items()
+    )
     return title + (f" ({shown})" if shown else "") + (f', saying "{text}"' if text else "")
 
 

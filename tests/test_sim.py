@@ -1,0 +1,229 @@
+"""The simulated robot, user and services, seen through transcripts of small scenarios."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.sim.scenario import Map, Profile
+from prima.sim.world import World
+
+ROOT = Path(__file__).parent.parent
+HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{}" id="{}" xml:lang="{}">'
+
+
+def rehearse(
+    folder: Path,
+    body: str,
+    script: str = "",
+    policy: str | None = None,
+    lang: str = "en",
+    other: str = "",
+    until: str = "120s",
+) -> api.Transcript:
+    """Run one application (and perhaps another) in the office."""
+    (folder / "app.xml").write_text(HEAD.format("fa", "app", lang) + body + "</prima>", "utf-8")
+    applications = '<application src="app.xml"/>'
+    if other:
+        (folder / "other.xml").write_text(HEAD.format("ea", "other", "en") + other + "</prima>")
+        applications += '<application src="other.xml"/>'
+    path = folder / "scenario.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
+        f' world="{ROOT}/documents/worlds/office.xml" robot="{ROOT}/documents/robots/papero.xml"'
+        f' until="{until}"><robot at="entrance"/>{applications}{script}</scenario>',
+        "utf-8",
+    )
+    return api.rehearse(path, policy)
+
+
+def told(transcript: api.Transcript) -> list[str]:
+    return [row.what for row in transcript.rows() if row.kind != "load"]
+
+
+def when(transcript: api.Transcript, what: str) -> float:
+    return next(row.time for row in transcript.rows() if what in row.what)
+
+
+PROFILE = Profile("r", camera_angle=60, camera_range=4)
+
+
+@pytest.mark.parametrize(
+    ("person", "sees"),
+    [
+        ((2.0, 0.0), True),
+        ((2.0, 1.1), True),
+        ((2.0, 1.3), False),
+        ((-2.0, 0.0), False),
+        ((4.5, 0.0), False),
+        ((3.5, 0.2), False),
+    ],
+    ids=["ahead", "inside the angle", "outside it", "behind", "too far", "behind a wall"],
+)
+def test_the_camera_has_an_angle_a_range_and_walls(person: tuple[float, float], sees: bool) -> None:
+    plan = Map("m", walls=[((3.0, -1.0), (3.0, 1.0))])
+    world = World(plan, PROFILE, (0.0, 0.0), 0.0)
+    world.person = person
+    assert world.sees_person() is sees
+
+
+def test_physics_steps_only_while_something_moves() -> None:
+    world = World(Map("m"), PROFILE, (0.0, 0.0), 90.0)
+    world.advance(10**9)
+    assert (world.time, world.position) == (10**9, (0.0, 0.0))
+    world.drive = (0.5, 0.0)
+    world.advance(10**9 + 2000)
+    assert world.position == pytest.approx((0.0, 1.0), abs=1e-6)
+
+
+def test_a_wall_stops_the_robot() -> None:
+    world = World(Map("m", walls=[((1.0, -1.0), (1.0, 1.0))]), PROFILE, (0.0, 0.0), 0.0)
+    world.drive = (0.5, 0.0)
+    world.advance(5000)
+    assert world.position[0] < 0.85
+
+
+def test_every_command_of_table_4_2_can_be_done(tmp_path: Path) -> None:
+    commands = """
+      <active-sensing-human/> <face-human/> <face-human-and-speak>Hi.</face-human-and-speak>
+      <turn-and-speak angle="30">There.</turn-and-speak> <set-direction heading="90"/>
+      <turn angle="-90"/> <set-speed-and-time speed="0.2" time="1s"/> <speak>Go.</speak>
+      <move-head pan="20" tilt="5"/> <point-by-hand toward="hall"/> <gesture name="nod"/>
+      <topological-move to="hall"/> <set-position x="3" y="0"/>
+      <set-position-and-direction x="2" y="0" heading="180"/>"""
+    body = f"""<form id="a"><block>{commands}</block>
+      <field name="ok" type="boolean"><prompt>Shall I follow you?</prompt></field>
+      <block><tracking-human/></block>
+      <on event="touch"><stop-moving/><exit/></on></form>"""
+    script = """<person x="1.5" y="0.3"/><answer to="Shall I follow you?">Yes.</answer>
+      <when doing="tracking-human" after="3s"><touch sensor="head"/></when>"""
+    transcript = rehearse(tmp_path, body, script)
+    assert transcript.failures == []
+    done = {r["command"] for r in transcript.records if r["phase"] == "end"}
+    assert len(done | {"tracking-human"}) == 17
+    assert transcript.outcome == "over"
+
+
+def test_the_search_turns_the_camera_when_patience_has_run_out(tmp_path: Path) -> None:
+    body = """<form id="a"><block><active-sensing-human patience="5s">Where are you?</active-sensing-human>
+      <speak>There you are.</speak><exit/></block></form>"""
+    transcript = rehearse(tmp_path, body, '<person x="-1" y="0.3"/>')
+    assert 10 < when(transcript, "There you are.") < 40
+    assert (
+        told(transcript).count('Active Sensing Human (patience 5s), saying "Where are you?"') == 1
+    )
+
+
+def test_a_device_that_fails_and_one_that_hangs_are_events(tmp_path: Path) -> None:
+    body = """<form id="a"><block><speak>One.</speak></block>
+      <block><speak>Two.</speak></block><block><exit/></block>
+      <on event="error.device.speaker"><log expr="event.name"/></on></form>"""
+    fails = (
+        '<when at="0.5s"><fail device="speaker"/><wait for="1s"/><repair device="speaker"/></when>'
+    )
+    transcript = rehearse(tmp_path, body, fails)
+    assert "speak fails: the device fails" in told(transcript)
+    assert transcript.failures == []
+    hangs = '<when at="0.1s"><fail device="speaker" hangs="true"/></when>'
+    hung = rehearse(tmp_path, body, hangs, until="600s")
+    assert "speak fails: The device did not end in time." in told(hung)
+
+
+def test_a_blocked_way_and_an_unknown_place_are_events(tmp_path: Path) -> None:
+    body = """<form id="a"><block><set-position x="0" y="3"/><exit/></block>
+      <on event="error.device.locomotion"><speak>Blocked.</speak><exit/></on></form>"""
+    assert '"Blocked."' in told(rehearse(tmp_path, body))
+    body = """<form id="a"><block><topological-move to="moon"/><exit/></block>
+      <on event="error.device.localization"><speak>Where?</speak><exit/></on></form>"""
+    assert '"Where?"' in told(rehearse(tmp_path, body))
+
+
+def test_the_robot_goes_round_a_person_who_stands_in_its_way(tmp_path: Path) -> None:
+    body = '<form id="a"><block><topological-move to="hall"/><exit/></block></form>'
+    transcript = rehearse(tmp_path, body, '<person x="2" y="0.02"/>')
+    assert "reaches hall" in told(transcript)
+    passed = [r["data"]["y"] for r in transcript.records if "x" in (r.get("data") or {})]
+    assert max(abs(y) for y in passed) > 0.25
+
+
+def test_services_answer_late_fail_or_are_unknown(tmp_path: Path) -> None:
+    body = """<form id="a"><block><send to="library"/><send to="library"/><send to="nobody"/></block>
+      <on event="reply.library"><log expr="event.data.shelf"/></on>
+      <on event="error.service"><log expr="event.data.message"/></on></form>"""
+    script = """<service name="library"><reply after="2s"><data name="shelf" value="7"/></reply>
+      <failure after="1s" reason="closed"/></service>"""
+    transcript = rehearse(tmp_path, body, script)
+    logs = [(r["time"], r["message"]) for r in transcript.records if r["phase"] == "log"]
+    assert logs == [(0.001, 'there is no service "nobody"'), (1.0, "closed"), (2.0, "7")]
+
+
+def test_the_user_answers_late_stays_silent_or_interrupts(tmp_path: Path) -> None:
+    body = """<form id="a"><field name="x" type="boolean">
+        <prompt timeout="3s">May I tell you a very long story about robots?</prompt>
+        <noinput><speak>No answer.</speak><exit/></noinput>
+        <filled><speak>Thanks.</speak><exit/></filled></field></form>"""
+    silent = rehearse(tmp_path, body)
+    assert '"No answer."' in told(silent)
+    late = rehearse(tmp_path, body, '<answer to="very long story" after="2.9s">Yes.</answer>')
+    assert '"Thanks."' in told(late), "beginning to speak in time is enough"
+    early = rehearse(tmp_path, body, '<when at="1s"><say>Yes.</say></when>')
+    assert when(early, "Thanks.") < when(late, "Thanks.") - 2, "the question is cut short"
+
+
+def test_leaving_is_noticed_even_when_nothing_else_happens(tmp_path: Path) -> None:
+    body = '<form id="a"><on event="human.lost"><speak>Come back.</speak><exit/></on></form>'
+    script = '<person x="1" y="0"/><when at="2s"><leave/></when>'
+    assert 2.9 < when(rehearse(tmp_path, body, script), "Come back.") < 3.2
+
+
+def test_watches_see_the_sensors(tmp_path: Path) -> None:
+    body = """<form id="a"><watch name="near" when="sensor.human.distance &lt; 1"/>
+      <watch name="warm" when="sensor.temperature &gt; 30"/>
+      <on event="near"><speak>You are near.</speak></on><on event="warm"><speak>Hot.</speak><exit/></on></form>"""
+    script = """<person x="4" y="0"/><when at="1s"><walk x="0.8" y="0"/></when>
+      <when at="9s"><sensor name="temperature" value="31"/></when>"""
+    assert told(rehearse(tmp_path, body, script))[-3:-1] == ["warm", '"Hot."']
+
+
+def test_an_emergency_stop_and_an_unload(tmp_path: Path) -> None:
+    body = '<form id="a"><block><speak>A sentence of some length.</speak><exit/></block></form>'
+    script = """<when at="0.5s"><emergency/><wait for="5s"/><release/></when>"""
+    transcript = rehearse(tmp_path, body, script)
+    assert transcript.records[-1]["time"] > 7
+    starts = [r for r in transcript.records if r["phase"] == "start"]
+    assert len(starts) == 2, "it is said again from its beginning"
+    body = '<form id="a"><block><speak>One.</speak><speak>Two.</speak></block></form>'
+    gone = rehearse(tmp_path, body, '<when at="0.2s"><unload application="app"/></when>')
+    assert [r["text"] for r in gone.records if r["phase"] == "start"] == ["One."]
+
+
+def test_without_mediation_behaviours_collide(tmp_path: Path) -> None:
+    body = '<form id="a"><block><speak>My long sentence is here.</speak><exit/></block></form>'
+    other = '<form id="a"><block><speak>Mine as well.</speak><exit/></block></form>'
+    transcript = rehearse(tmp_path, body, policy="none", other=other)
+    assert transcript.summary().collisions == 1
+    mediated = rehearse(tmp_path, body, other=other)
+    assert mediated.summary().collisions == 0
+
+
+def test_a_japanese_application(tmp_path: Path) -> None:
+    body = """<form id="質問"><field name="行き先">
+        <prompt>どちらへいらっしゃいますか。</prompt>
+        <option value="kidode">木戸出先生の部屋</option>
+        <filled><speak><value expr="行き先"/>へ行きましょう。</speak><exit/></filled></field></form>"""
+    script = '<answer to="どちらへ">木戸出先生 の部屋、です</answer><answer to="いらっしゃい">木戸出先生の部屋。</answer>'
+    transcript = rehearse(tmp_path, body, script, lang="ja")
+    assert '"kidodeへ行きましょう。"' in told(transcript)
+    question = next(r["time"] for r in transcript.records if r["phase"] == "listening")
+    assert 1.5 < question < 2.5, "thirteen kana take about two seconds"
+
+
+def test_a_thousand_times_real_time_needs_no_trick() -> None:
+    """The demo's figure stands in docs/performance.md; here only that nothing is skipped."""
+    path = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
+    loops = [
+        r for r in api.rehearse(path).records if r["phase"] == "end" and r.get("outcome") == "again"
+    ]
+    assert len(loops) > 50
