@@ -40,7 +40,7 @@ INSIDE = {
     "markup": [{"vocabulary", "tree"}, {"check", "schema"}, {"reader"}, {"__init__"}],
     "interpreter": [
         {"vocabulary", "expressions", "grammar"},
-        {"elements"},
+        {"elements", "srgs"},
         {"build", "checks", "frame", "selection"},
         {"reader", "content"},
         {"form", "handling"},

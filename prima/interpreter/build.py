@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.commands import TABLE_4_2, check_argument, missing_argument
+from prima.commands import TABLE_4_2, CommandType, check_argument, missing_argument
 from prima.errors import Problem
 from prima.interpreter.elements import (
     Act,
@@ -42,15 +42,9 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.grammar import (
     Answers,
-    Choice,
-    Grammar,
-    Part,
-    Reference,
-    Sequence,
-    Tag,
-    Words,
     fold,
 )
+from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.messages import Json
@@ -259,7 +253,7 @@ class Builder:
         for child in node.all("link"):
             if ("next" in child.attributes) == ("event" in child.attributes):
                 self.problem(child, "missing-attribute", "<link> needs either next or event.")
-            grammars = [self.grammar(item) for item in child.all("grammar")]
+            grammars = [read_grammar(self.problem, item) for item in child.all("grammar")]
             if len(grammars) != 1:
                 self.problem(child, "missing-element", "<link> needs one <grammar>.")
             for grammar in grammars[:1]:
@@ -324,7 +318,7 @@ class Builder:
         ]
         answers = Answers(type=node.get("type"))
         for child in node.all("option"):
-            said = self.text_only(child)
+            said = child.text
             if not fold(said):
                 self.problem(child, "empty-answer", "This option has nothing to say.")
             elif fold(said) in answers.options:
@@ -332,7 +326,7 @@ class Builder:
                     child, "duplicate-answer", f'"{said}" is an option of this field already.'
                 )
             answers.options.setdefault(fold(said), child.get("value", said))
-        answers.grammars = [self.grammar(child) for child in node.all("grammar")]
+        answers.grammars = [read_grammar(self.problem, child) for child in node.all("grammar")]
         if not (answers.options or answers.grammars or answers.type):
             self.problem(
                 node,
@@ -347,11 +341,6 @@ class Builder:
             filled=self.filleds(node),
             lang=self.lang,
         )
-
-    @staticmethod
-    def text_only(node: Node) -> str:
-        """The element's own text."""
-        return node.text
 
     def subdialog(self, node: Node) -> Subdialog:
         """A subdialog."""
@@ -392,79 +381,6 @@ class Builder:
             Filled(child.get("mode", "all"), self.names(child), self.content(child), child)
             for child in node.all("filled")
         ]
-
-    # Grammars -----------------------------------------------------------------
-
-    def grammar(self, node: Node) -> Grammar:
-        """An SRGS grammar of rules, or of one expansion."""
-        grammar = Grammar()
-        rules = node.all("rule")
-        for rule in rules:
-            name = rule.get("id")
-            if name in grammar.rules:
-                self.problem(rule, "duplicate-id", f'There are two rules "{name}".', attribute="id")
-            grammar.rules[name] = self.expansion(rule)
-        if rules:
-            grammar.root = node.get("root", rules[0].get("id"))
-            if node.text:
-                self.problem(
-                    node, "stray-text", "This grammar has rules; its own text counts for nothing."
-                )
-        else:
-            grammar.root = "root"
-            grammar.rules["root"] = self.expansion(node)
-        if grammar.root not in grammar.rules:
-            self.problem(
-                node, "no-such-rule", f'There is no rule "{grammar.root}".', attribute="root"
-            )
-            grammar.rules[grammar.root] = Choice([])
-        self.check_references(node, grammar)
-        return grammar
-
-    def check_references(self, node: Node, grammar: Grammar) -> None:
-        """Every ruleref names a rule."""
-        for child in node.nodes:
-            name = child.get("uri")[1:]
-            if child.tag == "ruleref" and name not in grammar.rules:
-                self.problem(child, "no-such-rule", f'There is no rule "{name}".', attribute="uri")
-                grammar.rules[name] = Choice([])
-            self.check_references(child, grammar)
-
-    def expansion(self, node: Node) -> Part:
-        """The expansion that an element holds."""
-        parts: list[Part] = []
-        for item in node.content:
-            if isinstance(item, str):
-                if fold(item):
-                    parts.append(Words(fold(item)))
-                continue
-            match item.tag:
-                case "one-of":
-                    parts.append(Choice([self.expansion(child) for child in item.all("item")]))
-                case "item":
-                    parts.append(self.expansion(item))
-                case "ruleref":
-                    parts.append(Reference(item.get("uri")[1:]))
-                case "tag":
-                    parts.append(Tag(item.text))
-        low, high = self.repeat(node)
-        return Sequence(parts, low, high)
-
-    def repeat(self, node: Node) -> tuple[int, int]:
-        """The repeat attribute of an item: n, m-n or m-."""
-        text = node.get("repeat", "1") or "1"
-        low, dash, high = text.partition("-")
-        if not (
-            low.isdigit() and len(low) < 4 and (not high or (high.isdigit() and len(high) < 4))
-        ):
-            self.problem(
-                node,
-                "bad-value",
-                f'repeat "{text}" is not of the form 2, 0-1 or 1-.',
-                attribute="repeat",
-            )
-            return 1, 1
-        return int(low), int(high) if high else (999 if dash else int(low))
 
     # Content ----------------------------------------------------------------------
 
@@ -550,39 +466,10 @@ class Builder:
         """A Command element."""
         name = node.get("type") if node.tag == "command" else node.tag
         row = TABLE_4_2.get(name)
-        args: dict[str, Json | Expression] = {}
-        for key, text in node.attributes.items():
-            if key in ("order", "type") and (row is None or key not in row.arguments):
-                continue
-            bare = key.removesuffix("-expr")
-            argument = row.arguments.get(bare) if row else None
-            if argument is None:
-                continue
-            if bare != key:
-                if bare in node.attributes:
-                    self.exclusive(node, bare, key)
-                args[bare] = Expression(text, node, key)
-                continue
-            try:
-                check_argument(bare, argument, text)
-                args[bare] = text  # the mediator reads it, as it reads what an expression gives
-            except ValueError as error:
-                if "out of range" in str(error):
-                    self.problem(node, "out-of-range", str(error), attribute=key)
+        args = self.arguments(node, row) if row is not None else {}
         content = self.text(node) or None
-        if row is not None and not any(
-            item.required and name not in args for name, item in row.arguments.items()
-        ):
-            missing = missing_argument(row, args)
-            if missing:
-                self.problem(node, "missing-attribute", missing)
-        if row is not None and row.text == "required" and content is None:
-            self.problem(
-                node,
-                "nothing-to-say",
-                f"<{node.tag}> has nothing to say.",
-                "Write its text inside it.",
-            )
+        if row is not None:
+            self.check_complete(node, row, args, content)
         params = self.params(node)
         if params and self.root.get("kind") == "ea" and node.tag != "command":
             self.problem(
@@ -601,6 +488,39 @@ class Builder:
             node=node,
             lang=self.lang,
         )
+
+    def arguments(self, node: Node, row: CommandType) -> dict[str, Json | Expression]:
+        """A Command's motion arguments, as written or as expressions."""
+        args: dict[str, Json | Expression] = {}
+        for key, text in node.attributes.items():
+            bare = key.removesuffix("-expr")
+            argument = row.arguments.get(bare)
+            if argument is None:
+                continue
+            if bare != key:
+                if bare in node.attributes:
+                    self.exclusive(node, bare, key)
+                args[bare] = Expression(text, node, key)
+                continue
+            try:
+                check_argument(bare, argument, text)
+                args[bare] = text  # the mediator reads it, as it reads what an expression gives
+            except ValueError as error:
+                if "out of range" in str(error):
+                    self.problem(node, "out-of-range", str(error), attribute=key)
+        return args
+
+    def check_complete(
+        self, node: Node, row: CommandType, args: dict[str, Json | Expression], text: Text | None
+    ) -> None:
+        """Whether a Command has what it needs, beyond what its schema asks."""
+        required = {name for name, item in row.arguments.items() if item.required}
+        missing = missing_argument(row, args) if required <= args.keys() else ""
+        if missing:
+            self.problem(node, "missing-attribute", missing)
+        if row.text == "required" and text is None:
+            remedy = "Write its text inside it."
+            self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
 
     def act(self, node: Node) -> Act | None:
         """One element of executable content that is no Command."""

@@ -1,0 +1,86 @@
+"""Grammars as documents write them (SRGS 1.0, XML form), read into what matches."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
+from prima.markup.tree import Node
+
+
+class Note(Protocol):
+    """Notes a problem at an element or the value of one of its attributes."""
+
+    def __call__(
+        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+    ) -> None:
+        """Note it, with what to write instead."""
+
+
+def read_grammar(note: Note, node: Node) -> Grammar:
+    """An SRGS grammar of rules, or of one expansion."""
+    grammar = Grammar()
+    rules = node.all("rule")
+    for rule in rules:
+        name = rule.get("id")
+        if name in grammar.rules:
+            note(rule, "duplicate-id", f'There are two rules "{name}".', attribute="id")
+        grammar.rules[name] = _expansion(note, rule)
+    if rules:
+        grammar.root = node.get("root", rules[0].get("id"))
+        if node.text:
+            note(node, "stray-text", "This grammar has rules; its own text counts for nothing.")
+    else:
+        grammar.root = "root"
+        grammar.rules["root"] = _expansion(note, node)
+    if grammar.root not in grammar.rules:
+        note(node, "no-such-rule", f'There is no rule "{grammar.root}".', attribute="root")
+        grammar.rules[grammar.root] = Choice([])
+    _check_references(note, node, grammar)
+    return grammar
+
+
+def _check_references(note: Note, node: Node, grammar: Grammar) -> None:
+    """Every ruleref names a rule."""
+    for child in node.nodes:
+        name = child.get("uri")[1:]
+        if child.tag == "ruleref" and name not in grammar.rules:
+            note(child, "no-such-rule", f'There is no rule "{name}".', attribute="uri")
+            grammar.rules[name] = Choice([])
+        _check_references(note, child, grammar)
+
+
+def _expansion(note: Note, node: Node) -> Part:
+    """The expansion that an element holds."""
+    parts: list[Part] = []
+    for item in node.content:
+        if isinstance(item, str):
+            if fold(item):
+                parts.append(Words(fold(item)))
+            continue
+        match item.tag:
+            case "one-of":
+                parts.append(Choice([_expansion(note, child) for child in item.all("item")]))
+            case "item":
+                parts.append(_expansion(note, item))
+            case "ruleref":
+                parts.append(Reference(item.get("uri")[1:]))
+            case "tag":
+                parts.append(Tag(item.text))
+    low, high = _repeat(note, node)
+    return Sequence(parts, low, high)
+
+
+def _repeat(note: Note, node: Node) -> tuple[int, int]:
+    """The repeat attribute of an item: n, m-n or m-."""
+    text = node.get("repeat", "1") or "1"
+    low, dash, high = text.partition("-")
+    if not (low.isdigit() and len(low) < 4 and (not high or (high.isdigit() and len(high) < 4))):
+        note(
+            node,
+            "bad-value",
+            f'repeat "{text}" is not of the form 2, 0-1 or 1-.',
+            attribute="repeat",
+        )
+        return 1, 1
+    return int(low), int(high) if high else (999 if dash else int(low))
