@@ -42,6 +42,8 @@ def read_file(path: str | Path) -> bytes:
         UsageError: it cannot be read.
     """
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise UsageError(f"{path}: cannot be read: it is not a file.")
         with Path(path).open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
             if len(data) > MAX_BYTES:
@@ -200,7 +202,10 @@ class Transcript:
         """The rows of the table."""
         from prima.transcript.table import make_rows
 
-        return make_rows(self.records)
+        try:
+            return make_rows(self.records)
+        except (KeyError, TypeError, ValueError, AttributeError):
+            raise UsageError(f"{self.name}: a record lacks what its phase has.") from None
 
     def table(self, why: bool = False) -> str:
         """The table as text; with ``why``, each row with the rule that put it there."""
@@ -253,7 +258,10 @@ def rehearse(
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
-    name = policy or cast.scenario.policy
+    name = cast.scenario.policy if policy is None else policy
+    first = name.partition(":")[2]
+    if first and first not in {document.id for document in cast.documents}:
+        raise UsageError(f'The policy "{name}" names an application that is not there.')
     rehearsal = Rehearsal(cast, policy_named(name), bound)
     head: Record = {
         "time": 0,
@@ -288,11 +296,12 @@ def read(path: str | Path) -> Transcript:
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
     """
-    from prima.transcript.lines import read_lines
+    from prima.transcript.lines import MAX_LINE, read_lines
 
     try:
         with Path(path).open(encoding="utf-8") as stream:
-            records = list(read_lines(str(path), stream))
+            lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
+            records = list(read_lines(str(path), lines))
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError:
@@ -349,6 +358,8 @@ def explain_row(transcript: Transcript, number: int) -> str:
         UsageError: there is no such row.
     """
     rows = transcript.rows()
+    if not rows:
+        raise UsageError(f"{transcript.name}: the transcript has no rows.")
     if not 0 <= number < len(rows):
         raise UsageError(f"There is no row {number}; the rows are 0 to {len(rows) - 1}.")
     row = rows[number]

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.exceptions import Exit
 
 from prima import __version__
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
@@ -131,7 +132,7 @@ def validate(files: tuple[str, ...], form: str) -> None:
         counts = f"{errors} errors, {warnings} warnings" if problems else "no problems"
         _tell(f"{len(files)} files: {counts}")
     if unread or errors:
-        sys.exit(2 if unread else 1)
+        raise Exit(2 if unread else 1)
 
 
 @cli.command()
@@ -157,6 +158,8 @@ def run(
     from prima import api
 
     loaded = api.load_scenario(scenario)
+    if output is not None and _is_source(output, scenario, loaded.files):
+        raise UsageError(f"{output}: this is one of the run's own documents; write elsewhere.")
     for problem in loaded.problems:
         _tell(str(problem))
     _start_watchdog()
@@ -175,7 +178,14 @@ def run(
     if transcript.outcome == "limit":
         raise RunError("the run made more records than a run may.")
     if transcript.failures:
-        sys.exit(3)
+        raise Exit(3)
+
+
+def _is_source(output: str, scenario: str, files: dict[str, str]) -> bool:
+    """Whether an output would overwrite what the run is made of."""
+    folder = os.path.dirname(scenario)
+    sources = {os.path.realpath(os.path.join(folder, name)) for name in files}
+    return os.path.realpath(output) in sources
 
 
 def _run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
@@ -257,7 +267,7 @@ def diff(before: str, after: str, form: str) -> None:
     else:
         click.echo(format_difference(difference, _coloured()), nl=False, color=_coloured())
     if difference.differs:
-        sys.exit(1)
+        raise Exit(1)
 
 
 @cli.command()
@@ -279,7 +289,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     same = again.dumps() == original.dumps()
     _tell("the same, byte for byte" if same else "the replay differs")
     if not same:
-        sys.exit(1)
+        raise Exit(1)
 
 
 @cli.command()
@@ -304,10 +314,17 @@ def explain(what: str, row: int | None) -> None:
 
 def main() -> None:
     """Run the command line; every way out has its exit code and no traceback."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    code: Any = 0
     try:
         code = cli.main(standalone_mode=False)
         sys.stdout.flush()
-        sys.exit(code if isinstance(code, int) else 0)
+        code = code if isinstance(code, int) else 0
+    except SystemExit:
+        code = 0  # click's way of saying that nobody reads any more
     except DocumentError as error:
         for problem in error.problems:
             _tell(str(problem))
@@ -327,6 +344,10 @@ def main() -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
+    except OSError as error:
+        _tell(f"prima: cannot go on: {error.strerror}.")
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        code = 2
     except MemoryError:
         _tell("prima: out of memory")
         code = 3

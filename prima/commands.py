@@ -7,6 +7,7 @@ copy of it (thesis 5.3 (6)).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -282,10 +283,12 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
         result = value
     elif isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{shown} is not a {argument.kind}.")
-    elif argument.kind == "duration":
+    elif argument.kind == "duration" and math.isfinite(value):
         result = round(value * 1000) if abs(value) < 1e9 else -1
-    elif argument.kind == "number":
+    elif argument.kind == "number" and math.isfinite(value):
         result = float(value)
+    elif not math.isfinite(value):
+        raise ValueError(f"{shown} is not a number.")
     elif argument.kind == "id" and value == int(value):
         result = str(int(value))
     else:
@@ -299,7 +302,9 @@ def _check_range(shown: str, argument: Argument, value: float) -> None:
     low, high = argument.low, argument.high
     if not within(value, low, high):
         unit = " ms" if argument.kind == "duration" else ""
-        raise ValueError(f"{shown} is out of range: {low:g} to {high:g}{unit}.")
+        least = "" if low is None else f" from {low:g}"
+        most = "" if high is None else f" to {high:g}"
+        raise ValueError(f"{shown} is out of range:{least}{most}{unit}.")
 
 
 def check_arguments(

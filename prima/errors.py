@@ -13,6 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
+MANY_LETTERS, MANY_WORDS = 60, 300
+"""Beyond these no guess is made at what was meant: it would take too long."""
+
 Severity = Literal["error", "warning"]
 
 
@@ -68,7 +71,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
     from difflib import get_close_matches  # costs a third of a start, and is rarely needed
 
-    nearest = get_close_matches(word, sorted(known), n=1, cutoff=0.6)
+    words = sorted(known)
+    if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
+        return ""
+    nearest = get_close_matches(word, words, n=1, cutoff=0.6)
     return f'Did you mean "{nearest[0]}"?' if nearest else ""
 
 

@@ -213,7 +213,7 @@ class Interpreter:
             self._instant = self.now = now
             self._steps = 0
             if self._timed and not self.over:
-                self.engine.clock(self.application, now / 1000)
+                self._guard(lambda: self.engine.clock(self.application, now / 1000))
 
     def _guard(self, act: Callable[[], object]) -> None:
         """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""

@@ -40,6 +40,7 @@ from prima.interpreter.elements import (
     all_acts,
     run_commands,
 )
+from prima.interpreter.expressions import RESERVED
 from prima.interpreter.grammar import (
     Answers,
     fold,
@@ -155,6 +156,9 @@ class Builder:
                     node, "duplicate-id", f'There are two forms "{name}".', "Rename one.", "id"
                 )
             forms.setdefault(name, self.form(node))
+        if "." in root.get("id"):
+            remedy = "Use letters, digits and hyphens: transcripts count with dots."
+            self.problem(root, "bad-value", f'id "{root.get("id")}" has a dot.', remedy, "id")
         if not forms:
             self.problem(
                 root, "no-form", "The application has no form.", "Write at least one <form>."
@@ -206,6 +210,9 @@ class Builder:
         if "." in name:
             remedy = "Declare it where it belongs, without a scope's name."
             self.problem(node, "bad-value", f'{attribute} "{name}" has a dot.', remedy, attribute)
+        elif name in RESERVED:
+            message = f'{attribute} "{name}" is a word of ECMAScript\'s own.'
+            self.problem(node, "bad-value", message, "Choose another name.", attribute)
 
     def script(self, node: Node) -> Script:
         """A script."""
@@ -290,6 +297,7 @@ class Builder:
     ) -> tuple[str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node]:
         """What all form items have."""
         name = node.get("name")
+        self.plain_name(node, "name")
         if not name:
             self._unnamed += 1
             name = f"$item{self._unnamed}"

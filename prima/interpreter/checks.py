@@ -30,6 +30,7 @@ from prima.interpreter.elements import (
     Script,
     StepTemplate,
     Subdialog,
+    Throw,
     Unit,
     all_acts,
     all_items,
@@ -48,6 +49,8 @@ from prima.markup.tree import Node
 LONG_UNIT_MS = 20_000
 """A unit whose speech alone takes longer than this cannot be reacted in."""
 MS_A_LETTER = 70
+MANY_STEPS = 200
+"""Steps of one run beyond which its branches are not compared."""
 
 
 def check_document(document: Document) -> list[Problem]:
@@ -105,6 +108,11 @@ class Checker:
         self.document = document
         self.problems: list[Problem] = []
         self.shared = self._setup_names(document.setup)
+        self.contents: dict[int, list[list[Act]]] = {}
+        """Pieces of content by the form they stand in (its id(); 0 for the document)."""
+        for form, content, _ in document.contents():
+            self.contents.setdefault(id(form) if form else 0, []).append(content)
+        self._led: dict[int, tuple[set[str], bool]] = {}
 
     def note(
         self,
@@ -168,19 +176,21 @@ class Checker:
 
     def _leads(self, form: Form | None) -> tuple[set[str], bool]:
         """Forms that content of a form (or the document's) leads to, and whether it can end."""
+        key = id(form) if form else 0
+        if key in self._led:
+            return self._led[key]
         targets: set[str] = set()
         ends = False
-        for owner, content, _ in self.document.contents():
-            if owner is not form:
-                continue
+        for content in self.contents.get(key, ()):
             for act in all_acts(content):
                 if isinstance(act, Goto) and act.form is not None:
                     targets |= {act.form} if isinstance(act.form, str) else set(self.document.forms)
-                ends = ends or isinstance(act, Exit | Return)
+                ends = ends or isinstance(act, Exit | Return | Throw)
         links = self.document.links if form is None else form.links
         targets |= {link.form for link in links if link.form}
         if form is not None:
             targets |= {i.form for i in all_items(form.items) if isinstance(i, Subdialog)}
+        self._led[key] = (targets, ends)
         return targets, ends
 
     def _reachable(self) -> None:
@@ -203,13 +213,7 @@ class Checker:
                     "Go to it from somewhere, or remove it.", "id", "warning",
                 )  # fmt: skip
             targets, ends = self._leads(form)
-            throws = any(
-                type(act).__name__ == "Throw"
-                for owner, content, _ in self.document.contents()
-                if owner is form
-                for act in all_acts(content)
-            )
-            if not (targets or ends or throws or everywhere or everywhere_ends) and name in reached:
+            if not (targets or ends or everywhere or everywhere_ends) and name in reached:
                 self.note(
                     form.node, "dead-end", f'The form "{name}" can never be left.',
                     "If the application is over here, write <exit/>.", "id", "warning",
@@ -335,10 +339,9 @@ class Checker:
     def _place_in(self, expr: Expression, line: int, column: int) -> Place:
         """The place inside an expression where its compiler stopped."""
         start = expr.node.attribute_place(expr.attribute) if expr.attribute else expr.node.place
-        if not expr.attribute or line < 1:
+        if not expr.attribute or line != 1:
             return start
-        ahead = start.column - 1 if line == 1 else 0
-        return Place(start.file, start.line + line - 1, max(ahead + column, 1))
+        return expr.node.source.inside(start, max(column - 1, 0))
 
     def _expression(self, expr: Expression, known: set[str]) -> None:
         if self._compiles(expr, check_expression):
@@ -379,9 +382,12 @@ class Checker:
 
     def _branches(self, steps: list[StepTemplate]) -> None:
         """U3: branches of a par that share a device run one after the other."""
+        chained = all(step.after == ((n - 1,) if n else ()) for n, step in enumerate(steps))
+        if chained or len(steps) > MANY_STEPS:
+            return
         for index, step in enumerate(steps):
-            for other in steps[index + 1 :]:
-                if not self._parallel(steps, index, steps.index(other)):
+            for second, other in enumerate(steps[index + 1 :], index + 1):
+                if not self._parallel(steps, index, second):
                     continue
                 both = _devices(step) & _devices(other)
                 if both:

@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
 MAX_TEXT = 4000
 """Characters that a Command may say."""
+MAX_NAME = 200
+"""Characters of an event's name that count."""
 MAX_REPEATS = 10_000
 """Elements that a foreach goes through."""
 
@@ -158,7 +160,7 @@ class Executor:
             case Goto():
                 self.goto(act, fiber)
             case Throw():
-                name = str(self.plain(act.event, fiber))
+                name = str(self.plain(act.event, fiber))[:MAX_NAME]
                 message = str(self.plain(act.message, fiber) or "")
                 raise Thrown(self.owner.internal(name, message), source(act.node))
             case Return():
@@ -248,9 +250,7 @@ class Executor:
     def foreach(self, act: Foreach, fiber: Fiber) -> Content:
         """Content once for each element of an array."""
         try:
-            elements = self.engine.elements(act.array.code, self.scopes(fiber))
-            if len(elements) > MAX_REPEATS:
-                raise ScriptError(f"it has more than {MAX_REPEATS:,} elements")
+            elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
         except ScriptError as error:
             raise self.failure(error, act.array) from None
         for element in elements:

@@ -88,7 +88,9 @@ PRELUDE = r"""
 """
 
 HELPERS = r"""
-({
+(function () {
+const stringify = JSON.stringify, isArray = Array.isArray, text = String;
+return {
   scope: function () { return {}; },
   dialog: function () { const made = {}; made.dialog = made; return made; },
   event: function (name, message, data) {
@@ -101,12 +103,15 @@ HELPERS = r"""
   has: function (o, k) { return k in o; },
   defined: function (o, k) { return o[k] !== undefined; },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
-    ? JSON.stringify(v) : String(v); },
-  json: function (v) { return JSON.stringify(v); },
-  items: function (v) { return Array.isArray(v) ? v.length : -1; },
+    ? stringify(v) : text(v); },
+  json: function (v) { return stringify(v); },
+  items: function (v) { return isArray(v) ? v.length : -1; },
   item: function (v, i) { return v[i]; },
-})
+}; })()
 """
+
+ODD = (TypeError, ValueError, OverflowError, MemoryError)
+"""What the binding itself raises for values that it cannot give to Python."""
 
 SCOPES = ("application", "document", "dialog", "local")
 """The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
@@ -212,7 +217,7 @@ GLOBALS = frozenset(
 )
 TOKEN = re.compile(
     r"""//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`"""
-    r"""|(?<![\w$)\]])\s*/(?![/*])(?:\\.|\[(?:\\.|[^\]\\])*\]|[^/\\\n])+/[a-z]*"""
+    r"""|(?<![\w$)\]\s])\s*+/(?![/*])(?:\\.|\[(?:\\.|[^\]\\])*\]|[^/\\\n])+/[a-z]*"""
     r"""|[0-9][\w.]*|[^\W\d][\w$]*|\$[\w$]*|\.\.\.|=>|\?\.|\S"""
 )
 IDENTIFIER = re.compile(r"(?:[^\W\d]|\$)[\w$]*")
@@ -327,7 +332,7 @@ class Engine:
         Engine.evaluations += 1
         try:
             return function(*args)
-        except (quickjs.JSException, quickjs.StackOverflow, TypeError, MemoryError) as error:
+        except (quickjs.JSException, quickjs.StackOverflow, *ODD) as error:
             raise _script_error(error) from None
         finally:
             Engine.evaluations += 1
@@ -416,13 +421,13 @@ class Engine:
         if isinstance(value, str):
             return self._bounded(value)
         text = self._call(self._help["json"], value)
-        return None if text is None else json.loads(self._bounded(text))
+        return json.loads(self._bounded(text)) if isinstance(text, str) else None
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
         return self.out(self._call(self._help["item"], scope, name))
 
-    def elements(self, code: str, scopes: tuple[Scope, ...]) -> list[Any]:
+    def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """Evaluate an expression that gives an array; its elements as the engine's values.
 
         Raises:
@@ -432,6 +437,8 @@ class Engine:
         length = self._call(self._help["items"], array)
         if length < 0:
             raise ScriptError(f"{code} is not an array")
+        if length > most:
+            raise ScriptError(f"it has more than {most:,} elements")
         return [self._call(self._help["item"], array, index) for index in range(int(length))]
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
@@ -495,6 +502,7 @@ def check_expression(context: Any, code: str) -> None:
         ScriptError: with the line and column inside the expression.
     """
     _check(context, code, f"return (\n{code}\n)", 1)
+    _check(context, code, f"return [\n{code}\n]", 1)  # what closes one bracket fails in the other
 
 
 def check_script(context: Any, code: str) -> None:
@@ -503,7 +511,8 @@ def check_script(context: Any, code: str) -> None:
     Raises:
         ScriptError: with the line and column inside the script.
     """
-    _check(context, code, f"\n{code}\n", 1)
+    _check(context, code, f"return [function () {{\n{code}\n}}]", 1)
+    _check(context, code, f"if (0) {{\n{code}\n}} else {{}}", 1)
 
 
 def _check(context: Any, code: str, body: str, before: int) -> None:

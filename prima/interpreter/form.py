@@ -44,7 +44,11 @@ class Algorithm:
         self, frame: Frame, fiber: Fiber, items: list[Item], unit: Unit | None
     ) -> Content:
         while True:
-            item = self.select_item(frame, fiber, items)
+            try:
+                item = self.select_item(frame, fiber, items)
+            except Thrown as thrown:  # a condition that fails: nothing more can be selected
+                yield from self.owner.handling.handle_thrown(frame, fiber, unit, thrown, 0)
+                return
             if item is None:
                 return
             self.owner.count_step(item.node)

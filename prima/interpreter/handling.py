@@ -178,7 +178,10 @@ class Handling:
             *path, last = name.split(".")
             held = tree
             for part in path:
-                held = held.setdefault(part, {})
+                inner = held.get(part)
+                if not isinstance(inner, dict):
+                    inner = held[part] = {}
+                held = inner
             held[last] = value
         self.owner.engine.set(self.owner.application, "sensor", tree)
         raised = []

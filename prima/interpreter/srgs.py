@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Protocol
 
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
@@ -75,7 +76,8 @@ def _repeat(note: Note, node: Node) -> tuple[int, int]:
     """The repeat attribute of an item: n, m-n or m-."""
     text = node.get("repeat", "1") or "1"
     low, dash, high = text.partition("-")
-    if not (low.isdigit() and len(low) < 4 and (not high or (high.isdigit() and len(high) < 4))):
+    fits = all(re.fullmatch("[0-9]{1,3}", part) for part in (low, *([high] if high else [])))
+    if not fits or (high and int(low) > int(high)):
         note(
             node,
             "bad-value",

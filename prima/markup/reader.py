@@ -72,7 +72,7 @@ def decode(file: str, data: bytes) -> str:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(
-            Place(file, line),
+            Place(file, line, error.start - data.rfind(b"\n", 0, error.start)),
             "encoding",
             f"A byte here is not {encoding.upper()}.",
             "Save it as UTF-8, or declare the encoding it has.",
@@ -124,7 +124,10 @@ def parse(file: str, data: bytes) -> Node:
     Raises:
         DocumentError: not well-formed, or beyond a limit.
     """
-    text = DECLARATION.sub(lambda match: " " * len(match[0]), decode(file, data), count=1)
+    text = decode(file, data)
+    declaration = DECLARATION.match(text)
+    if declaration is not None:  # the text is what it is, whatever it declares
+        text = " " * declaration.end() + text[declaration.end() :]
     source = Source(file, text)
     _check_prolog(source)
     parser = etree.XMLParser(
@@ -140,6 +143,9 @@ def parse(file: str, data: bytes) -> Node:
         root = etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
         raise _syntax_error(source, error) from None
+    dtd = root.getroottree().docinfo.internalDTD
+    if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
+        raise _error(Place(file), "doctype", "A DOCTYPE may not declare anything itself.")
     return _convert(root, source)
 
 

@@ -31,19 +31,31 @@ class Source:
                 found.append((parser.CurrentLineNumber, parser.CurrentByteIndex))
 
             parser.StartElementHandler = start
-            parser.Parse(data, True)
+            try:
+                parser.Parse(data, True)
+            except expat.ExpatError:
+                pass  # expat knows fewer letters than XML has today: the rest is not placed
             self.places = _to_characters(self.text, data, found)
         return self.places
 
     def place(self, index: int, attribute: str = "", value: bool = False) -> Place:
         """Where element number ``index`` stands, or its attribute, or the attribute's value."""
-        line, offset = self._find()[index]
+        places = self._find()
+        if index >= len(places):
+            return Place(self.file)
+        line, offset = places[index]
         if attribute:
             match = NAME.match(self.text, offset)
             while match := ATTRIBUTE.match(self.text, match.end() if match else offset):
                 if match[1] == attribute:
                     return self.at(match.start(2) + 1 if value else match.start(1))
         return Place(self.file, line, offset - self.text.rfind("\n", 0, offset))
+
+    def inside(self, place: Place, characters: int) -> Place:
+        """The place some characters on, line ends counted."""
+        lines = self.text.split("\n")
+        start = sum(len(one) + 1 for one in lines[: place.line - 1]) + place.column - 1
+        return self.at(min(start + characters, len(self.text)))
 
     def at(self, offset: int) -> Place:
         """The place of a character of the text."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from prima.interpreter.grammar import fold
@@ -212,6 +213,7 @@ def _plain(text: str) -> Json:
     if text in ("true", "false"):
         return text == "true"
     try:
-        return float(text)
+        number = float(text)
+        return number if math.isfinite(number) else text
     except ValueError:
         return text

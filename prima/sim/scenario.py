@@ -28,8 +28,14 @@ class Reader:
 
     def get(self, node: Node, name: str) -> Any:
         """An attribute's value, its default, or None."""
-        element = self.vocabulary.elements[node.key]
-        item = next(item for item in element.attributes if item.name == name)
+        element = self.vocabulary.elements.get(node.key)
+        item = (
+            next((item for item in element.attributes if item.name == name), None)
+            if element
+            else None
+        )
+        if item is None:
+            return None  # an element that the language lacks; told already
         text = node.attributes.get(name, item.default)
         if not text and name not in node.attributes:
             return None
@@ -180,6 +186,16 @@ def read_robot(file: str, data: bytes) -> Profile:
             message = f'There is a Command "{node.get("command")}" already.'
             reader.problem(node, "duplicate-id", message, "command")
         rows[node.get("command")] = _added(reader, node)
+        lacking = set(node.get("devices").split()) - profile.devices
+        if lacking:
+            message = f'The robot has no device "{min(lacking)}".'
+            reader.problem(
+                node,
+                "no-such-name",
+                message,
+                "devices",
+                did_you_mean(min(lacking), profile.devices),
+            )
         profile.durations[node.get("command")] = max(reader.get(node, "duration") or 1000, 1)
     for node in root.all("allows"):
         reader.known(node, "command", set(rows), "Command")
@@ -203,6 +219,10 @@ def _added(reader: Reader, node: Node) -> CommandType:
         )
         for child in node.all("argument")
     }
+    for child in node.all("argument"):
+        low, high = reader.get(child, "low"), reader.get(child, "high")
+        if low is not None and high is not None and low > high:
+            reader.problem(child, "out-of-range", "low is greater than high.", "low")
     return CommandType(
         name=node.get("command"),
         title=node.get("title", node.get("command")),
@@ -295,7 +315,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         title=root.get("title"),
         world=root.get("world"),
         robot=root.get("robot"),
-        until=reader.get(root, "until") or 600_000,
+        until=600_000 if (until := reader.get(root, "until")) is None else until,
         policy=root.get("policy", "prima"),
         robot_at=robots[0].get("at") if robots else "",
         robot_heading=(
@@ -310,7 +330,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         whens=[_when(reader, node) for node in root.all("when")]
         + [_answer(reader, node) for node in root.all("answer")],
         services={
-            node.get("name"): [_reply(reader, child) for child in node.nodes]
+            node.get("name"): [_reply(reader, child) for child in node.nodes if child.key]
             for node in root.all("service")
         },
         node=root,

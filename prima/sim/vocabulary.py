@@ -38,10 +38,23 @@ WORLD = Vocabulary(
             "wall",
             "A straight wall: the robot neither sees nor goes through it. The user goes as told.",
             (
-                attribute("x1", "number", "metres east of one end", "required"),
-                attribute("y1", "number", "metres north of one end", "required"),
-                attribute("x2", "number", "metres east of the other end", "required"),
-                attribute("y2", "number", "metres north of the other end", "required"),
+                attribute(
+                    "x1", "number", "metres east of one end", "required", low=-1000, high=1000
+                ),
+                attribute(
+                    "y1", "number", "metres north of one end", "required", low=-1000, high=1000
+                ),
+                attribute(
+                    "x2", "number", "metres east of the other end", "required", low=-1000, high=1000
+                ),
+                attribute(
+                    "y2",
+                    "number",
+                    "metres north of the other end",
+                    "required",
+                    low=-1000,
+                    high=1000,
+                ),
             ),
         ),
         Element("thing", "Something to look at or point to.", (_ID, _X, _Y, _TITLE)),
@@ -215,8 +228,8 @@ SCENARIO = Vocabulary(
             "The user, and where at first.",
             (
                 attribute("at", "id", "a place or thing"),
-                attribute("x", "number", "metres east"),
-                attribute("y", "number", "metres north"),
+                attribute("x", "number", "metres east", low=-1000, high=1000),
+                attribute("y", "number", "metres north", low=-1000, high=1000),
                 attribute("speed", "number", "metres a second", default="1", low=0.05, high=5),
             ),
         ),
@@ -260,8 +273,8 @@ SCENARIO = Vocabulary(
             "The user walks somewhere in a straight line.",
             (
                 attribute("to", "id", "a place or thing"),
-                attribute("x", "number", "metres east"),
-                attribute("y", "number", "metres north"),
+                attribute("x", "number", "metres east", low=-1000, high=1000),
+                attribute("y", "number", "metres north", low=-1000, high=1000),
             ),
         ),
         Element(

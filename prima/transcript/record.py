@@ -44,7 +44,7 @@ class Record(BaseModel):
     inbound records of a transcript are enough to run it again.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
 
     time: float = Field(ge=0, allow_inf_nan=False, description="Seconds since the run began.")
     phase: Literal[
