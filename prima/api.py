@@ -22,6 +22,7 @@ from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.check import check_root
 from prima.markup.reader import MAX_BYTES, parse, too_large
 from prima.messages import Record
+from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
     from prima.sim.rehearsal import Cast
@@ -327,8 +328,13 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
     for name, digest in head["data"].get("files", {}).items():
         if name in loaded.files and loaded.files[name] != digest:
             raise UsageError(f"{name} is not the file that the transcript was made with.")
-    records = replay_records(transcript.records, cast.documents, cast.robot.commands)
-    return Transcript([finished(record) for record in records], transcript.name)
+    if transcript.records[-1]["time"] > LONGEST_MS / 1000:
+        raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
+    try:
+        again = list(replay_records(transcript.records, cast.documents, cast.robot.commands))
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
+    return Transcript([finished(record) for record in again], transcript.name)
 
 
 def diff(before: Transcript, after: Transcript) -> Difference:

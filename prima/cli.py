@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
 WATCHDOG_SECONDS = 5.0
 """How long one evaluation of a document's script may hold the process up."""
+INSTANT_SECONDS = 20.0
+"""How long the scripts of one instant of a run may take together."""
 
 
 class Commands(click.Group):
@@ -216,15 +218,20 @@ def _start_watchdog() -> None:
     import time
 
     from prima.interpreter.expressions import Engine
+    from prima.session import Session
 
     def watch() -> None:
         seen, since = -1, time.monotonic()
+        instant, began = -1, time.monotonic()
         while True:
             time.sleep(0.25)
             count = Engine.evaluations
+            if Session.instants != instant:
+                instant, began = Session.instants, time.monotonic()
             if count % 2 == 0 or count != seen:
                 seen, since = count, time.monotonic()
-            elif time.monotonic() - since > WATCHDOG_SECONDS:
+            stuck = time.monotonic() - since > WATCHDOG_SECONDS
+            if stuck or (count % 2 and time.monotonic() - began > INSTANT_SECONDS):
                 message = "prima: a document's script does not come back; the run is ended.\n"
                 os.write(2, message.encode())
                 os._exit(3)

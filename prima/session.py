@@ -49,6 +49,9 @@ from prima.scheduler.selection import Policy
 class Session:
     """One robot's applications under one policy."""
 
+    instants = 0
+    """How many instants this process has gone through: a watchdog reads it."""
+
     def __init__(
         self,
         documents: Iterable[Document],
@@ -76,6 +79,7 @@ class Session:
         Orders are for the devices, in the order in which they were made; ``send``
         orders are for services.
         """
+        Session.instants += 1
         self.chronicle.now = now
         for value in sorted(inbound, key=self._class):
             self._take(value)

@@ -106,7 +106,7 @@ return {
     ? stringify(v) : text(v); },
   json: function (v) { return stringify(v); },
   items: function (v) { return isArray(v) ? v.length : -1; },
-  item: function (v, i) { return v[i]; },
+  item: function (v, i) { const x = v[i]; return typeof x === 'string' ? x.slice(0) : x; },
 }; })()
 """
 
@@ -346,7 +346,9 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             check_expression(self._context, code)
-            function = self._compile(f"return (\n{code}\n)")
+            # The binding cannot give out a text that is joined lazily; slice joins it.
+            give = "return typeof $v === 'string' ? $v.slice(0) : $v"
+            function = self._compile(f"const $v = (\n{code}\n); {give}")
             self._compiled[code] = function
         return function
 

@@ -10,6 +10,8 @@ from prima.scheduler.endings import Endings, Told, in_group
 
 HANG_MS = 120_000
 """How long a Command may run beyond its own stated times before it has failed (E1)."""
+MS_A_LETTER = 500
+"""How long a letter of what is said may take at the most."""
 
 
 class Failures(Endings):
@@ -138,4 +140,4 @@ def allowance(ab: Behavior) -> int:
         for name, argument in row.arguments.items()
         if argument.kind == "duration" and name in command.args
     )
-    return HANG_MS + sum(stated)
+    return HANG_MS + sum(stated) + MS_A_LETTER * len(command.text or "")

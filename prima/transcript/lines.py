@@ -51,6 +51,26 @@ ORDER = [
 ]
 """The order of a record's fields; a test holds it to the model's."""
 
+NEEDED = {
+    "start": ("behavior", "command", "app"),
+    "end": ("behavior", "command", "app"),
+    "request": ("behavior", "command", "app", "priority"),
+    "decision": ("winner", "rule", "losers", "losers_count"),
+    "event": ("event",),
+    "note": ("text",),
+    "log": ("message",),
+    "emergency": ("outcome",),
+    "load": ("app",),
+    "unload": ("app",),
+    "hold": ("behavior", "rule", "by"),
+    "listening": ("behavior",),
+    "sensed": ("data",),
+    "starve": ("behavior",),
+    "collision": ("behavior",),
+    "run": ("data",),
+}
+"""The fields without which a record of a phase says nothing."""
+
 MAX_LINE = 1_000_000
 """Characters that a line of a transcript may have."""
 
@@ -87,6 +107,11 @@ def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
         try:
             record = json.loads(text, parse_constant=_no_number)
             Model.model_validate(record)
+            if "\\ud" in text.lower():
+                json.dumps(record, ensure_ascii=False).encode()  # half a letter is none
+            missing = [name for name in NEEDED.get(record["phase"], ()) if name not in record]
+            if missing:
+                raise ValueError(f'{record["phase"]} needs "{missing[0]}"')
         except (ValueError, RecursionError) as error:
             raise UsageError(f"{name}:{number}: {_why(error, text, ValidationError)}") from None
         count += 1
@@ -104,6 +129,8 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
         first = error.errors()[0]  # type: ignore[attr-defined]
         where = ".".join(str(part) for part in first["loc"]) or "the record"
         return f"this is no transcript's record: {where}: {first['msg']}."
+    if "needs" in str(error):
+        return f"this is no transcript's record: {error}."
     if text.lstrip().startswith("{") and not text.endswith("\n"):
         return "the record is cut off; the transcript was not written to its end."
     return "this is not a line of JSON. Transcripts are written by prima run -o."

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from prima.commands import TABLE_4_2
 from prima.messages import Record
 
+LONGEST_SHOWN = 5000
+"""Letters of a row that are printed."""
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
@@ -253,6 +255,8 @@ def format_rows(rows: list[Row], why: bool = False) -> str:
 def _wrap(text: str, columns: int) -> list[str]:
     """Break a text at spaces, or anywhere in a script without them."""
     lines, current = [], ""
+    if len(text) > LONGEST_SHOWN:
+        text = text[:LONGEST_SHOWN] + "..."
     for word in text.split(" "):
         candidate = f"{current} {word}" if current else word
         if width(candidate) <= columns:
