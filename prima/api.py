@@ -196,6 +196,8 @@ class Transcript:
     """Applications that ended by an error, as ``NAME: what``."""
     outcome: str = ""
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+    cut: str = ""
+    """What is wrong with the line at which a partial transcript ends."""
     measure: Measure | None = None
     """What was counted while the run went on."""
 
@@ -291,8 +293,8 @@ def rehearse(
     return made
 
 
-def read(path: str | Path) -> Transcript:
-    """Read a transcript.
+def read(path: str | Path, partial: bool = False) -> Transcript:
+    """Read a transcript; with ``partial``, one that was cut off as far as it goes.
 
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
@@ -302,12 +304,13 @@ def read(path: str | Path) -> Transcript:
     try:
         with Path(path).open(encoding="utf-8") as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
-            records = list(read_lines(str(path), lines))
+            cut: list[str] | None = [] if partial else None
+            records = list(read_lines(str(path), lines, cut))
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
-    return Transcript(records, str(path))
+    return Transcript(records, str(path), cut=" ".join(cut or ()))
 
 
 def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:

@@ -250,7 +250,11 @@ def show(transcript: str, why: bool) -> None:
     """
     from prima import api
 
-    _print(api.read(transcript).table(why))
+    made = api.read(transcript, partial=True)
+    _print(made.table(why))
+    if made.cut:
+        _tell(f"prima: {made.cut}")
+        raise Exit(2)
 
 
 @cli.command()
@@ -343,7 +347,9 @@ def main() -> None:
         _tell(f"prima: {error}")
         code = 3
     except click.ClickException as error:
-        error.show()
+        context = getattr(error, "ctx", None)
+        usage = f"{context.get_usage()}\n" if context is not None else ""
+        _tell(f"{usage}prima: {error.format_message()}")
         code = 2
     except (click.Abort, KeyboardInterrupt):
         _tell("prima: interrupted")

@@ -88,8 +88,11 @@ def finished(record: Record) -> Record:
     return made
 
 
-def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
+def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) -> Iterator[Record]:
     """Read a transcript's records, checked against the model.
+
+    Where ``cut`` is a list, whole records before a bad line are given all the
+    same, and what is wrong with that line is put into it.
 
     Raises:
         UsageError: the text is no transcript, with the line's number.
@@ -113,7 +116,11 @@ def read_lines(name: str, lines: Iterable[str]) -> Iterator[Record]:
             if missing:
                 raise ValueError(f'{record["phase"]} needs "{missing[0]}"')
         except (ValueError, RecursionError) as error:
-            raise UsageError(f"{name}:{number}: {_why(error, text, ValidationError)}") from None
+            message = f"{name}:{number}: {_why(error, text, ValidationError)}"
+            if cut is None or count == 0:
+                raise UsageError(message) from None
+            cut.append(message)
+            return
         count += 1
         yield record
     if count == 0:
