@@ -328,7 +328,10 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
     head = transcript.records[0]
     if head["phase"] != "run":
         raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
-    for name, digest in head["data"].get("files", {}).items():
+    files = head["data"].get("files", {})
+    if not isinstance(files, dict):
+        raise UsageError(f"{transcript.name}: the run record's files are none.")
+    for name, digest in files.items():
         if name in loaded.files and loaded.files[name] != digest:
             raise UsageError(f"{name} is not the file that the transcript was made with.")
     if transcript.records[-1]["time"] > LONGEST_MS / 1000:

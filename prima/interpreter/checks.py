@@ -112,6 +112,10 @@ class Checker:
         """Pieces of content by the form they stand in (its id(); 0 for the document)."""
         for form, content, _ in document.contents():
             self.contents.setdefault(id(form) if form else 0, []).append(content)
+        self._declared: dict[int, set[str]] = {}
+        self._given: dict[str, set[str]] = {}
+        """Names that subdialogs give as params, by the form they call."""
+        self._gather()
         self._led: dict[int, tuple[set[str], bool]] = {}
 
     def note(
@@ -256,22 +260,25 @@ class Checker:
                     holder.node, "no-such-item", message, did_you_mean(name, known), "namelist"
                 )
 
-    def known_in(self, form: Form | None) -> set[str]:
-        """All variables that content of a form may see; without a form, of any form."""
-        forms = [form] if form is not None else list(self.document.forms.values())
-        known = set(self.shared)
-        for one in forms:
-            known |= self._setup_names(one.setup)
-            for item in all_items(one.items):
-                known |= {item.name, f"{item.name}$"}
-        for owner, content, _ in self.document.contents():
-            if form is None or owner is form or owner is None:
-                known |= self._content_names(content)
-        for other in self.document.forms.values():
-            for item in all_items(other.items):
-                if isinstance(item, Subdialog) and (form is None or item.form == form.id):
-                    known |= {name for name, _ in item.params}
-        return known
+    def _gather(self) -> None:
+        """Names by the form that declares them, found in one go."""
+        for key, contents in self.contents.items():
+            for content in contents:
+                self._declared.setdefault(key, set()).update(self._content_names(content))
+        for form in self.document.forms.values():
+            own = self._declared.setdefault(id(form), set())
+            own |= self._setup_names(form.setup)
+            for item in all_items(form.items):
+                own |= {item.name, f"{item.name}$"}
+                if isinstance(item, Subdialog):
+                    given = self._given.setdefault(item.form, set())
+                    given |= {name for name, _ in item.params}
+
+    def known_in(self, form: Form) -> set[str]:
+        """All variables that content of a form may see."""
+        shared = self._declared.get(0, set())
+        own = self._declared[id(form)]
+        return self.shared | shared | own | self._given.get(form.id, set())
 
     @staticmethod
     def _content_names(content: list[Act]) -> set[str]:
@@ -289,7 +296,7 @@ class Checker:
 
     def _expressions(self) -> None:
         document = self.document
-        every = self.known_in(None)
+        every = self.shared.union(*self._declared.values(), *self._given.values())
         for part in (document.setup, document.watches):
             self._walk(part, self.shared, every)
         self._walk(document.handlers, every, every)

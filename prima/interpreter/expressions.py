@@ -237,7 +237,7 @@ def _script_error(error: Exception) -> ScriptError:
     text = str(error)
     lines = text.splitlines() or [type(error).__name__]
     message = lines[0]
-    if "interrupted" in message:
+    if message.startswith("InternalError: interrupted"):
         message = f"it took longer than {TIME_LIMIT:g} s"
     elif "out of memory" in message or message in ("null", "") or "string too long" in message:
         message = "it used too much memory"
