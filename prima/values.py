@@ -28,6 +28,8 @@ _WORD = rf"[{_START}$][{_REST}$]*"
 VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
 EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+LONGEST_NAME = 500
+"""Letters that a name may have."""
 XML_SPACE = " \t\r\n"
 
 _XSD_NAME = r"[\i-[:]][\c-[:]]*"
@@ -39,6 +41,8 @@ LONGEST_MS = 24 * 3600 * 1000
 
 def _fits(pattern: str, text: str) -> bool:
     """Whether a text fits a pattern of names; most are ASCII, and the whole alphabet is slow."""
+    if len(text) > LONGEST_NAME:
+        return False
     if text.isascii():
         pattern = pattern.replace(_REST, "A-Za-z_0-9").replace(_START, "A-Za-z_")
     return re.fullmatch(pattern, text) is not None
