@@ -153,7 +153,7 @@ def table(found: dict[str, list[Any]]) -> str:
             own <= 3 * peer,
         )
     each = {system: made.value(f"W4 {system}") / count for system, count in MANY.items()}
-    memory = median(one[1] for one in found["W4 prima"]) / MANY["prima"] * 10
+    memory = median(one[1] for one in found["W4 prima"]) * 10_000 / MANY["prima"]
     made.row(
         f"W4: a machine with ten events (PRIMA: {MANY['prima']:,} measured, not 10,000)",
         f"{each['prima'] * 1000:.2f} ms, {memory:,.0f} MB for 10,000",
