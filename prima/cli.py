@@ -131,8 +131,8 @@ def validate(files: tuple[str, ...], form: str) -> None:
     errors = sum(problem.severity == "error" for problem in problems)
     if form == "text" and not unread:
         warnings = len(problems) - errors
-        counts = f"{errors} errors, {warnings} warnings" if problems else "no problems"
-        _tell(f"{len(files)} files: {counts}")
+        counts = f"errors: {errors}, warnings: {warnings}" if problems else "no problems"
+        _tell(f"files: {len(files)}; {counts}")
     if unread or errors:
         raise Exit(2 if unread else 1)
 

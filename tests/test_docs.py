@@ -412,6 +412,9 @@ def verdicts(vocabulary: Vocabulary, root: etree._Element) -> tuple[bool, list[P
     """What the XML Schema and the table say of a document."""
     data = etree.tostring(root, encoding="utf-8")
     node, element = parse("x.xml", data), etree.fromstring(data)
+    for one in element.iter():
+        if not len(one) and not (one.text or "").strip():
+            one.text = None  # white space where nothing may stand is no content
     problems: list[Problem] = []
     check_tree(node, vocabulary, problems)
     return compiled_schema(vocabulary.name).validate(element), problems

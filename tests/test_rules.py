@@ -670,3 +670,10 @@ def test_none_displaces_and_records_the_collision() -> None:
 
 def test_a_chain_is_what_a_run_of_commands_becomes() -> None:
     assert [step.after for step in chain(say(), say(), say())] == [(), (0,), (1,)]
+
+
+def test_none_does_not_let_a_unit_collide_with_itself() -> None:
+    stage = Stage("none")
+    stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
+    stage.select()
+    assert stage.phases("collision") == []

@@ -227,3 +227,18 @@ def test_a_thousand_times_real_time_needs_no_trick() -> None:
         r for r in api.rehearse(path).records if r["phase"] == "end" and r.get("outcome") == "again"
     ]
     assert len(loops) > 50
+
+
+def test_a_way_is_chosen_that_the_body_fits_through() -> None:
+    """A place may be seen past the end of a wall that the body would run into."""
+    from prima.sim.routes import Routes
+
+    plan = Map(
+        "m",
+        places={"bend": (5.0, 0.0), "jars": (5.0, 4.0)},
+        ways=[("bend", "jars")],
+        walls=[((-1.0, 1.2), (3.8, 1.2)), ((3.8, 1.2), (3.8, 6.0))],
+    )
+    world = World(plan, PROFILE, (3.4, 0.0), 180.0)
+    assert world.clear(world.position, (5.0, 4.0))
+    assert Routes(plan).route(world, "jars") == [(5.0, 0.0), (5.0, 4.0)]

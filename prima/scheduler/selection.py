@@ -180,7 +180,7 @@ def policy_named(text: str) -> Policy:
         UsageError: no policy has that name.
     """
     name, colon, first = text.partition(":")
-    if name == "fixed":
+    if name == "fixed" and (first or not colon):
         return Fixed(first=first)
     simple: dict[str, type[Policy]] = {
         "prima": Policy,

@@ -155,7 +155,7 @@ class Selector:
         """Without a mediator a later Command displaces an earlier one on its devices."""
         for device in sorted(ab.devices):
             other = self.memory.occupied.get(device)
-            if other is not None and other is not ab:
+            if other is not None and other is not ab and other is not ab.unit:
                 self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)
 
     def _take_floor(self, ab: Behavior, reaction: int | None, by_floor_rule: bool) -> bool:

@@ -35,8 +35,9 @@ class Routes:
             return None
         lengths = networkx.single_source_dijkstra_path_length(graph, to)
         best: tuple[float, str] | None = None
-        for name in sorted(lengths):
-            if world.clear(here, places[name]):
+        reached = [name for name in sorted(lengths) if world.passable(here, places[name])]
+        for name in reached or sorted(lengths):
+            if reached or world.clear(here, places[name]):
                 whole = distance(here, places[name]) + lengths[name]
                 if best is None or whole < best[0] - 1e-9:
                     best = (whole, name)

@@ -30,6 +30,17 @@ def difference(angle: float, other: float) -> float:
     return (angle - other + 180.0) % 360.0 - 180.0
 
 
+def off_line(point: Point, start: Point, end: Point) -> float:
+    """Metres from a point to the nearest point of a straight line between two others."""
+    length = distance(start, end)
+    if length == 0.0:
+        return distance(point, start)
+    (x, y), (x1, y1), (x2, y2) = point, start, end
+    share = ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length**2
+    share = min(max(share, 0.0), 1.0)
+    return distance(point, (x1 + share * (x2 - x1), y1 + share * (y2 - y1)))
+
+
 class World:
     """Bodies that move in virtual time, in milliseconds; steps only while something moves."""
 
@@ -89,6 +100,14 @@ class World:
     def clear(self, a: Point, b: Point) -> bool:
         """Whether no wall stands between two points."""
         return self._space.segment_query_first(a, b, 0.0, WALLS) is None
+
+    def passable(self, a: Point, b: Point) -> bool:
+        """Whether the robot's body, and a little more, fits through in a straight line."""
+        wide = self.profile.radius + 0.1
+        return self.clear(a, b) and all(
+            min(off_line(c, a, b), off_line(d, a, b), off_line(a, c, d), off_line(b, c, d)) > wide
+            for c, d in self.map.walls
+        )
 
     def sees_person(self) -> bool:
         """Whether the person is in the camera's field of view, near enough and not hidden."""
