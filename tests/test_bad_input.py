@@ -763,7 +763,7 @@ EATERS = [
 @pytest.mark.parametrize(("name", "data", "code"), EATERS, ids=lambda value: str(value)[:20])
 def test_time_and_memory(tmp_path: Path, name: str, data: str, code: int) -> None:
     path = stage(tmp_path, data)
-    process(tmp_path, "run", path, "-o", "t", memory=GIGABYTE).check(code)
+    process(tmp_path, "run", path, "-o", "t", seconds=6, memory=GIGABYTE).check(code)
 
 
 HAPPENINGS = [
@@ -1100,7 +1100,7 @@ def test_very_long_texts(prima: Prima, tmp_path: Path) -> None:
 
 def test_a_very_long_word(tmp_path: Path) -> None:
     write(tmp_path, "t.jsonl", record("note", text="x" * 100_000))
-    process(tmp_path, "show", "t.jsonl").check(0, "x" * 70)
+    process(tmp_path, "show", "t.jsonl", seconds=30).check(0, "x" * 70)
 
 
 def test_a_long_text_is_said_to_its_end(prima: Prima, tmp_path: Path) -> None:

@@ -265,7 +265,7 @@ def _wrap(text: str, columns: int) -> list[str]:
         if current:
             lines.append(current)
         while width(word) > columns:
-            cut = len(word)
+            cut = columns
             while width(word[:cut]) > columns:
                 cut -= 1
             lines.append(word[:cut])
