@@ -214,6 +214,21 @@ def limits() -> str:
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
         ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
+        (
+            "what an application says, logs and sends in one instant",
+            f"{application.MAX_OUTPUT:,} characters",
+            "the application ends",
+        ),
+        (
+            "what all applications say, log and send in a run",
+            f"{rehearsal.MAX_WRITTEN:,} characters",
+            "the run ends (exit code 3)",
+        ),
+        (
+            "an application's scripts in one instant, all together",
+            f"{application.MAX_SCRIPT_SECONDS:g} s",
+            "the application ends",
+        ),
         ("steps of content in one instant", f"{application.MAX_STEPS:,}", "the application ends"),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
         ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),

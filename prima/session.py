@@ -95,6 +95,11 @@ class Session:
         due.append(self.mediator.deadline())
         return min((time for time in due if time is not None), default=None)
 
+    @property
+    def written(self) -> int:
+        """Characters that the applications have said, logged and sent."""
+        return sum(app.written for app in self.apps.values())
+
     def drain(self) -> list[Record]:
         """Give the records made since the last time."""
         return self.chronicle.drain()

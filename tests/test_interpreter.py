@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.messages import Sensed
 from tests.robot import Bench, document
 
 # Items and content -------------------------------------------------------------------
@@ -580,3 +581,115 @@ def test_a_grammar_that_explodes_or_refers_to_itself_is_matched_in_time(grammar:
     bench.hears("a " * 60 + "b")
     assert bench.logs() == ["no"]
     assert process_time() - began < 5
+
+
+# Errors that a document can handle, wherever they arise ------------------------------
+
+CAUGHT = '<on event="error.semantic"><log expr="_event"/></on>'
+
+
+def test_a_condition_of_a_handler_that_fails_is_an_event() -> None:
+    bench = Bench(
+        f"""{CAUGHT}<form id="a">
+          <block><speak>A story.</speak><log>told</log></block>
+          <on event="touch" cond="null.thing"><log>never</log></on>
+        </form>"""
+    )
+    bench.event("touch")
+    assert bench.logs() == ["error.semantic"]
+    bench.finish("A story.")
+    assert bench.logs() == ["error.semantic", "told"]
+
+
+def test_a_condition_of_a_handler_that_fails_in_content_is_an_event() -> None:
+    bench = Bench(
+        f"""{CAUGHT}<form id="a">
+          <block><throw event="own.trouble"/></block>
+          <block><log>next</log></block>
+          <on event="own" cond="null.thing"><log>never</log></on>
+        </form>"""
+    )
+    assert bench.logs() == ["error.semantic", "next"]
+
+
+def test_a_watch_that_fails_is_an_event_and_others_go_on() -> None:
+    bench = Bench(
+        f"""{CAUGHT}<form id="a">
+          <watch name="odd" when="sensor.nosuch.thing == 1"/>
+          <watch name="warm" when="sensor.heat == 1"/>
+          <on event="warm"><log>warm</log></on>
+        </form>"""
+    )
+    bench.step(Sensed({"heat": 1}))
+    assert bench.logs() == ["error.semantic", "warm"]
+
+
+def test_a_watch_sees_the_variables_of_its_form() -> None:
+    bench = Bench(
+        """<var name="most" expr="5"/>
+        <form id="a"><block><speak>Hm.</speak><goto next="#b"/></block></form>
+        <form id="b"><var name="least" expr="1"/>
+          <watch name="fair" when="sensor.heat &gt; least &amp;&amp; sensor.heat &lt; most"/>
+          <on event="fair"><log>fair</log></on>
+        </form>"""
+    )
+    bench.step(Sensed({"heat": 3}))
+    bench.finish("Hm.")
+    assert bench.logs() == ["fair"]
+
+
+@pytest.mark.parametrize(
+    "head", ['<var name="x" expr="null.thing"/>', "<script>null.thing</script>"]
+)
+def test_a_variable_or_script_of_the_document_that_fails_is_an_event(head: str) -> None:
+    bench = Bench(f'{CAUGHT}{head}<form id="a"><block><log>on</log></block></form>')
+    assert bench.logs() == ["error.semantic", "on"]
+
+
+def test_a_value_to_return_that_fails_is_an_event() -> None:
+    bench = Bench(
+        f"""{CAUGHT}<form id="a">
+          <subdialog name="s" src="#b"/>
+          <block><log expr="s.x === null"/></block>
+        </form>
+        <form id="b"><block><assign name="x" expr="1"/><clear namelist="x"/>
+          <script>dialog.y = {{}}; dialog.y.me = dialog.y;</script><assign name="x" expr="dialog.y"/>
+          <return namelist="x"/></block>
+          <var name="x"/>
+          <on event="error.semantic"><log>circular</log><assign name="x" expr="null"/>
+            <return namelist="x"/></on></form>"""
+    )
+    assert bench.logs() == ["circular", "true"]
+
+
+def test_an_error_that_nobody_handles_ends_its_application_alone() -> None:
+    bench = Bench(
+        '<form id="a"><on event="touch" cond="null.thing"><log>never</log></on></form>',
+        document('<form id="a"><on event="touch"><log>here</log></on></form>', "ea", "other"),
+    )
+    bench.event("touch")
+    assert bench.logs() == ["here"]
+    assert bench.session.failures and bench.session.failures[0].startswith("app: error.semantic")
+
+
+def test_slow_scripts_of_one_instant_end_their_application_alone() -> None:
+    slow = "let n = 0; while (n &lt; 3e6) n++;"
+    bench = Bench(
+        f"""<form id="a"><block>
+          <foreach item="i" array="new Array(1000).fill(0)"><script>{slow}</script></foreach>
+        </block></form>""",
+        document('<form id="a"><block><log>here</log></block></form>', "ea", "other"),
+    )
+    assert bench.logs() == ["here"]
+    assert "its scripts take too long" in bench.session.failures[0]
+
+
+def test_what_comes_out_in_one_instant_is_bounded() -> None:
+    bench = Bench(
+        """<form id="a"><block>
+          <foreach item="i" array="new Array(10000).fill(0)"><log expr="'x'.repeat(90000)"/></foreach>
+        </block></form>"""
+    )
+    assert "characters come out at once" in bench.session.failures[0]
+    assert sum(len(text) for text in bench.logs()) <= 1_000_000
+    assert max(len(text) for text in bench.logs()) == 90_000

@@ -39,7 +39,8 @@ INSIDE = {
     ],
     "markup": [{"vocabulary", "tree"}, {"check", "schema"}, {"reader"}, {"__init__"}],
     "interpreter": [
-        {"vocabulary", "expressions", "grammar"},
+        {"vocabulary", "names", "grammar"},
+        {"expressions"},
         {"elements", "srgs"},
         {"build", "checks", "frame", "selection"},
         {"reader", "content"},

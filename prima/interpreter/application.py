@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from itertools import count
+from typing import NoReturn
 
 from prima.interpreter.content import Executor, source
 from prima.interpreter.elements import Declare, Document, Field, Form, Link, Script, all_items
@@ -47,6 +48,10 @@ from prima.messages import (
 
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
+MAX_SCRIPT_SECONDS = 3.0
+"""What an application's scripts may take in one instant, all together."""
+MAX_OUTPUT = 1_000_000
+"""Characters that an application may say, log and send in one instant."""
 MAX_TIMERS = 256
 
 
@@ -82,6 +87,9 @@ class Interpreter:
         self.cause: int | None = None
         self.serial = 0
         self._steps = 0
+        self._output = 0
+        self.written = 0
+        """Characters said, logged and sent since the start."""
         self._instant = -1
         self._timed = "session" in document.node.source.text
         """Whether the document looks at the clock at all."""
@@ -124,9 +132,8 @@ class Interpreter:
         if self.over:
             return []
         raised: list[str] = []
-        watches = self.handling.watches()
-        if watches:
-            self._guard(lambda: raised.extend(self.handling.check_watches(watches)))
+        for watch in self.handling.watches():
+            self._guard(lambda watch=watch: raised.extend(self.handling.check_watches([watch])))
         return raised
 
     def listens_to(self, text: str) -> Link | None:
@@ -185,8 +192,21 @@ class Interpreter:
         """Bound what an application does in one instant; a document may loop for ever."""
         self._steps += 1
         if self._steps > MAX_STEPS:
-            place = source(node)
-            raise GoOut(f"{place}: error.semantic: it loops without ever waiting", True, place)
+            self.give_up(node, "it loops without ever waiting")
+        if self.engine.spent > MAX_SCRIPT_SECONDS:
+            self.give_up(node, "its scripts take too long without ever waiting")
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what an application says, logs and sends in one instant."""
+        self._output += characters
+        self.written += characters
+        if self._output > MAX_OUTPUT:
+            self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
+
+    def give_up(self, node: Node, reason: str) -> NoReturn:
+        """End the application: it has gone past a limit that no handler can mend."""
+        place = source(node)
+        raise GoOut(f"{place}: error.semantic: {reason}", True, place)
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
@@ -211,20 +231,35 @@ class Interpreter:
     def _tick(self, now: int) -> None:
         if now != self._instant:
             self._instant = self.now = now
-            self._steps = 0
+            self._steps = self._output = 0
+            self.engine.spent = 0.0
             if self._timed and not self.over:
                 self._guard(lambda: self.engine.clock(self.application, now / 1000))
 
     def _guard(self, act: Callable[[], object]) -> None:
         """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""
         try:
-            act()
-        except Thrown as thrown:
-            self._unhandled(thrown)
+            try:
+                act()
+            except (Thrown, ScriptError) as error:
+                self._seek_handler(self.thrown(error))
+        except (Thrown, ScriptError) as error:
+            self._unhandled(self.thrown(error))
         except GoOut as out:
             self._quit(out.reason, out.failed, out.source)
-        except ScriptError as error:
-            self._quit(f"error.semantic: {error}", failed=True)
+
+    def thrown(self, error: Thrown | ScriptError) -> Thrown:
+        """An error of the engine itself is an event as well."""
+        if isinstance(error, Thrown):
+            return error
+        return Thrown(self.internal("error.semantic", str(error)))
+
+    def _seek_handler(self, thrown: Thrown) -> None:
+        """An error outside all content, as in a condition of a handler, has handlers too."""
+        frame = self.frame
+        if thrown.sought or frame is None:
+            raise thrown
+        self.handling.dispatch(thrown.event, frame, thrown.source)
 
     def _unhandled(self, thrown: Thrown) -> None:
         event = thrown.event
@@ -256,6 +291,9 @@ class Interpreter:
             else:
                 fiber.content.send(notice)
             return
+        except (Thrown, ScriptError):
+            self._drop(fiber)
+            raise
         except StopIteration:
             self._drop(fiber)
             self._go_on(fiber.frame)
@@ -314,20 +352,17 @@ class Interpreter:
         caller = frame.caller
         if caller is None:
             raise GoOut("return")
-        fiber = Fiber(frame)
-        result = {}
-        scopes = self.execute.scopes(fiber)
-        for name in transfer.names:
-            result[name] = self.engine.value(name, scopes)
         self.leave(frame)
         self.frame = caller
         main = next((one for one in caller.fibers if one.main), None)
         if main is None or main.content is None:
             return None
-        data = {"result": result}
-        notice = Notice("done", 0, data=data, event=transfer.event)
+        notice = Notice("done", 0, data={"result": transfer.values}, event=transfer.event)
         try:
             main.content.send(notice)
+        except (Thrown, ScriptError):
+            self._drop(main)
+            raise
         except (StopIteration, Abandoned):
             self._drop(main)
         except Transfer as further:
@@ -370,19 +405,23 @@ class Interpreter:
         """A frame for a form entered by goto (keeping the document's scope) or at the start."""
         document = before.document if before else self.new_document()
         frame = Frame(form, next(self.states), document, self.engine.dialog())
+        frame.fresh = before is None
         if before is not None:
             frame.caller, frame.called_by = before.caller, before.called_by
         return frame
 
     def new_document(self) -> object:
-        """A document scope with the document's variables and scripts (VoiceXML 5.1.2)."""
+        """An empty document scope; it has itself as its variable ``document``."""
         scope = self.engine.scope()
         self.engine.put(scope, "document", scope)
         self.engine.put(self.application, "application", self.application)
-        frame = Frame(next(iter(self.document.forms.values())), 0, scope, self.engine.scope())
-        fiber = Fiber(frame)
-        self._set_up(self.document.setup, scope, fiber)
         return scope
+
+    def set_up_document(self, frame: Frame) -> None:
+        """Declare the document's variables and run its scripts; they see no dialog."""
+        frame.fresh = False
+        alone = Frame(frame.form, frame.state, frame.document, self.engine.scope())
+        self._set_up(self.document.setup, frame.document, Fiber(alone))
 
     def _set_up(self, setup: list[Declare | Script], scope: Scope, fiber: Fiber) -> None:
         for act in setup:
@@ -395,13 +434,14 @@ class Interpreter:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
         frame.stalled = False
-        if setup:
-            self._arm_watches(frame)
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
         frame.fibers.append(fiber)
         try:
             next(fiber.content)
+        except (Thrown, ScriptError):
+            self._drop(fiber)
+            raise
         except (StopIteration, Abandoned):
             self._drop(fiber)
         except Transfer as transfer:
@@ -409,7 +449,7 @@ class Interpreter:
             return frame, transfer
         return None
 
-    def _arm_watches(self, frame: Frame) -> None:
+    def arm_watches(self, frame: Frame) -> None:
         """C6: what a form watches for counts from its entry, true already or not."""
         for watch in frame.form.watches:
             self.armed.pop(id(watch), None)

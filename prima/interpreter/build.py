@@ -40,11 +40,11 @@ from prima.interpreter.elements import (
     all_acts,
     run_commands,
 )
-from prima.interpreter.expressions import RESERVED
 from prima.interpreter.grammar import (
     Answers,
     fold,
 )
+from prima.interpreter.names import RESERVED
 from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node

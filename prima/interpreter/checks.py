@@ -40,10 +40,9 @@ from prima.interpreter.expressions import (
     ScriptError,
     check_expression,
     check_script,
-    declared_names,
-    free_names,
     plain_context,
 )
+from prima.interpreter.names import declared_names, free_names
 from prima.markup.tree import Node
 
 LONG_UNIT_MS = 20_000

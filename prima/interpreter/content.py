@@ -27,7 +27,7 @@ from prima.interpreter.elements import (
     Throw,
     all_items,
 )
-from prima.interpreter.expressions import Engine, Scope, ScriptError
+from prima.interpreter.expressions import RESULT_LIMIT, Engine, Scope, ScriptError
 from prima.interpreter.frame import (
     Abandoned,
     Content,
@@ -93,18 +93,23 @@ class Executor:
         except ScriptError as error:
             raise self.failure(error, expr) from None
 
-    def text(self, parts: Text, fiber: Fiber) -> str:
-        """Text with its values filled in."""
-        said: list[str] = []
+    def text(self, parts: Text, fiber: Fiber, most: int = MAX_TEXT) -> str:
+        """Text with its values filled in, of ``most`` characters."""
+        said, length = [], 0
         for part in parts:
-            if isinstance(part, str):
-                said.append(part)
-                continue
             try:
-                said.append(self.engine.text(part.code, self.scopes(fiber)))
+                text = (
+                    part
+                    if isinstance(part, str)
+                    else self.engine.text(part.code, self.scopes(fiber))
+                )
             except ScriptError as error:
                 raise self.failure(error, part) from None
-        return " ".join("".join(said).split())
+            said.append(text)
+            length += len(text)
+            if length > RESULT_LIMIT:
+                break  # far more than is ever said
+        return " ".join("".join(said).split())[:most]
 
     def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
         """A value, or the value of an expression."""
@@ -164,14 +169,17 @@ class Executor:
                 message = str(self.plain(act.message, fiber) or "")
                 raise Thrown(self.owner.internal(name, message), source(act.node))
             case Return():
-                raise GoBack(act.names, act.event)
+                expressions = [Expression(name, act.node, "namelist") for name in act.names]
+                values = {one.code: self.evaluate(one, fiber) for one in expressions}
+                raise GoBack(values, act.event)
             case Exit():
                 raise GoOut()
             case Reprompt():
                 fiber.frame.reprompt = True
             case Log():
                 label = f"{act.label}: " if act.label else ""
-                said = label + self.text(act.text, fiber)
+                said = label + self.text(act.text, fiber, RESULT_LIMIT)
+                self.owner.count_output(len(said), act.node)
                 self.owner.actions.append(Say("log", said, source(act.node)))
             case SendOut():
                 self.send(act, fiber)
@@ -221,6 +229,7 @@ class Executor:
     def send(self, act: SendOut, fiber: Fiber) -> None:
         """Ask a service, or raise an event here after a delay."""
         params = self.named(act.params, fiber)
+        self.owner.count_output(len(str(params)), act.node)
         if act.event:
             delay = self.plain(act.delay, fiber)
             self.owner.delay(act.event, params, self.milliseconds(delay, act.node), fiber)
@@ -294,7 +303,8 @@ class Executor:
 
     def command(self, template: CommandTemplate, fiber: Fiber) -> Command:
         """A Command with its arguments."""
-        text = self.text(template.text, fiber)[:MAX_TEXT] if template.text is not None else None
+        text = self.text(template.text, fiber) if template.text is not None else None
+        self.owner.count_output(len(text or ""), template.node)
         args = {name: self.plain(value, fiber) for name, value in template.args.items()}
         extra = self.named(template.extra, fiber)
         own = self.owner.arguments.get(template.type, frozenset())

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import source
+from prima.interpreter.content import MAX_TEXT, source
 from prima.interpreter.elements import Block, Field, Filled, Item, Subdialog, Unit, all_items
+from prima.interpreter.expressions import ScriptError
 from prima.interpreter.frame import (
     MAX_DEPTH,
     Content,
@@ -31,14 +33,20 @@ class Algorithm:
 
     def interpret(self, frame: Frame, fiber: Fiber, setup: bool) -> Content:
         """Select, visit, process, until no item is left; then the form waits for events."""
+        if frame.fresh:
+            yield from self._at_once(frame, fiber, lambda: self.owner.set_up_document(frame))
         if setup:
-            yield from self._catching(frame, fiber, None, self._setup_content(frame, fiber))
+            yield from self._at_once(frame, fiber, lambda: self.owner.initialise(frame, fiber))
+            yield from self._at_once(frame, fiber, lambda: self.owner.arm_watches(frame))
         yield from self._visit_all(frame, fiber, frame.form.items, None)
 
-    def _setup_content(self, frame: Frame, fiber: Fiber) -> Content:
-        self.owner.initialise(frame, fiber)
-        return
-        yield 0
+    def _at_once(self, frame: Frame, fiber: Fiber, act: Callable[[], None]) -> Content:
+        """Do what takes no time; an event thrown in it is handled in the same fiber."""
+        try:
+            act()
+        except (Thrown, ScriptError) as error:
+            thrown = self.owner.thrown(error)
+            yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
 
     def _visit_all(
         self, frame: Frame, fiber: Fiber, items: list[Item], unit: Unit | None
@@ -92,8 +100,9 @@ class Algorithm:
         """Run content; an event thrown in it is handled in the same fiber."""
         try:
             yield from content
-        except Thrown as thrown:
+        except (Thrown, ScriptError) as error:
             frame.reprompt = False
+            thrown = self.owner.thrown(error)
             yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
@@ -118,9 +127,9 @@ class Algorithm:
                         settings["bargein"] = prompt.bargein
         frame.reprompt = True
         args = {key: f"{value}ms" if key == "timeout" else value for key, value in settings.items()}
-        command = Command(
-            "q-and-a", args, " ".join(said) or None, lang=field.lang, source=source(field.node)
-        )
+        text = " ".join(said)[:MAX_TEXT]
+        self.owner.count_output(len(text), field.node)
+        command = Command("q-and-a", args, text or None, lang=field.lang, source=source(field.node))
         number = self.owner.request([Step(command)], fiber)
         notice = yield number
         self.owner.execute.check(notice, fiber)
@@ -169,6 +178,7 @@ class Algorithm:
             self.owner.engine.dialog(),
             frame,
             item,
+            fresh=True,
         )
         result: Notice | None = None
         pending = self.owner.begin(inner)
@@ -187,11 +197,9 @@ class Algorithm:
 
     def _returned(self, frame: Frame, back: GoBack) -> Notice:
         """What a subdialog gives that returned without ever waiting."""
-        scopes = self.owner.execute.scopes(Fiber(frame))
-        result = {name: self.owner.engine.value(name, scopes) for name in back.names}
         self.owner.leave(frame)
         self.owner.frame = frame.caller
-        return Notice("done", 0, data={"result": result}, event=back.event)
+        return Notice("done", 0, data={"result": back.values}, event=back.event)
 
     def _chase(self, caller: Frame, frame: Frame, transfer: Transfer) -> Notice | None:
         """Follow a subdialog's first transfers of control until it waits or returns."""

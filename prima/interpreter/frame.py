@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
 from prima.interpreter.expressions import Scope
-from prima.messages import Event, Notice
+from prima.messages import Event, Json, Notice
 
 MAX_DEPTH = 32
 """Subdialogs inside subdialogs, and events thrown while one is handled."""
@@ -37,6 +37,8 @@ class Frame:
     """What the form was doing has been cancelled (O2): it waits for an event to move it."""
     units: list[tuple[int, Unit]] = field(default_factory=list)
     fibers: list[Fiber] = field(default_factory=list)
+    fresh: bool = False
+    """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
 
 
 @dataclass(slots=True, eq=False)
@@ -61,6 +63,8 @@ class Thrown(Exception):
         super().__init__(event.name)
         self.event = event
         self.source = source
+        self.sought = False
+        """Whether its handlers have been looked for, and there is none."""
 
 
 class Transfer(Exception):
@@ -84,11 +88,11 @@ class GoItem(Transfer):
 
 
 class GoBack(Transfer):
-    """A return from a subdialog."""
+    """A return from a subdialog, with its values or an event."""
 
-    def __init__(self, names: list[str], event: str) -> None:
+    def __init__(self, values: dict[str, Json], event: str) -> None:
         super().__init__(event)
-        self.names = names
+        self.values = values
         self.event = event
 
 

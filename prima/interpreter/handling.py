@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Handler, Item, Watch
-from prima.interpreter.expressions import Scope
-from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, GoOut, Thrown
+from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
 from prima.interpreter.selection import prefixes, select_handler
 from prima.messages import Event, Json, Notice
 
@@ -39,6 +39,7 @@ class Handling:
                 return
             if event.name.startswith(("cancel.", "end.")):
                 return
+            thrown.sought = True
             raise thrown
         fiber.local = self._event_scope(event)
         fiber.commands = []
@@ -46,16 +47,14 @@ class Handling:
             self._allow_reaction(handler, event)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
-        except Thrown as again:
+        except (Thrown, ScriptError) as error:
             self.owner.count_step(handler.node)
             if depth > MAX_DEPTH:
-                place = source(handler.node)
-                raise GoOut(
-                    f"{place}: error.semantic: its handlers throw without end", True, place
-                ) from None
+                self.owner.give_up(handler.node, "its handlers throw without end")
+            again = self.owner.thrown(error)
             yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
 
-    def dispatch(self, event: Event, frame: Frame) -> None:
+    def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
         item = frame.item
         self.count_event(frame, item, event.name)
@@ -63,7 +62,9 @@ class Handling:
         handler = self.find_handler(frame, fiber, item, event)
         if handler is None:
             if event.name.startswith("error."):
-                raise Thrown(event)
+                unhandled = Thrown(event, place)
+                unhandled.sought = True
+                raise unhandled
             return
         self._allow_reaction(handler, event)
         self._launch(fiber, handler)
@@ -71,8 +72,7 @@ class Handling:
     def _launch(self, fiber: Fiber, handler: Handler) -> None:
         frame = fiber.frame
         if len(frame.fibers) >= MAX_FIBERS:
-            place = source(handler.node)
-            raise GoOut(f"{place}: error.semantic: too many handlers under way", True, place)
+            self.owner.give_up(handler.node, "too many handlers under way")
         for number, unit in frame.units:
             if handler in unit.handlers or any(handler in one.handlers for one in unit.items):
                 fiber.unit = number
@@ -84,8 +84,8 @@ class Handling:
         frame = fiber.frame
         try:
             yield from self.owner.execute.run(handler.content, fiber)
-        except Thrown as thrown:
-            yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
+        except (Thrown, ScriptError) as error:
+            yield from self.handle_thrown(frame, fiber, frame.item, self.owner.thrown(error), 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
         """The end or cancellation of a Command, for handlers in it or in scope."""

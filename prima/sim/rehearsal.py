@@ -19,6 +19,8 @@ from prima.sim.world import STEP_MS, World
 
 MAX_RECORDS = 500_000
 """Records that a run may make."""
+MAX_WRITTEN = 50_000_000
+"""Characters that the applications of a run may say, log and send."""
 
 
 @dataclass(slots=True)
@@ -115,7 +117,7 @@ class Rehearsal:
                 self.outcome = "quiet"
             elif due > self.cast.scenario.until:
                 self.outcome, now = "until", self.cast.scenario.until
-            elif self.made > MAX_RECORDS:
+            elif self.made > MAX_RECORDS or self.session.written > MAX_WRITTEN:
                 self.outcome = "limit"
             else:
                 now = max(due, now)
