@@ -9,11 +9,21 @@ is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import count
 from typing import NoReturn
 
 from prima.interpreter.content import Executor, source
-from prima.interpreter.elements import Declare, Document, Field, Form, Link, Script, all_items
+from prima.interpreter.elements import (
+    Declare,
+    Document,
+    Field,
+    Form,
+    Link,
+    Script,
+    Watch,
+    all_items,
+)
 from prima.interpreter.expressions import Engine, Scope, ScriptError
 from prima.interpreter.form import Algorithm
 from prima.interpreter.frame import (
@@ -133,8 +143,11 @@ class Interpreter:
             return []
         raised: list[str] = []
         for watch in self.handling.watches():
-            self._guard(lambda watch=watch: raised.extend(self.handling.check_watches([watch])))
+            self._guard(partial(self._look, watch, raised))
         return raised
+
+    def _look(self, watch: Watch, raised: list[str]) -> None:
+        raised += self.handling.check_watches([watch])
 
     def listens_to(self, text: str) -> Link | None:
         """The link that takes what the user said, innermost scope first (V1)."""

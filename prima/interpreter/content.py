@@ -97,19 +97,19 @@ class Executor:
         """Text with its values filled in, of ``most`` characters."""
         said, length = [], 0
         for part in parts:
-            try:
-                text = (
-                    part
-                    if isinstance(part, str)
-                    else self.engine.text(part.code, self.scopes(fiber))
-                )
-            except ScriptError as error:
-                raise self.failure(error, part) from None
+            text = part if isinstance(part, str) else self.shown(part, fiber)
             said.append(text)
             length += len(text)
             if length > RESULT_LIMIT:
                 break  # far more than is ever said
         return " ".join("".join(said).split())[:most]
+
+    def shown(self, expr: Expression, fiber: Fiber) -> str:
+        """An expression's value as text."""
+        try:
+            return self.engine.text(expr.code, self.scopes(fiber))
+        except ScriptError as error:
+            raise self.failure(error, expr) from None
 
     def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
         """A value, or the value of an expression."""
