@@ -27,6 +27,10 @@ DEVICES = (
 )
 """The devices every robot profile may name (Table 4.2); a profile adds its own."""
 
+EFFECTS = frozenset({"position", "direction", "human", "follow", "head"})
+"""Where the robot stands, where it looks on the map, that it looks at the human, that it stands
+wherever the human went, and how its head is turned."""
+
 LOOP_MS = 500
 """How long one loop of a feedback Command lasts unless the profile says otherwise."""
 
@@ -59,6 +63,10 @@ class CommandType:
     text: Literal["none", "optional", "required"] = "none"
     now: bool = False
     arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+    effects: frozenset[str] = frozenset()
+    """What later Commands of a stream may rely on once it has ended (rule X1): :data:`EFFECTS`."""
+    motion: Literal["", "faithful", "free"] = ""
+    """Faithful to its own path (a dance), or free in its path (going somewhere) (rule X5)."""
     extra: frozenset[str] = frozenset()
     """Additional arguments that the robot's maker offers to an FA (Table 4.1)."""
 
@@ -79,6 +87,7 @@ def _row(
     doc: str,
     *,
     marks: str = "",
+    effects: str = "",
     text: Literal["none", "optional", "required"] = "none",
     **arguments: Argument,
 ) -> CommandType:
@@ -91,6 +100,8 @@ def _row(
         leaves="leaves" in marks,
         engages="engages" in marks,
         now="now" in marks,
+        effects=frozenset(effects.split()),
+        motion="free" if "leaves" in marks else "",
         text=text,
         arguments=MappingProxyType(
             {key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()}
@@ -122,6 +133,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 " it turns the camera's angle and tries again. Says its text when it starts and"
                 " when it resumes.",
                 marks="feedback engages",
+                effects="human",
                 text="optional",
                 patience=Argument(
                     "duration", "how long to look before turning", 1000, 600000, default=10000
@@ -133,6 +145,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "human-detection locomotion",
                 "Turns the body to face the human.",
                 marks="engages",
+                effects="human",
             ),
             _row(
                 "q-and-a",
@@ -154,6 +167,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "human-detection locomotion",
                 "Follows the human at a distance until something else happens.",
                 marks="feedback engages",
+                effects="human follow",
                 distance=Argument("number", "metres to keep", 0.3, 5, default=1.0),
             ),
             _row(
@@ -162,6 +176,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "human-detection locomotion speaker",
                 "Turns to face the human and says its text.",
                 marks="engages",
+                effects="human",
                 text="required",
             ),
             _row(
@@ -169,6 +184,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Turn and Speak",
                 "locomotion localization speaker",
                 "Turns by an angle or toward a place and says its text.",
+                effects="direction",
                 text="required",
                 angle=_choice(_ANGLE),
                 toward=_TOWARD,
@@ -178,6 +194,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Set Direction",
                 _DRIVE,
                 "Turns to a heading of the map or toward a place.",
+                effects="direction",
                 heading=_choice(_HEADING),
                 toward=_TOWARD,
             ),
@@ -186,6 +203,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Turn",
                 "locomotion",
                 "Turns the body by an angle.",
+                effects="direction",
                 angle=Argument("number", _ANGLE.doc, -360, 360, required=True),
             ),
             _row(
@@ -193,6 +211,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Set Speed and Time",
                 "locomotion",
                 "Drives at a speed for a time.",
+                effects="position direction",
                 speed=Argument("number", "metres a second, backward negative", -2, 2, default=0.0),
                 turn_speed=Argument("number", "degrees a second", -180, 180, default=0.0),
                 time=Argument("duration", "for how long", 1, 60000, required=True),
@@ -211,6 +230,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Move Head",
                 "neck",
                 "Moves the head.",
+                effects="head",
                 pan=Argument("number", "degrees to the left", -180, 180, default=0.0),
                 tilt=Argument("number", "degrees upward", -90, 90, default=0.0),
             ),
@@ -237,6 +257,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 _DRIVE,
                 "Goes to a place along the ways of the world's map.",
                 marks="feedback leaves",
+                effects="position",
                 to=Argument("id", "a place of the world's map", required=True),
             ),
             _row(
@@ -245,6 +266,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 _DRIVE,
                 "Goes to a position of the map.",
                 marks="feedback leaves",
+                effects="position",
                 x=_X,
                 y=_Y,
             ),
@@ -254,6 +276,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 _DRIVE,
                 "Goes to a position of the map and turns to a heading there.",
                 marks="feedback leaves",
+                effects="position direction",
                 x=_X,
                 y=_Y,
                 heading=Argument("number", _HEADING.doc, -360, 360, required=True),

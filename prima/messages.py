@@ -29,6 +29,8 @@ class Command:
     extra: dict[str, Json] = field(default_factory=dict)
     lang: str = ""
     source: str = ""
+    restartable: bool = False
+    """Whether it gives way to a reaction and starts again afterwards (rule X2)."""
     hook: Any = None
     """What the application keeps with the Command; nobody else looks at it."""
 
@@ -40,6 +42,7 @@ class Group:
     steps: list[Step]
     longest: int | None = None
     source: str = ""
+    restartable: bool = False
 
 
 @dataclass(slots=True)
@@ -63,6 +66,10 @@ class Request:
     cause: int | None = None
     """Serial number of the event that this reacts to; sets the reactive flag (C5)."""
     unit: int | None = None
+    hold: int | None = None
+    """How long (ms) its stream is kept open for an event afterwards (rule X3)."""
+    connect: bool = False
+    """Whether the robot has to face the user first (rule X4)."""
 
 
 @dataclass(slots=True)
@@ -75,6 +82,7 @@ class OpenUnit:
     longest: int | None = None
     cause: int | None = None
     source: str = ""
+    connect: bool = False
 
 
 @dataclass(slots=True)
@@ -149,6 +157,15 @@ class Listening:
 
 
 @dataclass(slots=True)
+class Halted:
+    """A device tells how much it had done of an AB that was interrupted (rule X2)."""
+
+    behavior: str
+    data: Data = field(default_factory=dict)
+    """``done``: the part of it, 0 to 1; ``heard``: the beginning of the text that was said."""
+
+
+@dataclass(slots=True)
 class Failed:
     """A device could not do it (rule E1)."""
 
@@ -214,6 +231,7 @@ class Unloaded:
 Inbound = (
     Ended
     | Listening
+    | Halted
     | Failed
     | Heard
     | Occurred
@@ -230,9 +248,12 @@ Inbound = (
 
 @dataclass(slots=True)
 class Order:
-    """To the devices: start an AB's Command, abort it, or stop what still moves (F5)."""
+    """To the devices: start an AB's Command, abort it, or stop what still moves (F5).
 
-    verb: Literal["start", "abort", "stop", "send"]
+    ``interrupt`` is an abort of what will start again: the device tells how much it had done.
+    """
+
+    verb: Literal["start", "abort", "interrupt", "stop", "send"]
     behavior: str
     command: Command | None = None
     devices: frozenset[str] = frozenset()
@@ -248,9 +269,12 @@ class Order:
 
 @dataclass(slots=True)
 class Notice:
-    """The fate of Commands: ``ended``, ``done`` (a whole run), ``cancelled`` or ``failed``."""
+    """The fate of Commands: ``ended``, ``done`` (a whole run), ``cancelled`` or ``failed``.
 
-    what: Literal["ended", "done", "cancelled", "failed", "unit-timeout"]
+    ``interrupted`` tells how much was done of one that will start again (X2).
+    """
+
+    what: Literal["ended", "done", "cancelled", "failed", "interrupted", "unit-timeout"]
     run: int
     command: Command | None = None
     data: Data = field(default_factory=dict)

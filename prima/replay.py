@@ -11,6 +11,7 @@ from prima.messages import (
     Emergency,
     Ended,
     Failed,
+    Halted,
     Heard,
     Inbound,
     Listening,
@@ -33,6 +34,8 @@ def inbound_of(record: Record) -> Inbound | None:
     match record["phase"]:
         case "end":
             return Ended(record["behavior"], record.get("goal", True), data)
+        case "halted":
+            return Halted(record["behavior"], data)
         case "listening":
             return Listening(record["behavior"])
         case "fail":

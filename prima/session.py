@@ -20,6 +20,7 @@ from prima.messages import (
     Ended,
     Event,
     Failed,
+    Halted,
     Heard,
     Inbound,
     Json,
@@ -116,7 +117,7 @@ class Session:
 
     def _class(self, value: Inbound) -> tuple[int, int]:
         """V3: class, and for ends the application, the one whose stream is active first."""
-        if isinstance(value, Ended | Listening | Failed):
+        if isinstance(value, Ended | Listening | Halted | Failed):
             return 0, self._rank(value.behavior.partition("#")[0])
         return 1, 0
 
@@ -142,6 +143,9 @@ class Session:
             case Listening():
                 self._record("listening", "robot", behavior=value.behavior)
                 self.mediator.listening(value.behavior)
+            case Halted():
+                self.mediator.interrupted(value.behavior, value.data)
+                self._settle()
             case Failed():
                 self.mediator.failed(value.behavior, value.device, value.reason)
                 self._settle()
@@ -195,6 +199,8 @@ class Session:
             data=dict(value.data) or None,
             serial=serial,
         )
+        if value.name in ("human.found", "human.lost"):
+            self.mediator.sees_user(value.name == "human.found")
         self._raise(value.name, dict(value.data), apps)
 
     def _raise(

@@ -126,8 +126,9 @@ class Interpreter:
             return
         if notice.what == "unit-timeout":
             self._guard(lambda: self.handling.unit_timeout(notice))
-        elif notice.what == "ended":
-            self._guard(lambda: self.handling.command_event(notice, "end"))
+        elif notice.what in ("ended", "interrupted"):
+            kind = "end" if notice.what == "ended" else notice.what
+            self._guard(lambda: self.handling.command_event(notice, kind))
         else:
             fiber = self._waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
@@ -225,10 +226,24 @@ class Interpreter:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self._runs)
         cause, self.cause = self.cause, None
-        self.actions.append(Request(number, steps, fiber.frame.state, cause, fiber.unit))
+        frame = fiber.frame
+        asked = Request(number, steps, frame.state, cause, fiber.unit)
+        asked.hold = frame.form.hold
+        if frame.item is not None and frame.item.hold is not None:
+            asked.hold = frame.item.hold
+        asked.connect = self.connects(frame) and any(says(step) for step in steps)
+        if asked.connect:
+            frame.connected = True
+        self.actions.append(asked)
         self._waiting[number] = fiber
         fiber.waiting = number
         return number
+
+    @staticmethod
+    def connects(frame: Frame) -> bool:
+        """Whether the robot has to face the user before the state's next word (X4)."""
+        asks = isinstance(frame.item, Field) and frame.item.connect
+        return asks or (frame.form.connect and not frame.connected)
 
     def send(self, service: str, data: Json, place: str) -> None:
         """Ask a service something."""
@@ -485,3 +500,10 @@ class Interpreter:
         self._set_up(setup, frame.dialog, fiber)
         for item in all_items(frame.form.items):
             self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)
+
+
+def says(step: Step) -> bool:
+    """Whether a step of a request says anything."""
+    if isinstance(step.what, Command):
+        return step.what.text is not None
+    return any(says(inner) for inner in step.what.steps)

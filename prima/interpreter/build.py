@@ -52,6 +52,8 @@ from prima.messages import Json
 from prima.values import read_value, within
 
 LONGEST_MS = 60_000
+HOLD_MS = 15_000
+"""How long a stream is held for an event unless hold-for says otherwise (X3)."""
 
 
 class Builder:
@@ -189,8 +191,15 @@ class Builder:
             filled=self.filleds(node),
             properties=self.properties(node),
             node=node,
+            hold=self.hold(node),
+            connect=node.get("channel") == "connect",
         )
         return form
+
+    def hold(self, node: Node) -> int | None:
+        """How long a stream is held by the hints of an element (X3)."""
+        longest: int = self.value(node, "hold-for", "duration", HOLD_MS)
+        return longest if node.get("stream") == "hold" else None
 
     def setup(self, node: Node) -> list[Declare | Script]:
         """Variables and scripts, in document order."""
@@ -294,7 +303,9 @@ class Builder:
 
     def item(
         self, node: Node
-    ) -> tuple[str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node]:
+    ) -> tuple[
+        str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node, int | None
+    ]:
         """What all form items have."""
         name = node.get("name")
         self.plain_name(node, "name")
@@ -309,6 +320,7 @@ class Builder:
             handlers,
             self.properties(node),
             node,
+            self.hold(node) if "stream" in node.attributes else None,
         )
 
     def field(self, node: Node) -> Field:
@@ -348,6 +360,7 @@ class Builder:
             answers=answers,
             filled=self.filleds(node),
             lang=self.lang,
+            connect=node.get("channel") == "connect",
         )
 
     def subdialog(self, node: Node) -> Subdialog:
@@ -468,7 +481,8 @@ class Builder:
             self.in_unit(command)
         if not steps:
             self.problem(node, "empty", "This <iu> holds no Command.")
-        return GroupTemplate(steps, self.value(node, "longest", "duration", LONGEST_MS), node)
+        longest = self.value(node, "longest", "duration", LONGEST_MS)
+        return GroupTemplate(steps, longest, node, node.get("restartable") == "true")
 
     def command(self, node: Node) -> CommandTemplate:
         """A Command element."""
@@ -495,6 +509,7 @@ class Builder:
             handlers=self.handlers(node),
             node=node,
             lang=self.lang,
+            restartable=node.get("restartable") == "true",
         )
 
     def arguments(self, node: Node, row: CommandType) -> dict[str, Json | Expression]:

@@ -295,7 +295,8 @@ class Executor:
         for template in templates:
             what = template.what
             if isinstance(what, GroupTemplate):
-                group = Group(self.steps(what.steps, fiber), what.longest, source(what.node))
+                steps = self.steps(what.steps, fiber)
+                group = Group(steps, what.longest, source(what.node), what.restartable)
                 made.append(Step(group, template.after))
             else:
                 made.append(Step(self.command(what, fiber), template.after))
@@ -318,6 +319,7 @@ class Executor:
             extra,
             lang=template.lang,
             source=source(template.node),
+            restartable=template.restartable,
         )
         if template.handlers:
             command.hook = template.handlers

@@ -33,6 +33,7 @@ class CommandTemplate:
     handlers: list[Handler]
     node: Node
     lang: str = ""
+    restartable: bool = False
 
 
 @dataclass(slots=True)
@@ -42,6 +43,7 @@ class GroupTemplate:
     steps: list[StepTemplate]
     longest: int
     node: Node
+    restartable: bool = False
 
 
 @dataclass(slots=True)
@@ -254,6 +256,8 @@ class Item:
     handlers: list[Handler]
     properties: dict[str, Json]
     node: Node
+    hold: int | None
+    """How long (ms) its stream is kept open for an event afterwards (X3)."""
 
 
 @dataclass(slots=True)
@@ -271,6 +275,8 @@ class Field(Item):
     answers: Answers = field(default_factory=Answers)
     filled: list[Filled] = field(default_factory=list)
     lang: str = ""
+    connect: bool = False
+    """Whether the robot turns to the user before it asks (X4)."""
 
 
 @dataclass(slots=True)
@@ -304,6 +310,8 @@ class Form:
     filled: list[Filled]
     properties: dict[str, Json]
     node: Node
+    hold: int | None = None
+    connect: bool = False
 
 
 @dataclass(slots=True)

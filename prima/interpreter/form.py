@@ -224,8 +224,17 @@ class Algorithm:
         number = next(self.owner.units)
         cause, self.owner.cause = self.owner.cause, None
         self.owner.actions.append(
-            OpenUnit(number, frame.state, unit.devices, unit.longest, cause, source(unit.node))
+            OpenUnit(
+                number,
+                frame.state,
+                unit.devices,
+                unit.longest,
+                cause,
+                source(unit.node),
+                self.owner.connects(frame),
+            )
         )
+        frame.connected = True
         frame.units.append((number, unit))
         outer, fiber.unit = fiber.unit, number
         self.owner.engine.set(frame.dialog, unit.name, True)

@@ -37,6 +37,8 @@ class Frame:
     """What the form was doing has been cancelled (O2): it waits for an event to move it."""
     units: list[tuple[int, Unit]] = field(default_factory=list)
     fibers: list[Fiber] = field(default_factory=list)
+    connected: bool = False
+    """Whether the state has asked for the channel (X4)."""
     fresh: bool = False
     """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
 

@@ -54,6 +54,30 @@ _ORDER = attribute(
     default="after",
     choices=("after", "now"),
 )
+_STREAM = (
+    attribute(
+        "stream",
+        "text",
+        "hold: its stream stays open, and the floor with it, while the application waits for an"
+        " event afterwards (extension x3)",
+        choices=("hold",),
+    ),
+    attribute("hold-for", "duration", "how long at most", default="15s", low=1, high=600000),
+)
+_CHANNEL = attribute(
+    "channel",
+    "text",
+    "connect: the robot turns to the user before its first word, if it does not see him"
+    " (extension x4)",
+    choices=("connect",),
+)
+_RESTARTABLE = attribute(
+    "restartable",
+    "boolean",
+    "whether it gives way to a reaction at once and starts again from its beginning afterwards"
+    " (extension x2)",
+    default="false",
+)
 
 
 def _command(row: CommandType) -> Element:
@@ -71,6 +95,7 @@ def _command(row: CommandType) -> Element:
         for name, argument in row.arguments.items()
     )
     order = () if row.now else (_ORDER,)
+    restart = () if row.feedback or row.now else (_RESTARTABLE,)
     says = row.text != "none"
     marks = [
         "devices " + ", ".join(sorted(row.devices)),
@@ -81,7 +106,7 @@ def _command(row: CommandType) -> Element:
     return Element(
         row.name,
         f"{row.title}. {row.doc} [{'; '.join(marks)}]",
-        (*arguments, *order),
+        (*arguments, *order, *restart),
         ("param", "on", *(("value",) if says else ())),
         says,
         source="thesis Table 4.2",
@@ -145,7 +170,7 @@ ELEMENTS = (
         "form",
         "A state of the application. Its items are visited in document order while their"
         " variables are undefined and their conditions true; then it waits for events.",
-        (attribute("id", "id", "its name, for goto", "required"),),
+        (attribute("id", "id", "its name, for goto", "required"), *_STREAM, _CHANNEL),
         (
             *("var", "script", "property", "block", "field", "subdialog", "iu-items"),
             *("filled", *HANDLERS, "link", "watch"),
@@ -156,7 +181,7 @@ ELEMENTS = (
         "block",
         "Content that runs once, in document order. Commands that follow one another are one"
         " tree; what stands after them runs when they have ended.",
-        (_NAME, _START, _COND),
+        (_NAME, _START, _COND, *_STREAM),
         CONTENT,
         source="VoiceXML 2.3.2; rule O4",
     ),
@@ -169,6 +194,8 @@ ELEMENTS = (
             _START,
             _COND,
             attribute("type", "text", "a built-in grammar for the answer", choices=TYPES),
+            *_STREAM,
+            _CHANNEL,
         ),
         ("prompt", "option", "grammar", "property", "filled", *HANDLERS),
         source="VoiceXML 2.3.1; thesis Table 4.2, 4.4 exception 2",
@@ -290,7 +317,7 @@ ELEMENTS = (
     Element(
         "iu",
         "An Information Unit around Commands: they are one Atomic Behavior that nothing breaks.",
-        (_LONGEST,),
+        (_LONGEST, _RESTARTABLE),
         (*SPEAKING, "command", "par", "seq"),
         source="thesis 4.1 (2); rule U4",
     ),
@@ -312,7 +339,11 @@ ELEMENTS = (
         "command",
         "A Command that the robot's profile adds. A param with the name of one of its motion"
         " arguments gives that argument; others are additional arguments.",
-        (attribute("type", "id", "the Command's name in the profile", "required"), _ORDER),
+        (
+            attribute("type", "id", "the Command's name in the profile", "required"),
+            _ORDER,
+            _RESTARTABLE,
+        ),
         ("param", "on", "value"),
         text=True,
         source="thesis 5.3 (6)",

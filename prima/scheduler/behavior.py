@@ -13,6 +13,7 @@ from enum import Enum
 
 from prima.commands import CommandType
 from prima.messages import Command, Group
+from prima.scheduler.effects import Effects
 
 HIGH = 1
 NO_DEVICES: frozenset[str] = frozenset()
@@ -40,11 +41,17 @@ class Stream:
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: int | None = None
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
+    effects: Effects = field(default_factory=Effects)
+    hold: int | None = None
+    """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
+    hold_state: int = 0
+    """The document's state whose hint that is."""
+    held_until: int | None = None
 
     @property
     def open(self) -> bool:
-        """Whether the stream has an AB in working memory or an open window (C1)."""
-        return bool(self.members) or self.windows > 0
+        """Whether the stream has an AB in working memory, an open window, or is held (C1, X3)."""
+        return bool(self.members) or self.windows > 0 or self.held_until is not None
 
     def contending(self) -> list[Behavior]:
         """The stream's running and waiting ABs; linked ones compete for nothing."""
@@ -118,6 +125,12 @@ class Behavior:
     """Nobody hears of its end any more."""
     left: bool = False
     """Its state has been left (O3): a question ends as soon as it listens."""
+    connect: bool = False
+    """Whether the robot has to face the user before it starts (X4)."""
+    restarting: bool = False
+    """Whether the AB was interrupted and has not started again (X2)."""
+    inserted: str = ""
+    """The rule by which the mediator itself put the AB in (X1, X4)."""
     blocked: tuple[str, str] = ("", "")
     waited_loops: int = 0
     # Units only (U4, U5):
@@ -146,6 +159,17 @@ class Behavior:
     def engages(self) -> bool:
         """Whether the AB engages the user (K1)."""
         return self.type is not None and self.type.engages
+
+    @property
+    def motion(self) -> str:
+        """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5)."""
+        return self.type.motion if self.type is not None and self.unit is None else ""
+
+    @property
+    def restartable(self) -> bool:
+        """Whether the AB gives way to a reaction and starts again (X2)."""
+        what = self.group or self.command
+        return what is not None and what.restartable and not self.silent
 
     @property
     def priority(self) -> int:

@@ -42,8 +42,8 @@ class Chronicle:
             **fields,
         )
 
-    def request(self, ab: Behavior) -> None:
-        """Record a request with all that the rules ask of an AB."""
+    def request(self, ab: Behavior, before: str | None = None) -> None:
+        """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
         command = ab.command
         self.behavior(
             "request",
@@ -61,6 +61,8 @@ class Chronicle:
             engages=ab.engages or None,
             order="now" if command and command.now else None,
             state=ab.document_state,
+            inserted=ab.inserted or None,
+            before=before,
             source=(command.source if command else ab.group.source if ab.group else None) or None,
         )
 

@@ -35,6 +35,8 @@ class Endings:
         self._maker = Maker(table)
         self._selector = Selector(self.memory, policy, self._maker, chronicle, bound)
         self._deadlines: dict[str, int] = {}
+        self._holds: dict[str, int] = {}
+        """Until when streams are held (X3)."""
         self._rolling: Behavior | None = None
         self._touched: dict[str, Stream] = {}
         self.halted = False
@@ -133,6 +135,23 @@ class Endings:
             if ab.left:
                 self._delete(ab, "O3")
 
+    def interrupted(self, behavior: str, data: Data) -> None:
+        """X2: the device tells how much it had done of an AB that was interrupted."""
+        ab = self.memory.behaviors.get(behavior.partition(".")[0])
+        self.chronicle.add(
+            "halted",
+            "robot",
+            app=ab.app.name if ab else None,
+            behavior=behavior,
+            data=dict(data) or None,
+            inbound=True,
+        )
+        if ab is None or ab.run is None or ab.silent or ab.app.gone or ab.command is None:
+            return
+        event = f"interrupted.{ab.command.type}"
+        notice = Notice("interrupted", ab.run.number, ab.command, data, event)
+        self.told.append(Told(ab.app.name, None, [notice]))
+
     def ended(self, behavior: str, goal: bool, data: Data, inbound: bool = True) -> bool:
         """An AB ends by itself, or one loop of a feedback Command does (U2)."""
         ab = self.running(behavior)
@@ -149,6 +168,11 @@ class Endings:
         )
         if ab.feedback and not goal and "locomotion" in ab.devices:
             self._rolling = ab
+        if ab.type is not None and ab.command is not None:
+            body = self._selector.body
+            body.moved(ab.type, ab.command, data)
+            if ab.inserted != "X1" and (ending or "follow" in ab.type.effects):
+                ab.stream.effects.add(ab.type, ab.command, data, body)
         if ending:
             self._finish(ab, data)
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from prima.messages import Notice, Order
-from prima.scheduler.behavior import Behavior, State
+from prima.scheduler.behavior import Behavior, State, Stream
 from prima.scheduler.endings import Endings, Told, in_group
 
 HANG_MS = 120_000
@@ -48,6 +48,8 @@ class Failures(Endings):
             self.chronicle.behavior("fail", ab, rule="E1", event=event, message=reason)
         stream, run, unit_of = ab.stream, ab.run, ab.unit
         self._remove(ab)
+        if ab.inserted:
+            return  # what it was put in for goes on without it
         self._delete_rest(stream.members if unit_of is None else unit_of.inner, run, "E1")
         if run is not None and not told:
             run.left = 0
@@ -55,11 +57,13 @@ class Failures(Endings):
             self.told.append(Told(ab.app.name, stream, [notice]))
 
     def deadline(self) -> int | None:
-        """The next instant at which a unit or a device is too late, if any."""
-        return min(self._deadlines.values(), default=None)
+        """The next instant at which a unit, a device or an event waited for is too late."""
+        return min((*self._deadlines.values(), *self._holds.values()), default=None)
 
     def expire(self) -> None:
         """U5, E1: end what has run longer than it may."""
+        for name in [name for name, due in self._holds.items() if due <= self._now()]:
+            self._let_go(self.memory.streams[name], "over")
         late = [name for name, due in self._deadlines.items() if due <= self._now()]
         for name in late:
             self._deadlines.pop(name, None)
@@ -70,6 +74,13 @@ class Failures(Endings):
                 self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
                 device = min(ab.devices, default="none")
                 self._fail(ab, f"error.device.{device}", "The device did not end in time.")
+
+    def _let_go(self, stream: Stream, outcome: str) -> None:
+        """X3: the stream is held no longer."""
+        stream.held_until = None
+        del self._holds[stream.name]
+        self._touched[stream.name] = stream
+        self.chronicle.stream("held", stream, "X3", outcome=outcome)
 
     def _unit_timeout(self, unit: Behavior) -> None:
         self.chronicle.behavior("fail", unit, rule="U5", event="error.unit.timeout")

@@ -30,9 +30,14 @@ class Mediator(Failures):
             return
         app.gone = True
         self._withdraw(list(self.memory.of_app(app)), "E2")
+        self._drop_hints(app, None)
         for number in list(app.units):
             self._close_unit(app, number)
         self.chronicle.add("unload", "mediator", app=name, rule="E2", outcome=reason)
+
+    def sees_user(self, yes: bool) -> None:
+        """V4: the camera has come to see the user, or has lost him (for X4)."""
+        self._selector.in_view = yes
 
     def request(self, name: str, asked: Request) -> None:
         """Take Commands in as one tree (U3), or refuse them all (E3)."""
@@ -48,11 +53,13 @@ class Mediator(Failures):
             self._order_now(app, first, unit)
         reaction = asked.cause if unit is None else None
         stream, parent = self._place(app, reaction, unit)
+        self._hint(stream, asked)
         run = Run(asked.run, app, len(asked.steps))
         made = self._maker.chain(app, stream, asked.steps, asked, self._now(), run, unit)
         for ab in made:
             if not ab.waits_for:
                 self._root(ab, parent, reaction)
+                ab.connect = asked.connect and unit is None
             if unit is not None:
                 unit.inner[ab.name] = ab
             self.memory.add(ab)
@@ -66,6 +73,7 @@ class Mediator(Failures):
         unit = self._maker.spanning(app, stream, asked, self._now())
         app.units[asked.unit] = unit
         self._root(unit, parent, asked.cause)
+        unit.connect = asked.connect
         self.memory.add(unit)
         self.chronicle.request(unit)
         app.latest = unit
@@ -77,11 +85,28 @@ class Mediator(Failures):
     def leave_state(self, name: str, asked: LeaveState) -> None:
         """O3: the state's Commands that have not started are deleted, its loops end."""
         app = self.memory.apps[name]
+        self._drop_hints(app, asked.state)
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
             return
         app.continuing = (state[-1].stream, self._now())
         self._withdraw(state, "O3")
+
+    def _hint(self, stream: Stream, asked: Request) -> None:
+        """X3: the latest request of a stream says whether it is held afterwards."""
+        if stream.held_until is not None:
+            self._let_go(stream, "joined")
+        if self._selector.policy.has("x3"):
+            stream.hold, stream.hold_state = asked.hold, asked.state
+
+    def _drop_hints(self, app: Application, state: int | None) -> None:
+        """X3: a state that is left, or an application that ends, holds nothing any more."""
+        for stream in self.memory.streams.values():
+            if stream.app is app and stream.hold and state in (None, stream.hold_state):
+                stream.hold = None
+                if stream.held_until is not None:
+                    app.continuing = (stream, self._now())
+                    self._let_go(stream, "left")
 
     def _refuse(self, app: Application, asked: Request, refused: Refused) -> None:
         command = refused.command
@@ -107,8 +132,11 @@ class Mediator(Failures):
         parent = parent_of(app, None) if reaction is None else None
         if parent is not None:
             return parent.stream, parent
+        held = [self.memory.streams[name] for name in self._holds]
         continuing = app.continuing
-        if continuing is not None and continuing[1] == self._now():
+        if any(one.app is app for one in held):
+            stream = next(one for one in reversed(held) if one.app is app)
+        elif continuing is not None and continuing[1] == self._now():
             stream = continuing[0]
         elif reaction is None and app.window is not None:
             stream = app.window
@@ -181,6 +209,9 @@ class Mediator(Failures):
         for stream in touched.values():
             if stream.open or stream.name not in self.memory.streams:
                 continue
+            if stream.hold and not stream.app.gone:
+                self._keep_open(stream)
+                continue
             del self.memory.streams[stream.name]
             self.chronicle.stream("stream-end", stream, "C1")
             floor = self.memory.floor
@@ -189,6 +220,14 @@ class Mediator(Failures):
                 self.chronicle.stream(
                     "floor", stream, "F3", outcome="returned", floor=[held.name for held in floor]
                 )
+
+    def _keep_open(self, stream: Stream) -> None:
+        """X3: the stream stays open, with the floor unless another has it, and waits."""
+        assert stream.hold is not None
+        until = self._holds[stream.name] = stream.held_until = self._now() + stream.hold
+        self.chronicle.stream("held", stream, "X3", outcome="begun", data={"until": until / 1000})
+        if not self.memory.floor:
+            self._selector.take_floor(stream, "X3")
 
     def _set_deadlines(self) -> None:
         for ab in self._selector.started:

@@ -70,6 +70,15 @@ class Memory:
             for device in ab.devices:
                 if held.get(device) is ab:
                     del held[device]
+        if ab.motion:
+            self._leave_to_other_motion(ab)
+
+    def _leave_to_other_motion(self, ab: Behavior) -> None:
+        """X5: of two motions that were composed, the one that goes on keeps its devices."""
+        for other in self.running.values():
+            if other.motion and other.unit is None:
+                for device in other.devices & ab.devices:
+                    self.occupied.setdefault(device, other)
 
     def remove(self, ab: Behavior) -> None:
         """Take an AB out of working memory, whatever its state."""
@@ -85,10 +94,22 @@ class Memory:
         """The application's ABs, in the order of their requests."""
         return iter([ab for ab in self.behaviors.values() if ab.app is app])
 
-    def conflict(self, ab: Behavior) -> Behavior | None:
+    def conflicts(self, ab: Behavior) -> list[Behavior]:
+        """All running ABs that occupy one of the devices, in the order of their serial numbers."""
+        found = {
+            self.occupied[device].serial: device for device in ab.devices & self.occupied.keys()
+        }
+        return [self.occupied[found[serial]] for serial in sorted(found)]
+
+    def unwait(self, ab: Behavior) -> None:
+        """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
+        self.waiting.pop(ab.name, None)
+        ab.state = State.LINKED
+
+    def conflict(self, ab: Behavior, devices: frozenset[str] | None = None) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit
-        for device in sorted(ab.devices):
+        for device in sorted(ab.devices if devices is None else devices):
             if unit is not None and device in unit.devices:
                 other = unit.busy.get(device)
             else:

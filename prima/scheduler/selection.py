@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.scheduler.behavior import Behavior, Stream
+from prima.scheduler.behavior import Behavior, State, Stream
 from prima.scheduler.memory import Memory
 
 Rank = tuple[tuple[int, ...], ...]
@@ -68,6 +68,17 @@ def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
     return None if outranks(ab, holder) else ("F2", holder.name)
 
 
+def composes_with_floor(ab: Behavior, memory: Memory) -> bool:
+    """X5: whether the floor's stream does nothing but a motion that this one can carry."""
+    holder = memory.holder
+    if holder is None or ab.motion != "free":
+        return False
+    contending = holder.contending()
+    return bool(contending) and all(
+        other.motion == "faithful" and other.state is State.RUNNING for other in contending
+    )
+
+
 def refused_by_channel(ab: Behavior, memory: Memory) -> Refusal | None:
     """K1: an AB that leaves the user waits while another application engages the user."""
     if not ab.leaves:
@@ -89,6 +100,12 @@ class Policy:
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
     rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
     """The name of the rule behind each part of a rank."""
+    extensions: frozenset[str] = frozenset()
+    """Which of :data:`EXTENSIONS` are on."""
+
+    def has(self, extension: str) -> bool:
+        """Whether an extension is on."""
+        return extension in self.extensions
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """Where a waiting AB stands: the smallest goes first (S2)."""
@@ -103,6 +120,8 @@ class Policy:
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, K1)."""
+        if self.has("x5") and composes_with_floor(ab, memory):
+            return refused_by_channel(ab, memory)
         return refused_by_floor(ab, memory) or refused_by_channel(ab, memory)
 
     def holds_back(self, ab: Behavior) -> bool:
@@ -171,14 +190,21 @@ class Unmediated(Fifo):
 
 
 POLICIES = ("prima", "fifo", "fair", "fixed", "none")
+EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
+"""The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
 
 
 def policy_named(text: str) -> Policy:
     """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.
 
+    ``prima`` may have extensions: ``prima+x1``, ``prima+x2+x4``, ``prima+all``.
+
     Raises:
-        UsageError: no policy has that name.
+        UsageError: no policy or extension has that name.
     """
+    base, *extensions = text.split("+")
+    if base == "prima" and extensions:
+        return Policy(name=text, extensions=_extensions(extensions))
     name, colon, first = text.partition(":")
     if name == "fixed" and (first or not colon):
         return Fixed(first=first)
@@ -192,3 +218,11 @@ def policy_named(text: str) -> Policy:
         hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
         raise UsageError(f'There is no policy "{text}". {hint}')
     return simple[name]()
+
+
+def _extensions(names: list[str]) -> frozenset[str]:
+    for name in names:
+        if name not in (*EXTENSIONS, "all"):
+            hint = did_you_mean(name, EXTENSIONS) or f"Write {one_of(EXTENSIONS)}, or all."
+            raise UsageError(f'There is no extension "{name}". {hint}')
+    return frozenset(EXTENSIONS if "all" in names else names)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from prima.messages import Order
+from prima.messages import Command, Order
 from prima.scheduler.behavior import Behavior, State, Stream
 from prima.scheduler.chronicle import Chronicle
-from prima.scheduler.intake import Maker
+from prima.scheduler.effects import Body
+from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
-from prima.scheduler.selection import Policy, Rank, Refusal
+from prima.scheduler.selection import Policy, Rank, Refusal, composes_with_floor
 
 STARVING_LOOPS = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
+COMPOSED = {"free", "faithful"}
+"""The two kinds of motion that X5 composes."""
 
 
 class Selector:
@@ -26,6 +29,9 @@ class Selector:
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
+        self.body = Body()
+        self.in_view = False
+        """Whether the camera sees the user, as far as it has told (V4)."""
         self._maker = maker
         self._suspensions = 0
         self._turns = 0
@@ -48,6 +54,8 @@ class Selector:
         for index, (rank, ab) in enumerate(ranked):
             refusal = self.policy.refusal(ab, memory)
             if refusal is None:
+                if self._prepare(ab, now):
+                    return True
                 refusal = self._refused_by_devices(ab, held)
                 if refusal is not None and self.policy.holds_back(ab):
                     for device in ab.devices:
@@ -62,12 +70,88 @@ class Selector:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
-        other = self.memory.conflict(ab)
+        other = self._occupant(ab)
+        if other is not None and self._give_way(ab):
+            other = self._occupant(ab)
         if other is not None:
             return ("S1", other.id)
         for device in sorted(ab.devices & held.keys()):
             return ("S3", held[device].id)
         return None
+
+    def _occupant(self, ab: Behavior) -> Behavior | None:
+        """Who occupies one of the AB's devices, but for a motion to be composed with (X5)."""
+        other = self.memory.conflict(ab)
+        if other is None or not self.policy.has("x5") or {ab.motion, other.motion} != COMPOSED:
+            return other
+        return self.memory.conflict(ab, ab.devices - other.devices)
+
+    # Extensions -------------------------------------------------------------
+
+    def _give_way(self, reaction: Behavior) -> bool:
+        """X2: interrupt what is restartable and in the way of a reaction; true if that frees all."""
+        if not self.policy.has("x2") or reaction.reaction is None:
+            return False
+        ways = self.memory.conflicts(reaction)
+        if not all(ab.restartable for ab in ways):
+            return False
+        for ab in ways:
+            self._interrupt(ab, reaction)
+        return True
+
+    def _interrupt(self, ab: Behavior, reaction: Behavior) -> None:
+        self.chronicle.behavior("interrupt", ab, rule="X2", by=reaction.id)
+        for inner in list(ab.inner.values()):
+            if inner.state is State.RUNNING:
+                self._stop_device(inner)
+            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state.value)
+            self.memory.remove(inner)
+        if ab.command is not None:
+            self._stop_device(ab)
+        ab.restarting = True
+        self.memory.release(ab)
+        self.memory.wait(ab)
+
+    def _stop_device(self, ab: Behavior) -> None:
+        self.orders.append(Order("interrupt", ab.id, ab.command, app=ab.app.name))
+
+    def _prepare(self, ab: Behavior, now: int) -> bool:
+        """X1, X4: put in what has to come first; true if something was put in."""
+        if ab.inserted:
+            return False
+        if ab.stream.suspended is not None and self.policy.has("x1"):
+            own = ab.type.effects if ab.type is not None else frozenset()
+            commands = ab.stream.effects.missing(own, self.body)
+            if self._insert(ab, commands, "X1", now):
+                return True
+        if ab.connect and self.policy.has("x4"):
+            ab.connect = False
+            return not self.in_view and self._insert(ab, [Command("face-human")], "X4", now)
+        return False
+
+    def _insert(self, ab: Behavior, commands: list[Command], rule: str, now: int) -> bool:
+        """Put Commands between an AB and what it follows, in its stream and in its place."""
+        able = [command for command in commands if command.type in self._maker.table]
+        before: Behavior | None = None
+        for command in able:
+            command.source = ab.command.source if ab.command else ""
+            made = self._maker.behavior(ab.app, ab.stream, command, now, ab.document_state)
+            made.inserted, made.requested = rule, ab.requested
+            if rule == "X4":  # the first word follows at once, so its devices are taken along
+                made.devices |= ab.devices
+            if before is None:
+                made.parent, made.reaction, made.freed = ab.parent, ab.reaction, ab.freed
+                ab.reaction = None
+            else:
+                link(before, made)
+            self.memory.add(made)
+            self.chronicle.request(made, before=ab.id)
+            before = made
+        if before is None:
+            return False
+        link(before, ab)
+        self.memory.unwait(ab)
+        return True
 
     def _hold(self, ab: Behavior, refusal: Refusal) -> None:
         if ab.blocked == refusal:
@@ -85,7 +169,8 @@ class Selector:
     ) -> bool:
         """Start an AB and record why; true when its stream took the floor."""
         holder = self.memory.holder
-        by_floor_rule = holder is not None and holder.app is not ab.app
+        composed = self.policy.has("x5") and composes_with_floor(ab, self.memory)
+        by_floor_rule = holder is not None and holder.app is not ab.app and not composed
         others = bool(self.memory.running)
         reaction, ab.reaction = ab.reaction, None
         self._run(ab, now)
@@ -97,6 +182,8 @@ class Selector:
         ]
         if not self.policy.exclusive:
             rule = "none"
+        elif composed:
+            rule = "X5"
         elif by_floor_rule and self.policy.floor:
             rule = "F2"
         elif losers:
@@ -124,7 +211,9 @@ class Selector:
                 ab.parent = ab.id
             ab.loop += 1
         self.started.append(ab)
-        first = ab.started < 0
+        first = ab.started < 0 or ab.restarting
+        ab.resumed = ab.resumed or ab.restarting
+        ab.restarting = False
         self.memory.start(ab, now)
         stream = ab.stream
         stream.engaged = stream.engaged or ab.engages
@@ -170,13 +259,17 @@ class Selector:
             return False
         if stream in floor:
             floor.remove(stream)
+        self.take_floor(stream, "F1" if reaction is not None else "F3")
+        return True
+
+    def take_floor(self, stream: Stream, rule: str) -> None:
+        """Put a stream on top of the floors; the others' streams are suspended (C2)."""
+        floor = self.memory.floor
         floor.append(stream)
-        rule = "F1" if reaction is not None else "F3"
         self.chronicle.stream(
             "floor", stream, rule, outcome="taken", floor=[held.name for held in floor]
         )
         self._suspend_others(stream)
-        return True
 
     def _suspend_others(self, stream: Stream) -> None:
         for other in self.memory.streams.values():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from prima.messages import Command, Ended, Failed, Inbound, Json, Listening, Occurred, Order, Sensed
+from prima.messages import Command, Ended, Failed, Halted, Inbound, Json, Listening, Occurred, Order, Sensed
 from prima.sim import voice
 from prima.sim.routes import Routes
 from prima.sim.scenario import Point, Profile
@@ -52,6 +52,7 @@ class Task:
     command: Command
     devices: frozenset[str]
     ends: int | None = None
+    began: int = 0
     speech_ends: int = 0
     listens: int | None = None
     listening: bool = False
@@ -77,6 +78,8 @@ class Robot:
         self.tasks: dict[str, Task] = {}
         self.broken: dict[str, bool] = {}
         """Devices that fail, and whether they hang instead."""
+        self._halted: list[Inbound] = []
+        """What is to be told of interrupted Commands."""
         self._plans: dict[str, Plan] = {}
         self._owners: dict[str, Task] = {}
         self._now = 0
@@ -101,7 +104,21 @@ class Robot:
         elif order.verb == "stop":
             self.world.drive = (0.0, 0.0)
         else:
+            task = self.tasks.get(order.behavior)
+            if task is not None and order.verb == "interrupt":
+                self._halted.append(Halted(task.id, self._so_far(task)))
             self._abort(order.behavior)
+
+    def _so_far(self, task: Task) -> dict[str, Json]:
+        """How much of a Command has been done, and of what it says, how much was heard (X2)."""
+        ends = max(task.speech_ends, task.ends or 0)
+        done = (self._now - task.began) / (ends - task.began) if ends > task.began else 0.0
+        data: dict[str, Json] = {"done": round(min(max(done, 0.0), 1.0), 3)}
+        text = task.command.text
+        if text:
+            share = (self._now - task.began) / max(task.speech_ends - task.began, 1)
+            data["heard"] = voice.beginning(text, task.command.lang, share)
+        return data
 
     def _abort(self, behavior: str) -> None:
         task = self.tasks.pop(behavior, None)
@@ -111,7 +128,7 @@ class Robot:
     def _start(self, order: Order) -> None:
         command = order.command
         assert command is not None
-        task = Task(order.behavior, command, order.devices)
+        task = Task(order.behavior, command, order.devices, began=self._now)
         self.tasks[task.id] = task
         for device in order.devices:
             before = self._owners.get(device)
@@ -331,6 +348,8 @@ class Robot:
     def due(self) -> int | None:
         """The next instant at which something is to be reported, if one is known."""
         times = [time for task in self.tasks.values() for time in (task.ends, task.listens) if time]
+        if self._halted:
+            times.append(self._now + 1)
         if self._unseen_since is not None:
             times.append(self._unseen_since + LOST_AFTER_MS)
         elif self._seen and not self.world.sees_person():
@@ -340,7 +359,7 @@ class Robot:
     def collect(self, now: int) -> list[Inbound]:
         """Everything that the devices report at ``now``."""
         self._now = now
-        reports: list[Inbound] = []
+        reports, self._halted = self._halted, []
         for task in list(self.tasks.values()):
             drives = task.control is not None and "locomotion" not in task.lost
             if drives and self._steer(task) and task.ends is None:

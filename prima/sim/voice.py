@@ -38,3 +38,18 @@ def duration(text: str, lang: str, rates: dict[str, float]) -> int:
     letters = sum(weight(letter, primary) for letter in text)
     stops = sum(1 for letter in text[:-1] if letter in ".!?。！？")
     return max(round(letters / rate * 1000) + PAUSE_MS + stops * SENTENCE_MS, 1)
+
+
+def beginning(text: str, lang: str, share: float) -> str:
+    """What has been heard of a text when a share of its time (0 to 1) has gone, in whole words."""
+    primary = lang.lower().partition("-")[0]
+    weights = [weight(letter, primary) for letter in text]
+    left, cut = share * sum(weights), 0
+    for index, heavy in enumerate(weights):
+        left -= heavy
+        if left < 0:
+            break
+        after = text[index + 1 : index + 2]
+        if not after.strip() or not (text[index].isascii() and after.isascii()):
+            cut = index + 1
+    return text[:cut].strip()

@@ -27,6 +27,9 @@ PHASES = [
     "starve",
     "emergency",
     "listening",
+    "held",
+    "interrupt",
+    "halted",
     "event",
     "sensed",
     "note",
@@ -50,7 +53,8 @@ class Record(BaseModel):
     phase: Literal[
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
         "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",
-        "starve", "emergency", "listening", "event", "sensed", "note", "send", "log", "error",
+        "starve", "emergency", "listening",
+        "held", "interrupt", "halted", "event", "sensed", "note", "send", "log", "error",
         "over",
     ] = Field(description="What the record tells.")  # fmt: skip
     actor: Literal["robot", "user", "environment", "mediator"] = Field(
@@ -78,6 +82,10 @@ class Record(BaseModel):
     engages: bool | None = Field(None, description="Whether it engages the user (K1).")
     order: Literal["now"] | None = Field(None, description="Set for a Command wanted now (O2).")
     state: int | None = Field(None, description="The activation of a document's state that asks.")
+    inserted: str | None = Field(
+        None, description="The rule by which the mediator put it in itself (X1, X4)."
+    )
+    before: str | None = Field(None, description="The AB that it was put in before.")
     unit: str | None = Field(None, description="The unit that it is a part of (U4, U5).")
     event: str | None = Field(None, description="An event's name.")
     serial: int | None = Field(None, description="An event's or message's serial number.")

@@ -1,0 +1,138 @@
+"""What a stream's next behaviours rely on, read off what its Commands have done (rule X1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from prima.commands import CommandType
+from prima.messages import Command, Data
+
+FAR = 0.5
+"""How far (m) the robot may stand from where it stood before it goes back."""
+TURNED = 15.0
+"""How many degrees it may be turned away before it turns back; its head, too."""
+
+Pose = tuple[float, float, float]
+"""Metres east and north on the map, degrees counter-clockwise from east."""
+Head = tuple[float, float]
+"""Pan and tilt in degrees."""
+
+
+@dataclass(slots=True)
+class Body:
+    """The robot's state as its devices have told it last."""
+
+    pose: Pose | None = None
+    head: Head = (0.0, 0.0)
+
+    def moved(self, row: CommandType, command: Command, data: Data) -> None:
+        """Take in what a Command's end tells."""
+        pose = pose_of(data)
+        if pose is not None:
+            self.pose = pose
+        if "head" in row.effects:
+            self.head = head_of(command)
+
+
+@dataclass(slots=True)
+class Effects:
+    """What the Commands of a stream have brought about: where it stands, looks, and its head."""
+
+    position: tuple[float, float] | None = None
+    heading: float | None = None
+    human: bool = False
+    """Whether it was turned to the human."""
+    head: Head | None = None
+    body: Body = field(default_factory=Body)
+    """The robot's state when that had been brought about."""
+
+    def add(self, row: CommandType, command: Command, data: Data, body: Body) -> None:
+        """A Command of the stream has ended, or one loop of it."""
+        pose, effects = pose_of(data), row.effects
+        if "position" in effects and pose is not None:
+            self.position, self.heading, self.human = pose[:2], None, False
+        if "follow" in effects:
+            self.position = None
+        if "direction" in effects and pose is not None:
+            self.heading, self.human = pose[2], False
+        if "human" in effects:
+            self.heading, self.human = None, True
+        if "head" in effects:
+            self.head = head_of(command)
+        self.body = replace(body)
+
+    def missing(self, own: frozenset[str], body: Body) -> list[Command]:
+        """The Commands that bring back what a Command of ``own`` effects relies on."""
+        if "position" in own or "follow" in own:
+            return []
+        made: list[Command] = []
+        pose = body.pose
+        away = (
+            self.position is not None
+            and pose is not None
+            and math.dist(self.position, pose[:2]) > FAR
+        )
+        turned = not {"direction", "human"} & own
+        if away and self.position is not None:
+            made.append(_go(self.position, self.heading if turned else None))
+        elif turned and self._looks_elsewhere(pose):
+            made.append(Command("set-direction", {"heading": round(self.heading or 0.0, 1)}))
+        if turned and self.human and (away or self._turned_since(body)):
+            made.append(Command("face-human"))
+        if "head" not in own and self.head is not None and _apart(self.head, body.head):
+            made.append(Command("move-head", {"pan": self.head[0], "tilt": self.head[1]}))
+        return made
+
+    def _looks_elsewhere(self, pose: Pose | None) -> bool:
+        return (
+            self.heading is not None
+            and pose is not None
+            and abs(difference(self.heading, pose[2])) > TURNED
+        )
+
+    def _turned_since(self, body: Body) -> bool:
+        before, now = self.body.pose, body.pose
+        return (
+            before is not None
+            and now is not None
+            and (
+                math.dist(before[:2], now[:2]) > FAR or abs(difference(before[2], now[2])) > TURNED
+            )
+        )
+
+
+def _go(position: tuple[float, float], heading: float | None) -> Command:
+    args: dict[str, float] = {"x": round(position[0], 3), "y": round(position[1], 3)}
+    if heading is None:
+        return Command("set-position", args)
+    return Command("set-position-and-direction", {**args, "heading": round(heading, 1)})
+
+
+def _apart(head: Head, other: Head) -> bool:
+    return max(abs(head[0] - other[0]), abs(head[1] - other[1])) > TURNED
+
+
+def difference(angle: float, other: float) -> float:
+    """The way from ``other`` to ``angle``, between -180 and 180 degrees."""
+    return (angle - other + 180.0) % 360.0 - 180.0
+
+
+def pose_of(data: Data) -> Pose | None:
+    """The pose that a device tells at a Command's end, if it does."""
+    values = [data.get(name) for name in ("x", "y", "heading")]
+    if not all(isinstance(value, int | float) and math.isfinite(value) for value in values):
+        return None
+    x, y, heading = (float(value) for value in values if value is not None)
+    return (x, y, heading)
+
+
+def head_of(command: Command) -> Head:
+    """How a Move Head turns the head."""
+    args: Mapping[str, object] = command.args
+    pan, tilt = args.get("pan", 0.0), args.get("tilt", 0.0)
+    return (
+        float(pan) if isinstance(pan, int | float) else 0.0,
+        float(tilt) if isinstance(tilt, int | float) else 0.0,
+    )
