@@ -7,6 +7,7 @@ everything below them works on text and values.
 from __future__ import annotations
 
 import hashlib
+import posixpath
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import chain
@@ -14,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.codes import CODES
-from prima.errors import DocumentError, Place, Problem, RunError, UsageError, did_you_mean
+from prima.errors import DocumentError, Place, Problem, RunError, UsageError, did_you_mean, one_of
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
@@ -164,21 +165,53 @@ def load_scenario(path: str | Path) -> Loaded:
         robot = read_robot(*found) if found else None
     except DocumentError as error:
         problems += error.problems
+    offers = []
+    beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
+    for area in world.areas if world is not None and scenario.entrances else []:
+        name = posixpath.normpath(posixpath.join(posixpath.dirname(scenario.world), area.src))
+        if name in beside:
+            continue  # the scenario itself says when it runs
+        try:
+            found = related(name, area.node.attribute_place("application"))
+            if found is not None:
+                document, noted = read_document(*found)
+                problems += noted
+                documents.append(document)
+                offers.append((area, document.id))
+        except DocumentError as error:
+            problems += error.problems
+    place = scenario.node.attribute_place("policy")
     try:
         policy_named(scenario.policy)
     except UsageError as error:
-        place = scenario.node.attribute_place("policy")
-        problems.append(Problem(place, "error", "bad-value", str(error)))
+        message = f"{error} {FAVOURITE}"
+        problems.append(Problem(place, "error", "bad-value", message))
     if robot is not None:
         for document in documents:
-            problems += check_commands(document, robot.commands)
-    if world is None or robot is None or len(documents) < len(scenario.applications):
+            problems += check_commands(document, robot.commands, robot.devices)
+    complete = len(documents) == len(scenario.applications) + len(offers)
+    if world is None or robot is None or not complete:
         raise DocumentError(problems)
-    cast = Cast(scenario, documents, world, robot)
+    if problem := _favourite_problem(scenario.policy, documents):
+        problems.append(Problem(place, "error", "no-such-name", *problem))
+    cast = Cast(scenario, documents, world, robot, offers)
     problems += check_cast(cast, str(path))
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(set(problems))
     return Loaded(cast, files, sorted(set(problems)))
+
+
+FAVOURITE = "fixed:APP prefers the application APP."
+
+
+def _favourite_problem(policy: str, documents: list[Document]) -> tuple[str, str] | None:
+    """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
+    kind, _, first = policy.partition(":")
+    names = [document.id for document in documents]
+    if kind != "fixed" or not first or first in names:
+        return None
+    hint = did_you_mean(first, names) or f"Write {one_of(names)}."
+    return f'The policy "{policy}" names an application that is not in the scenario.', hint
 
 
 def _digest(data: bytes) -> str:
@@ -262,10 +295,13 @@ def rehearse(
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
     name = cast.scenario.policy if policy is None else policy
-    first = name.partition(":")[2]
-    if first and first not in {document.id for document in cast.documents}:
-        raise UsageError(f'The policy "{name}" names an application that is not there.')
-    rehearsal = Rehearsal(cast, policy_named(name), bound)
+    try:
+        chosen = policy_named(name)
+    except UsageError as error:
+        raise UsageError(f"{error} {FAVOURITE}") from None
+    if problem := _favourite_problem(name, cast.documents):
+        raise UsageError(" ".join(problem))
+    rehearsal = Rehearsal(cast, chosen, bound)
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -302,7 +338,7 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     from prima.transcript.lines import MAX_LINE, read_lines
 
     try:
-        with Path(path).open(encoding="utf-8") as stream:
+        with Path(path).open(encoding="utf-8-sig") as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
             cut: list[str] | None = [] if partial else None
             records = list(read_lines(str(path), lines, cut))
@@ -375,32 +411,47 @@ def explain_row(transcript: Transcript, number: int) -> str:
     if not 0 <= number < len(rows):
         raise UsageError(f"There is no row {number}; the rows are 0 to {len(rows) - 1}.")
     row = rows[number]
-    lines = [f"Row {number}, {row.time:.3f} s: {row.app} {row.what}".rstrip()]
+    lines = [f"Row {number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
     if row.source:
         lines.append(f"Requested at {row.source}.")
-    base = row.behavior.partition(".")[0]
+    if row.actor != "R":
+        lines.append("It came from outside; no rule decided when.")
     for record in transcript.records:
         if record["time"] > row.time:
             break
-        about = (record.get("behavior") or "").partition(".")[0] == base and bool(base)
-        if about and record["phase"] == "request":
-            flag = ", reactive" if record.get("reactive") else ""
-            lines.append(
-                f"{record['time']:.3f} s: requested as {base} ({record['priority']} priority{flag})."
-            )
-        elif about and record["phase"] == "hold":
-            lines.append(
-                f"{record['time']:.3f} s: held back by {record['by']} (rule {record['rule']})."
-            )
-        elif about and record["phase"] == "resume":
-            lines.append(f"{record['time']:.3f} s: its stream {record['tree']} resumes (rule C2).")
-        elif record.get("winner") == row.behavior and record["phase"] == "decision":
-            lost = ", ".join(record["losers"]) or "nobody"
-            lines.append(
-                f"{record['time']:.3f} s: selected by rule {record['rule']} before {lost}"
-                f" ({record['losers_count']} in all)."
-            )
+        line = _reason(record, row)
+        if line:
+            lines.append(f"{record['time']:.3f} s: {line}")
     return "\n".join(lines)
+
+
+def _reason(record: Record, row: Row) -> str:
+    """What a record has to do with when a row came, if it has; or with the unit around it."""
+    phase = record["phase"]
+    base = row.behavior.partition(".")[0]
+    if not base:
+        return ""
+    if phase == "decision" and record.get("winner") in (row.behavior, row.unit):
+        unit = f"the unit {row.unit} is " if record["winner"] == row.unit else ""
+        lost = ", ".join(record["losers"]) or "nobody"
+        return f"{unit}selected by rule {record['rule']} before {lost} ({record['losers_count']} in all)."
+    about = (record.get("behavior") or "").partition(".")[0]
+    if about not in (base, row.unit) or not about:
+        return ""
+    it = f"the unit {about} is " if about == row.unit else ""
+    match phase:
+        case "request":
+            flag = ", reactive" if record.get("reactive") else ""
+            asked = f"{it}requested" if it else f"requested as {base}"
+            return f"{asked} ({record['priority']} priority{flag})."
+        case "hold":
+            return f"{it}held back by {record['by']} (rule {record['rule']})."
+        case "resume":
+            stream = f"the stream of {about}" if it else f"its stream {record['tree']}"
+            return f"{stream} resumes (rule C2)."
+        case "start" if not it and record.get("unit"):
+            return f"started inside the unit {record['unit']} (rule {record.get('rule')})."
+    return ""
 
 
 def documents_folder() -> Path:

@@ -22,12 +22,13 @@ CODES: dict[str, str] = {
     "stray-text": "Text stands where the language has no place for it. What the robot is to say"
     " stands in <speak> or another Command that speaks.",
     "unknown-attribute": "The element has no such attribute. Nothing is silently ignored.",
-    "missing-attribute": "The element needs an attribute that is not there.",
+    "missing-attribute": "The element needs an attribute that is not there, or one of several.",
     "missing-element": "The element needs a child that is not there.",
     "bad-value": "An attribute's text is not of the attribute's kind: a time has its unit (2s,"
     " 500ms), a number is written in digits, and so on.",
     "out-of-range": "A number is greater or smaller than the attribute or argument allows.",
-    "exclusive": "Two attributes say the same thing in different ways; keep one.",
+    "exclusive": "Two attributes exclude each other: they say one thing in different ways, or two"
+    " things of which an element does one. Keep one.",
     "duplicate-id": "Two things have one id, so that nobody could tell which is meant.",
     "duplicate-name": "Two items of a form have one name: they would share their variable.",
     "duplicate-element": "The element may be there only once.",
@@ -48,8 +49,9 @@ CODES: dict[str, str] = {
     "empty": "The element holds nothing.",
     "after-else": "Nothing but content may stand after <else>: it takes all that is left.",
     "unreachable": "No goto, link or subdialog leads to the form, so its content never runs.",
-    "dead-end": "The form has no goto, exit, return, link or handler: once in it, the application"
-    " waits for ever. That may be meant; if it is over there, say so with <exit/>.",
+    "dead-end": "Nothing in the form, its handlers included, is a goto, exit, return, throw or link,"
+    " and no subdialog that it calls can exit: once in it, the application waits for ever. That may"
+    " be meant; if it is over there, say so with <exit/>, or in a subdialog with <return/>.",
     "dead-content": "What stands behind a goto, return or exit is never reached.",
     "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
     " form item, <foreach> or <script> declares. At run time that is error.semantic.",

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from prima.errors import did_you_mean, one_of
-from prima.values import Value, read_value, within
+from prima.values import Value, outside, read_value, shown, within
 
 DEVICES = (
     "human-detection",
@@ -67,6 +67,8 @@ class CommandType:
     """What later Commands of a stream may rely on once it has ended (rule X1): :data:`EFFECTS`."""
     motion: Literal["", "faithful", "free"] = ""
     """Faithful to its own path (a dance), or free in its path (going somewhere) (rule X5)."""
+    substitute: str = ""
+    """For a Command that the robot lacks: the one that takes its place (rule X6)."""
     extra: frozenset[str] = frozenset()
     """Additional arguments that the robot's maker offers to an FA (Table 4.1)."""
 
@@ -287,6 +289,15 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
 """The 17 Command types by name."""
 
 
+_A_KIND = {
+    "number": "a number",
+    "duration": "a time: a number of seconds, or a text with its unit",
+    "boolean": "true or false",
+    "id": "a name",
+    "text": "a text",
+}
+
+
 def check_argument(name: str, argument: Argument, value: object) -> Value:
     """Give ``value`` as the argument's Python value.
 
@@ -296,38 +307,29 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
     Raises:
         ValueError: with a sentence about the argument, for the author.
     """
-    shown = f'{name} "{value}"'
+    said = f'{name} "{shown(value)}"'
+    wrong = f"{said} is not {_A_KIND[argument.kind]}."
     if isinstance(value, str):
         try:
             result = read_value(argument.kind, value)
         except ValueError as error:
-            raise ValueError(f"{shown} {error}") from None
+            raise ValueError(f"{said} {error}") from None
     elif argument.kind == "boolean" and isinstance(value, bool):
         result = value
     elif isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{shown} is not a {argument.kind}.")
+        raise ValueError(wrong)
     elif argument.kind == "duration" and math.isfinite(value):
         result = round(value * 1000) if abs(value) < 1e9 else -1
     elif argument.kind == "number" and math.isfinite(value):
         result = float(value)
-    elif not math.isfinite(value):
-        raise ValueError(f"{shown} is not a number.")
-    elif argument.kind == "id" and value == int(value):
+    elif argument.kind == "id" and math.isfinite(value) and value == int(value):
         result = str(int(value))
     else:
-        raise ValueError(f"{shown} is not a {argument.kind}.")
-    if isinstance(result, int | float) and not isinstance(result, bool):
-        _check_range(shown, argument, result)
+        raise ValueError(wrong)
+    number = isinstance(result, int | float) and not isinstance(result, bool)
+    if number and not within(float(result), argument.low, argument.high):
+        raise ValueError(f"{said} {outside(argument.kind, argument.low, argument.high)}")
     return result
-
-
-def _check_range(shown: str, argument: Argument, value: float) -> None:
-    low, high = argument.low, argument.high
-    if not within(value, low, high):
-        unit = " ms" if argument.kind == "duration" else ""
-        least = "" if low is None else f" from {low:g}"
-        most = "" if high is None else f" to {high:g}"
-        raise ValueError(f"{shown} is out of range:{least}{most}{unit}.")
 
 
 def check_arguments(
@@ -350,7 +352,7 @@ def check_arguments(
             hint = did_you_mean(name, row.arguments)
             raise ValueError(f'{row.name} has no argument "{name}". {hint}'.rstrip())
         values[name] = check_argument(name, argument, value)
-    problem = missing_argument(row, values)
+    problem = missing_argument(row, values) or excluding_arguments(row, values)
     if problem:
         raise ValueError(problem)
     for name, argument in row.arguments.items():
@@ -360,13 +362,24 @@ def check_arguments(
 
 
 def missing_argument(row: CommandType, given: Iterable[str]) -> str:
-    """Say which argument ``row`` still needs, or which two exclude each other."""
+    """Say which argument ``row`` still needs."""
     names = set(given)
     for name, argument in row.arguments.items():
         if argument.required and name not in names:
             return f'{row.name} needs "{name}".'
-    choices = {name for name, argument in row.arguments.items() if argument.choice}
-    if choices and len(choices & names) != 1:
-        some = "only one of" if choices & names else "one of"
-        return f"{row.name} needs {some} {one_of(choices)}."
+    choices = _choices(row)
+    if choices and not choices & names:
+        return f"{row.name} needs one of {one_of(choices)}."
     return ""
+
+
+def excluding_arguments(row: CommandType, given: Iterable[str]) -> str:
+    """Say which arguments of ``row`` exclude each other, where several of them are given."""
+    choices = _choices(row)
+    if len(choices & set(given)) > 1:
+        return f"{row.name} needs only one of {one_of(choices)}."
+    return ""
+
+
+def _choices(row: CommandType) -> set[str]:
+    return {name for name, argument in row.arguments.items() if argument.choice}

@@ -216,16 +216,18 @@ class Emergency:
 
 @dataclass(slots=True)
 class Loaded:
-    """An application starts."""
+    """An application starts; ``place`` is where the robot has entered, if that is why."""
 
     app: str
+    place: str = ""
 
 
 @dataclass(slots=True)
 class Unloaded:
-    """An application is taken out of the robot (rule E2)."""
+    """An application is taken out of the robot (rule E2); ``place`` is what it has left."""
 
     app: str
+    place: str = ""
 
 
 Inbound = (
@@ -259,6 +261,8 @@ class Order:
     devices: frozenset[str] = frozenset()
     loop: int = 0
     resumed: bool = False
+    beside: bool = False
+    """Whether another motion goes on on the same devices, to be composed with (X5)."""
     app: str = ""
     data: Json = None
     """For ``send``: the service and what it is sent."""

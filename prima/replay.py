@@ -52,9 +52,9 @@ def inbound_of(record: Record) -> Inbound | None:
             pressed = record["outcome"] == "pressed"
             return Emergency(pressed, bool(data.get("resume", True)))
         case "load":
-            return Loaded(record["app"])
+            return Loaded(record["app"], str(data.get("place", "")))
         case "unload":
-            return Unloaded(record["app"])
+            return Unloaded(record["app"], str(data.get("place", "")))
     return None
 
 

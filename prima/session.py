@@ -163,9 +163,9 @@ class Session:
                 self._raise(name, {}, self._in_order())
                 self._settle()
             case Loaded():
-                self._load(value.app)
+                self._load(value)
             case Unloaded():
-                self._record("unload", "environment", app=value.app)
+                self._record("unload", "environment", app=value.app, data=place_data(value))
                 app = self.apps.get(value.app)
                 if app is not None and value.app in self._loaded:
                     app.stop()
@@ -174,11 +174,14 @@ class Session:
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
         self.chronicle.add(phase, actor, inbound=True, **fields)
 
-    def _load(self, name: str) -> None:
-        self._record("load", "environment", app=name)
+    def _load(self, value: Loaded) -> None:
+        name = value.app
+        self._record("load", "environment", app=name, data=place_data(value))
         app = self.apps[name]
         if name in self._loaded:
-            return
+            if not app.over:
+                return
+            app = self.apps[name] = Interpreter(app.document, app.arguments)
         self._loaded.add(name)
         app.sensors.update(self._sensors)
         self.mediator.load(name, app.kind)
@@ -349,3 +352,8 @@ class Session:
         if action.failed:
             self.failures.append(f"{app.name}: {action.reason}")
         self.mediator.unload(app.name, action.reason)
+
+
+def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:
+    """What a record tells of an application that comes or goes with a place."""
+    return {"place": value.place} if value.place else None

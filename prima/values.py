@@ -66,7 +66,7 @@ def _number(text: str) -> float:
 
 def _integer(text: str) -> int:
     if re.fullmatch(r"[+-]?[0-9]{1,9}", text) is None:
-        raise ValueError('is not a whole number. Write digits alone, as in "2".')
+        raise ValueError('is not a whole number. Write digits alone, at most nine, as in "2".')
     return int(text)
 
 
@@ -83,6 +83,13 @@ def _pattern(pattern: str, what: str) -> Callable[[str], str]:
         return text
 
     return read
+
+
+def _target(text: str) -> str:
+    if not _fits(f"#{NAME}", text):
+        remedy = f'"#{text}"' if _fits(NAME, text) else '"#" and the id of a form'
+        raise ValueError(f"is not a place to go to. Write {remedy}.")
+    return text
 
 
 def _event_list(text: str) -> str:
@@ -167,7 +174,7 @@ KINDS: dict[str, Kind] = {
     "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
     "text": Kind(str, "xs:string", "", "any text"),
     "target": Kind(
-        _pattern(f"#{NAME}", 'a place to go to. Write "#" and the id of a form.'),
+        _target,
         "xs:string",
         f"#{_XSD_NAME}",
         "# and the id of a form",
@@ -190,6 +197,36 @@ def read_value(kind: str, text: str) -> Value:
             sentence that begins with the quoted text.
     """
     return KINDS[kind].read(text if kind == "text" else text.strip(XML_SPACE))
+
+
+def shown(value: object) -> str:
+    """A value in ECMAScript's words, for a message."""
+    if value is None:
+        return "undefined"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        if math.isnan(value):
+            return "NaN"
+        if math.isinf(value):
+            return "Infinity" if value > 0 else "-Infinity"
+        return f"{value:.15g}"
+    return str(value)
+
+
+def outside(kind: str, low: float | None, high: float | None) -> str:
+    """Say that a number is beyond its bounds, these in the unit that an author writes."""
+
+    def bound(value: float) -> str:
+        if kind != "duration":
+            return f"{value:g}"
+        return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
+
+    if low is not None and high is not None:
+        return f"is out of range: from {bound(low)} to {bound(high)}."
+    if low is not None:
+        return f"is out of range: at least {bound(low)}."
+    return f"is out of range: at most {bound(high)}." if high is not None else "is out of range."
 
 
 def within(value: float, low: float | None, high: float | None) -> bool:

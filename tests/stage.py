@@ -80,10 +80,12 @@ class Stage:
         state: int = 1,
         unit: int | None = None,
         steps: list[Step] | None = None,
+        hold: int | None = None,
+        connect: bool = False,
     ) -> int:
         """Ask for Commands; nothing is selected before :meth:`select`."""
         self.runs += 1
-        asked = Request(self.runs, steps or chain(*whats), state, cause, unit)
+        asked = Request(self.runs, steps or chain(*whats), state, cause, unit, hold, connect)
         self.mediator.request(app, asked)
         return self.runs
 
@@ -102,9 +104,9 @@ class Stage:
         self.chronicle.now = time
         return self
 
-    def end(self, behavior: str, goal: bool = True, then: Any = None) -> None:
+    def end(self, behavior: str, goal: bool = True, then: Any = None, **data: Any) -> None:
         """An AB ends; ``then`` is called in the window that its end opens."""
-        self.mediator.ended(behavior, goal, {})
+        self.mediator.ended(behavior, goal, data)
         self.settle(then)
 
     def settle(self, then: Any = None) -> None:

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from prima.commands import TABLE_4_2, CommandType, check_argument, missing_argument
+from prima.commands import (
+    TABLE_4_2,
+    CommandType,
+    check_argument,
+    excluding_arguments,
+    missing_argument,
+)
 from prima.errors import Problem
 from prima.interpreter.elements import (
     Act,
@@ -49,7 +55,7 @@ from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.values import read_value, within
+from prima.values import XML_SPACE, outside, read_value, within
 
 LONGEST_MS = 60_000
 HOLD_MS = 15_000
@@ -86,9 +92,8 @@ class Builder:
         for item in DIALOGUE.elements[node.key].attributes:
             number = item.name == name and isinstance(value, int | float)
             if number and not within(float(value), item.low, item.high):
-                self.problem(
-                    node, "out-of-range", f'{name} "{text}" is out of range.', attribute=name
-                )
+                message = f'{name} "{text}" {outside(kind, item.low, item.high)}'
+                self.problem(node, "out-of-range", message, attribute=name)
         return value
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
@@ -104,6 +109,22 @@ class Builder:
         if name in node.attributes:
             self.exclusive(node, name, f"{name}-expr")
         return found
+
+    def target(self, node: Node, name: str) -> str:
+        """The form that an attribute names; the schema tells where the # is missing."""
+        return node.get(name).strip(XML_SPACE).removeprefix("#")
+
+    def one_of_two(self, node: Node, first: str, second: str) -> None:
+        """Note where an element has neither or both of two attributes, or of their expressions."""
+        has = [
+            next((key for key in (name, f"{name}-expr") if key in node.attributes), "")
+            for name in (first, second)
+        ]
+        if all(has):
+            self.exclusive(node, *has)
+        elif not any(has):
+            message = f"<{node.tag}> needs either {first} or {second}."
+            self.problem(node, "missing-attribute", message)
 
     def exclusive(self, node: Node, first: str, second: str) -> None:
         """Note that two attributes exclude each other."""
@@ -267,13 +288,13 @@ class Builder:
         """Links in document order."""
         found = []
         for child in node.all("link"):
-            if ("next" in child.attributes) == ("event" in child.attributes):
-                self.problem(child, "missing-attribute", "<link> needs either next or event.")
+            self.one_of_two(child, "next", "event")
             grammars = [read_grammar(self.problem, item) for item in child.all("grammar")]
             if len(grammars) != 1:
                 self.problem(child, "missing-element", "<link> needs one <grammar>.")
             for grammar in grammars[:1]:
-                found.append(Link(child.get("next")[1:], child.get("event"), grammar, child))
+                to = self.target(child, "next")
+                found.append(Link(to, child.get("event"), grammar, child))
         return found
 
     def watches(self, node: Node) -> list[Watch]:
@@ -367,7 +388,7 @@ class Builder:
         """A subdialog."""
         return Subdialog(
             *self.item(node),
-            form=node.get("src")[1:],
+            form=self.target(node, "src"),
             params=self.params(node),
             filled=self.filleds(node),
         )
@@ -541,6 +562,10 @@ class Builder:
         missing = missing_argument(row, args) if required <= args.keys() else ""
         if missing:
             self.problem(node, "missing-attribute", missing)
+        if excluding := excluding_arguments(row, args):
+            given = [key for key in node.attributes if key.removesuffix("-expr") in args]
+            choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]
+            self.problem(node, "exclusive", excluding, "Keep one of them.", choices[-1])
         if row.text == "required" and text is None:
             remedy = "Write its text inside it."
             self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
@@ -602,18 +627,16 @@ class Builder:
     def goto(self, node: Node) -> Goto:
         """A goto, to a form or to an item."""
         form, item = self.either(node, "next"), self.either(node, "nextitem")
-        if bool(form) == bool(item):
-            self.problem(node, "missing-attribute", "<goto> needs either next or nextitem.")
+        self.one_of_two(node, "next", "nextitem")
         if isinstance(form, str):
-            form = form.removeprefix("#")
+            form = self.target(node, "next")
         return Goto(form or None, item or None, node)
 
     def send(self, node: Node) -> SendOut:
         """A send, to a service or to the application itself."""
         to = self.either(node, "to")
         event = node.get("event")
-        if bool(to) == bool(event):
-            self.problem(node, "missing-attribute", "<send> needs either to or event.")
+        self.one_of_two(node, "to", "event")
         if to and ("delay" in node.attributes or "delay-expr" in node.attributes):
             self.problem(
                 node,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import Place, Problem, Severity, did_you_mean
@@ -59,14 +59,20 @@ def check_document(document: Document) -> list[Problem]:
     return checker.problems
 
 
-def check_commands(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
+def check_commands(
+    document: Document, commands: Mapping[str, CommandType], devices: frozenset[str] = frozenset()
+) -> list[Problem]:
     """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
     problems = []
     for command in document_commands(document):
-        if command.type not in commands:
+        row = commands.get(command.type)
+        if row is None or row.substitute:
             known = command.type in TABLE_4_2
+            lacking = sorted(TABLE_4_2[command.type].devices - devices) if known else []
+            lacks = f": it lacks {', '.join(lacking)}" if lacking and devices else ""
             message = (
-                f"This robot cannot do {command.type}; it throws error.unsupported.{command.type}."
+                f"This robot cannot do {command.type}{lacks}."
+                f" At run time it is error.unsupported.{command.type}."
                 if known
                 else f'This robot has no Command "{command.type}".'
             )
@@ -77,7 +83,6 @@ def check_commands(document: Document, commands: Mapping[str, CommandType]) -> l
             )
             continue
         for name, _ in command.extra:
-            row = commands[command.type]
             if name not in row.extra and name not in row.arguments:
                 message = f'This robot\'s {command.type} has no additional argument "{name}".'
                 hint = did_you_mean(name, row.extra | set(row.arguments))
@@ -100,6 +105,15 @@ def _context() -> Any:
     return plain_context()
 
 
+class Leads(NamedTuple):
+    """Where a form leads: forms it goes to and calls, and whether it can end or exit."""
+
+    targets: set[str]
+    calls: set[str]
+    ends: bool
+    exits: bool
+
+
 class Checker:
     """Goes through a document once for each kind of mistake."""
 
@@ -115,7 +129,7 @@ class Checker:
         self._given: dict[str, set[str]] = {}
         """Names that subdialogs give as params, by the form they call."""
         self._gather()
-        self._led: dict[int, tuple[set[str], bool]] = {}
+        self._led: dict[int, Leads] = {}
 
     def note(
         self,
@@ -143,7 +157,7 @@ class Checker:
 
     def _form(self, name: str, node: Node, attribute: str) -> None:
         forms = self.document.forms
-        if name not in forms:
+        if name not in forms and "#" in node.get(attribute):  # else told already
             message = f'There is no form "{name}" to go to.'
             self.note(node, "no-such-form", message, did_you_mean(name, forms), attribute)
 
@@ -177,50 +191,80 @@ class Checker:
                     act.node, "no-such-item", message, did_you_mean(act.item, names), "nextitem"
                 )
 
-    def _leads(self, form: Form | None) -> tuple[set[str], bool]:
-        """Forms that content of a form (or the document's) leads to, and whether it can end."""
+    def _leads(self, form: Form | None) -> Leads:
+        """Where content of a form (or the document's) leads to."""
         key = id(form) if form else 0
         if key in self._led:
             return self._led[key]
         targets: set[str] = set()
-        ends = False
+        ends = exits = False
         for content in self.contents.get(key, ()):
             for act in all_acts(content):
                 if isinstance(act, Goto) and act.form is not None:
                     targets |= {act.form} if isinstance(act.form, str) else set(self.document.forms)
                 ends = ends or isinstance(act, Exit | Return | Throw)
+                exits = exits or isinstance(act, Exit)
         links = self.document.links if form is None else form.links
         targets |= {link.form for link in links if link.form}
-        if form is not None:
-            targets |= {i.form for i in all_items(form.items) if isinstance(i, Subdialog)}
-        self._led[key] = (targets, ends)
-        return targets, ends
+        items = all_items(form.items) if form else []
+        calls = {item.form for item in items if isinstance(item, Subdialog)}
+        self._led[key] = Leads(targets, calls, ends, exits)
+        return self._led[key]
+
+    def _reached(self, names: Iterable[str], calls: bool) -> set[str]:
+        """The forms that some forms lead to, themselves included; with subdialogs or without."""
+        reached: set[str] = set()
+        waiting = sorted(names)
+        while waiting:
+            name = waiting.pop()
+            if name not in reached and name in self.document.forms:
+                reached.add(name)
+                leads = self._leads(self.document.forms[name])
+                waiting += sorted(leads.targets | (leads.calls if calls else set()))
+        return reached
 
     def _reachable(self) -> None:
         forms = self.document.forms
         if not forms:
             return
-        everywhere, everywhere_ends = self._leads(None)
-        reached: set[str] = set()
-        waiting = [next(iter(forms)), *sorted(everywhere)]
-        while waiting:
-            name = waiting.pop()
-            if name in reached or name not in forms:
-                continue
-            reached.add(name)
-            waiting += sorted(self._leads(forms[name])[0])
+        everywhere = self._leads(None)
+        reached = self._reached([next(iter(forms)), *everywhere.targets], calls=True)
+        called = {name for form in forms.values() for name in self._leads(form).calls}
+        inside = self._reached(called, calls=False)
+        exiting = self._exiting()
         for name, form in forms.items():
             if name not in reached:
                 self.note(
                     form.node, "unreachable", f'Nothing leads to the form "{name}".',
                     "Go to it from somewhere, or remove it.", "id", "warning",
                 )  # fmt: skip
-            targets, ends = self._leads(form)
-            if not (targets or ends or everywhere or everywhere_ends) and name in reached:
-                self.note(
-                    form.node, "dead-end", f'The form "{name}" can never be left.',
-                    "If the application is over here, write <exit/>.", "id", "warning",
-                )  # fmt: skip
+            leads = self._leads(form)
+            left = leads.targets or leads.ends or leads.calls & exiting
+            if not (left or everywhere.targets or everywhere.ends) and name in reached:
+                remedy = (
+                    "To come back from the subdialog, write <return/>."
+                    if name in inside
+                    else "If the application is over here, write <exit/>."
+                )
+                message = f'The form "{name}" can never be left.'
+                self.note(form.node, "dead-end", message, remedy, "id", "warning")
+
+    def _exiting(self) -> set[str]:
+        """The forms from which an exit can be reached, through gotos and subdialogs."""
+        leading: dict[str, list[str]] = {}
+        for name, form in self.document.forms.items():
+            leads = self._leads(form)
+            for target in leads.targets | leads.calls:
+                leading.setdefault(target, []).append(name)
+        forms = self.document.forms
+        waiting = [name for name, form in forms.items() if self._leads(form).exits]
+        found: set[str] = set()
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found.add(name)
+                waiting += leading.get(name, [])
+        return found
 
     # Names --------------------------------------------------------------------
 
@@ -330,35 +374,32 @@ class Checker:
                 else head[0]
             )
             if name not in known:
-                self._undeclared(value.node, name, known, "name")
+                self._undeclared(value.node.attribute_place("name"), name, known)
         elif isinstance(value, Clear | Return):
             for name in value.names:
                 if name not in known:
-                    self._undeclared(value.node, name, known, "namelist")
+                    self._undeclared(value.node.attribute_place("namelist"), name, known)
 
-    def _undeclared(self, node: Node, name: str, known: set[str], attribute: str) -> None:
+    def _undeclared(self, place: Place, name: str, known: set[str]) -> None:
         shown = {word for word in known if not word.startswith("$")}
         remedy = did_you_mean(name, shown) or f'Declare it: <var name="{name}"/>.'
         message = f'The variable "{name}" is not declared.'
-        self.note(node, "undeclared-variable", message, remedy, attribute)
-
-    def _place_in(self, expr: Expression, line: int, column: int) -> Place:
-        """The place inside an expression where its compiler stopped."""
-        start = expr.node.attribute_place(expr.attribute) if expr.attribute else expr.node.place
-        if not expr.attribute or line != 1:
-            return start
-        return expr.node.source.inside(start, max(column - 1, 0))
+        self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _expression(self, expr: Expression, known: set[str]) -> None:
         if self._compiles(expr, check_expression):
-            for name in sorted(free_names(expr.code) - known):
-                self._undeclared(expr.node, name, known, expr.attribute)
+            for name, start in free_names(expr.code).items():
+                if name not in known:
+                    self._undeclared(_place_in(expr, start), name, known)
 
     def _script(self, act: Script, known: set[str]) -> None:
         if self._compiles(act.code, check_script):
-            for name in sorted(free_names(act.code.code) - known):
-                message = f'The script uses "{name}", which nothing declares.'
-                self.note(act.node, "undeclared-variable", message, severity="warning")
+            for name, start in free_names(act.code.code).items():
+                if name not in known:
+                    message = f'The script uses "{name}", which nothing declares.'
+                    place = _place_in(act.code, start)
+                    code = "undeclared-variable"
+                    self.problems.append(Problem(place, "warning", code, message))
 
     def _compiles(self, expr: Expression, check: Callable[[Any, str], None]) -> bool:
         try:
@@ -367,7 +408,7 @@ class Checker:
             shown = " ".join(expr.code.split())
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
             message = f'"{shown}" is not ECMAScript: {error}.'
-            place = self._place_in(expr, error.line, error.column)
+            place = expr.node.code_place(expr.attribute, error.line, error.column)
             self.problems.append(Problem(place, "error", "bad-expression", message))
             return False
         return True
@@ -471,6 +512,11 @@ class Checker:
                 self._dead(branch[1])
             if isinstance(act, Foreach):
                 self._dead(act.content)
+
+
+def _place_in(expr: Expression, characters: int) -> Place:
+    """The place of a character of an expression or script."""
+    return expr.node.source.inside(expr.node.index, expr.attribute, characters)
 
 
 def _devices(step: StepTemplate) -> frozenset[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 RESERVED = frozenset(
     [
@@ -103,71 +104,204 @@ GLOBALS = frozenset(
         "AggregateError",
     ]
 )
-TOKEN = re.compile(
-    r"""//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`"""
-    r"""|(?<![\w$)\]\s])\s*+/(?![/*])(?:\\.|\[(?:\\.|[^\]\\])*\]|[^/\\\n])+/[a-z]*"""
-    r"""|[0-9][\w.]*|[^\W\d][\w$]*|\$[\w$]*|\.\.\.|=>|\?\.|\S"""
+WORD = r"(?:[^\W\d]|\$)[\w$]*"
+TEMPLATE = (
+    r"`(?:\\.|\$\{(?:[^`{}]|`(?:\\.|[^`\\])*+`|\{[^{}]*+\})*+\}|[^`\\])*+`?"  # one in another
 )
-IDENTIFIER = re.compile(r"(?:[^\W\d]|\$)[\w$]*")
-DECLARED = re.compile(r"\b(?:var|let|const)\s+([^;\n]+)|\bfunction\s+([\w$]+)|\bclass\s+([\w$]+)")
+TOKEN = re.compile(
+    rf"""//[^\n]*+|/\*(?:[\s\S]*?\*/|[\s\S]*)|"(?:\\[\s\S]|[^"\\\n])*+"?|'(?:\\[\s\S]|[^'\\\n])*+'?"""
+    rf"""|{TEMPLATE}|[0-9][\w.]*+|#?{WORD}|\.\.\.|=>|[=!]==?|[<>]=|\?\.(?![0-9])|\S"""
+)
+PATTERN = re.compile(r"/(?![/*])(?:\\.|\[(?:\\.|[^\]\\\n]){0,99}+\]|[^/\\\n\[])++/[a-z]*")
+"""A regular expression, where a division cannot stand."""
+INSERTED = re.compile(r"\$\{((?:[^`{}]|\{[^{}]*\})*)\}")
+"""An expression in a template."""
+IDENTIFIER = re.compile(WORD)
+OPERAND = re.compile(r"[\w$)\]\"'`]")
+"""How something ends behind which a stroke divides."""
+BEFORE_OPERAND = frozenset(["return", "typeof", "case", "in", "of", "do", "else", "void", "delete"])
+PAIRS = {"(": ")", "[": "]", "{": "}"}
+NO_METHOD = frozenset(["if", "for", "while", "switch", "with", "catch", "function"])
 
 
-def free_names(code: str) -> set[str]:
-    """Names that an expression or script uses without declaring them, as far as can be seen."""
-    used: set[str] = set()
-    tokens = [token.strip() for token in TOKEN.findall(code)]
-    own = declared_names(code)
-    for position, token in enumerate(tokens):
-        before = tokens[position - 1] if position else ""
-        after = tokens[position + 1] if position + 1 < len(tokens) else ""
-        if not IDENTIFIER.fullmatch(token) or token in RESERVED or before in (".", "?."):
+class Token(NamedTuple):
+    """A piece of code: its text, where it begins, and whether a line begins before it."""
+
+    text: str
+    start: int
+    fresh: bool
+
+
+def tokens_of(code: str) -> list[Token]:
+    """The pieces of code, comments left out."""
+    found: list[Token] = []
+    position, end = 0, 0
+    while match := TOKEN.search(code, position):
+        last = found[-1].text if found else ""
+        divides = OPERAND.match(last[-1:]) is not None and last not in BEFORE_OPERAND
+        if match[0] == "/" and not divides:
+            match = PATTERN.match(code, match.start()) or match
+        position = match.end()
+        if match[0].startswith(("//", "/*")):
             continue
-        if after == ":" and before in ("{", ","):
-            continue
-        if after == "=>":
-            own.add(token)
-        if before in ("function", "class"):
-            own.add(token)
-        used.add(token)
-    own |= _parameters(tokens)
-    return used - own - GLOBALS
+        fresh = not found or "\n" in code[end : match.start()]
+        found.append(Token(match[0], match.start(), fresh))
+        end = position
+    return found
 
 
-def _parameters(tokens: list[str]) -> set[str]:
-    """Names of function parameters: what stands in brackets after function or before an arrow."""
-    names: set[str] = set()
-    for position, token in enumerate(tokens):
-        if token == "function":
-            start = tokens.index("(", position) if "(" in tokens[position:] else position
-            end = tokens.index(")", start) if ")" in tokens[start:] else start
-            names.update(tokens[start + 1 : end])
-        elif token == "=>" and position and tokens[position - 1] == ")":
-            start = position - 1
-            while start and tokens[start] != "(":
-                start -= 1
-            names.update(tokens[start + 1 : position - 1])
-        elif token == "catch" and tokens[position + 1 : position + 2] == ["("]:
-            names.update(tokens[position + 2 : position + 3])
-    return names
+def free_names(code: str) -> dict[str, int]:
+    """Names that code uses without declaring them, as far as can be seen, and where first."""
+    reader = _Reader(code)
+    used = reader.used()
+    own = reader.declared() | reader.parameters() | GLOBALS
+    return {name: start for name, start in used.items() if name not in own}
 
 
 def declared_names(code: str) -> set[str]:
     """Names that a script declares at its top level (and perhaps deeper)."""
-    names: set[str] = set()
-    for match in DECLARED.finditer(code):
-        if match[2] or match[3]:
-            names.add(match[2] or match[3])
-            continue
-        depth = 0
-        expecting = True
-        for token in TOKEN.findall(match[1]):
-            if token in "([{":
-                depth += 1
-            elif token in ")]}":
-                depth -= 1
-            elif depth == 0 and token == ",":
-                expecting = True
-            elif expecting and IDENTIFIER.fullmatch(token):
-                names.add(token)
-                expecting = False
-    return names
+    return _Reader(code).declared() if DECLARES.search(code) else set()
+
+
+DECLARES = re.compile(r"\b(?:var|let|const|function|class)\b")
+
+
+class _Reader:
+    """Reads names from tokens; where it cannot tell, it takes a name for declared."""
+
+    def __init__(self, code: str) -> None:
+        self.tokens = tokens_of(code)
+        self.texts = [token.text for token in self.tokens] + [""]
+        self.ends = self._pairs()
+        """Where a bracket's partner stands, both ways."""
+
+    def _pairs(self) -> dict[int, int]:
+        ends: dict[int, int] = {}
+        waiting: list[int] = []
+        for index, text in enumerate(self.texts):
+            if text in PAIRS:
+                waiting.append(index)
+            elif text in (")", "]", "}") and waiting:
+                ends[index] = waiting.pop()
+                ends[ends[index]] = index
+        return ends
+
+    def _text(self, index: int) -> str:
+        return self.texts[index] if 0 <= index < len(self.texts) else ""
+
+    @staticmethod
+    def _is_name(text: str) -> bool:
+        return text not in RESERVED and IDENTIFIER.fullmatch(text) is not None
+
+    def used(self) -> dict[str, int]:
+        """Names that are read or called, with where they first stand."""
+        found: dict[str, int] = {}
+        members = self._members()
+        for index, token in enumerate(self.tokens):
+            if token.text.startswith("`"):
+                for inside in INSERTED.finditer(token.text):
+                    for name, start in free_names(inside[1]).items():
+                        found.setdefault(name, token.start + inside.start(1) + start)
+            elif self._is_name(token.text) and index not in members and self._reads(index):
+                found.setdefault(token.text, token.start)
+        return found
+
+    def _reads(self, index: int) -> bool:
+        """Whether a name at an index is neither a member's nor a label's."""
+        before, after = self._text(index - 1), self._text(index + 1)
+        if before in (".", "?.", "break", "continue") and not (
+            self.tokens[index].fresh and before in ("break", "continue")
+        ):
+            return False
+        if after == ":":  # a label or a member's name, unless it stands between ? and :
+            plain = before in ("", "{", "}", ",", ";", ")", ":")
+            return not (plain or (self.tokens[index].fresh and OPERAND.match(before[-1:])))
+        if self.texts[index] in ("get", "set") and not (after in PAIRS or not after):
+            return not (self._is_name(after) or after[:1] in "\"'#")
+        return not self._is_method(index)
+
+    def _is_method(self, index: int) -> bool:
+        """Whether ``name ( ... ) {`` stands there."""
+        end = self.ends.get(index + 1)
+        opens = self._text(index + 1) == "(" and end is not None
+        return opens and end is not None and self._text(end + 1) == "{"
+
+    def _members(self) -> set[int]:
+        """The names of members that stand in the bodies of classes."""
+        found: set[int] = set()
+        for index, text in enumerate(self.texts):
+            if text != "class":
+                continue
+            start = next((at for at in range(index, len(self.texts)) if self.texts[at] == "{"), -1)
+            at, end = start + 1, self.ends.get(start, -1)
+            while 0 < at < end:
+                before = self.texts[at - 1]
+                if self.tokens[at].fresh or before in ("{", "}", ";", "static", "get", "set"):
+                    found.add(at)
+                at = self.ends.get(at, at) + 1
+        return found
+
+    def declared(self) -> set[str]:
+        """Names that var, let, const, function and class declare."""
+        names: set[str] = set()
+        for index, text in enumerate(self.texts):
+            if text in ("var", "let", "const") and self._text(index - 1) != ".":
+                names |= self._declaration(index + 1)
+            elif text in ("function", "class"):
+                name = index + 1 + (self._text(index + 1) == "*")
+                names |= {self._text(name)} if self._is_name(self._text(name)) else set()
+        return names
+
+    def _declaration(self, index: int) -> set[str]:
+        """The names of a list of declarators."""
+        names: set[str] = set()
+        while index < len(self.tokens):
+            if self.texts[index] in RESERVED:
+                return names
+            names |= self._targets(index)
+            index = self.ends.get(index, index) + 1
+            while (text := self._text(index)) not in (",", ";", ")", "]", "}", ""):
+                if text in ("var", "let", "const", "of", "in"):
+                    return names  # what stands there is no declarator, or the loop's own
+                index = self.ends.get(index, index) + 1
+            if text != ",":
+                return names
+            index += 1
+        return names
+
+    def parameters(self) -> set[str]:
+        """Names of the parameters of functions, arrows, methods and catches."""
+        names: set[str] = set()
+        for index, text in enumerate(self.texts):
+            if text == "=>":
+                start = self.ends.get(index - 1, index - 1)
+                names |= self._targets(start)
+            elif text == "(" and index in self.ends:
+                before = self._text(index - 1)
+                opens = self._text(self.ends[index] + 1) == "{"
+                method = opens and before not in NO_METHOD
+                if method or before == "catch" or "function" in (before, self._text(index - 2)):
+                    names |= self._targets(index)
+        return names
+
+    def _targets(self, start: int) -> set[str]:
+        """The names that a binding at an index gives: one, or those of a pattern in brackets."""
+        if start not in self.ends:
+            return {self.texts[start]} if self._is_name(self._text(start)) else set()
+        names: set[str] = set()
+        waiting = [start]
+        while waiting:
+            opening = waiting.pop()
+            at, takes = opening + 1, True
+            while at < self.ends[opening]:
+                text = self.texts[at]
+                if text == ",":
+                    takes = True
+                elif takes and text in PAIRS and at in self.ends:
+                    computed = text == "[" and self.texts[opening] == "{"
+                    waiting += [] if computed and self._text(self.ends[at] + 1) == ":" else [at]
+                elif takes and self._is_name(text) and self._text(at + 1) != ":":
+                    names.add(text)
+                takes = takes and text != "=" and text not in RESERVED
+                at = self.ends.get(at, at) + 1
+        return names

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Protocol
 
+from prima.errors import did_you_mean
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
 from prima.markup.tree import Node
 
@@ -35,7 +36,8 @@ def read_grammar(note: Note, node: Node) -> Grammar:
         grammar.root = "root"
         grammar.rules["root"] = _expansion(note, node)
     if grammar.root not in grammar.rules:
-        note(node, "no-such-rule", f'There is no rule "{grammar.root}".', attribute="root")
+        hint = did_you_mean(grammar.root, grammar.rules)
+        note(node, "no-such-rule", f'There is no rule "{grammar.root}".', hint, "root")
         grammar.rules[grammar.root] = Choice([])
     _check_references(note, node, grammar)
     return grammar
@@ -44,9 +46,11 @@ def read_grammar(note: Note, node: Node) -> Grammar:
 def _check_references(note: Note, node: Node, grammar: Grammar) -> None:
     """Every ruleref names a rule."""
     for child in node.nodes:
-        name = child.get("uri")[1:]
+        name = child.get("uri").strip().removeprefix("#")
         if child.tag == "ruleref" and name not in grammar.rules:
-            note(child, "no-such-rule", f'There is no rule "{name}".', attribute="uri")
+            hint = did_you_mean(name, grammar.rules)
+            if "#" in child.get("uri"):  # else told already
+                note(child, "no-such-rule", f'There is no rule "{name}".', hint, "uri")
             grammar.rules[name] = Choice([])
         _check_references(note, child, grammar)
 
@@ -65,7 +69,7 @@ def _expansion(note: Note, node: Node) -> Part:
             case "item":
                 parts.append(_expansion(note, item))
             case "ruleref":
-                parts.append(Reference(item.get("uri")[1:]))
+                parts.append(Reference(item.get("uri").strip().removeprefix("#")))
             case "tag":
                 parts.append(Tag(item.text))
     low, high = _repeat(note, node)

@@ -11,6 +11,19 @@ from prima.values import read_value
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 
+DOCUMENTS = {
+    "urn:prima:dialogue:1": "an application",
+    "urn:prima:world:1": "a world",
+    "urn:prima:robot:1": "a robot",
+    "urn:prima:scenario:1": "a scenario",
+}
+"""What documents are, by their namespaces."""
+REMEDIES = {
+    ("an application", "a scenario"): "A run takes a scenario, which names its applications:"
+    ' <application src="..."/>.',
+}
+"""What to do with one kind of document where another is needed."""
+
 
 def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     """Find the vocabulary of a document by its root element's namespace.
@@ -25,12 +38,20 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
                 return vocabulary
             message = f"The root element is <{root.tag}>; it must be <{tag}>."
             raise DocumentError([Problem(root.place, "error", "wrong-root", message)])
+    own = DOCUMENTS.get(root.namespace)
+    if own:
+        wanted = one_of(DOCUMENTS[namespace] for _, namespace in expected)
+        message = f"This is {own}; {wanted} is needed here."
+        remedy = REMEDIES.get((own, wanted), "")
+        raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
+    tag = "prima" if root.tag == "vxml" else root.tag
+    expected = [entry for entry in expected if entry[0] == tag] or expected
     wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
     message = f"The root element <{root.tag}> has {found}."
-    raise DocumentError(
-        [Problem(root.place, "error", "wrong-namespace", message, f"Begin with {wanted}.")]
-    )
+    near = did_you_mean(root.namespace, [namespace for _, namespace in expected])
+    remedy = near or f"Begin with {wanted}."
+    raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:

@@ -37,6 +37,30 @@ ENCODINGS = frozenset(
         "euc-jp",
     ]
 )
+REMEDIES = (
+    (r"Opening and ending tag mismatch: (\S+) line (\d+) and (\S+)",
+     "The <{0}> of line {1} is still open here: write </{0}>."),
+    (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
+    (r"Char 0x0|PCDATA invalid Char value 0|Invalid character",
+     "Remove the character; an editor may not show it. Save the file as UTF-8."),
+    (r"invalid Char value|xmlParseCharRef", "Remove the control character."),
+    (r"Premature end of data in tag (\S+) line (\d+)",
+     "The <{0}> of line {1} is never closed: write </{0}>."),
+    (r"Start tag expected", "Begin with a root element, such as <prima>."),
+    (r"Attribute (\S+) redefined", "Keep one of them."),
+    (r"Unescaped '<' not allowed in attributes", "Write &lt; for <, or close the quote before."),
+    (r"EntityRef|xmlParseEntityRef", "Write &amp; for &."),
+    (r"AttValue", 'Write the value in quotes: name="value".'),
+    (r"Extra content at the end", "A document has one root element; nothing may stand after it."),
+    (r"StartTag: invalid element name", "Write &lt; for a < that begins no tag."),
+    (r"XML declaration allowed only", "Move it to the very beginning of the file."),
+    (r"Specification mandates value", 'Write the value in quotes: name="value".'),
+    (r"error parsing attribute name", "Close the tag with >, or remove what is no attribute."),
+    (r"Sequence '\]\]>'", "Write ]]&gt;."),
+    (r"[Cc]omment", "A comment ends with --> and holds no --."),
+    (r"CData", "It ends with ]]>."),
+)  # fmt: skip
+"""The parser's words, and what the author may do."""
 DECLARATION = re.compile(r"<\?xml[^>]*?\?>")
 ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
 BOMS = (
@@ -63,6 +87,8 @@ def decode(file: str, data: bytes) -> str:
     if not encoding:
         declared = ENCODING.match(data)
         encoding = declared[1].decode().lower() if declared else "utf-8"
+    if data.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
+        encoding = "utf-32"
     if encoding not in ENCODINGS:
         raise _error(
             start, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
@@ -152,9 +178,12 @@ def parse(file: str, data: bytes) -> Node:
 def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
     line, column = (error.position or (1, 1)) if source.text.strip() else (1, 1)
     place = Place(source.file, max(line or 1, 1), max(column or 1, 1))
-    message = (error.msg or "Not XML").split(", line ")[0]
+    message = " ".join((error.msg or "Not XML").split(", line ")[0].split())
     if not source.text.strip():
         return _error(place, "not-xml", "The file is empty.", "Begin with a root element.")
+    if source.text.lstrip().startswith("{"):
+        remedy = "If it is a transcript, prima show prints it."
+        return _error(place, "not-xml", "This is JSON, not XML.", remedy)
     if "depth" in message.lower():
         return _too_deep(place)
     if message.startswith("Entity"):
@@ -165,7 +194,17 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
             f"The entity &{name}; is not known: documents declare none.",
             "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed.",
         )
-    return _error(place, "not-xml", f"This is not well-formed XML: {message}.")
+    return _error(
+        place, "not-xml", f"This is not well-formed XML: {message.rstrip('.')}.", _remedy(message)
+    )
+
+
+def _remedy(message: str) -> str:
+    """What to do about a mistake that the parser names."""
+    for words, remedy in REMEDIES:
+        if match := re.search(words, message):
+            return remedy.format(*match.groups())
+    return ""
 
 
 def _too_deep(place: Place) -> DocumentError:
@@ -193,13 +232,12 @@ def _convert(root: etree._Element, source: Source) -> Node:
             qname.localname, source, len(nodes), attributes, namespace=qname.namespace or ""
         )
         nodes.append(node)
-        if len(attributes) > MAX_ATTRIBUTES or len(nodes) > MAX_ELEMENTS:
-            raise _error(
-                node.place,
-                "too-large",
-                f"More than {MAX_ATTRIBUTES} attributes or {MAX_ELEMENTS:,} elements.",
-                "Divide the document.",
-            )
+        if len(attributes) > MAX_ATTRIBUTES:
+            message = f"<{node.tag}> has more than {MAX_ATTRIBUTES} attributes."
+            raise _error(node.place, "too-large", message, "Remove some.")
+        if len(nodes) > MAX_ELEMENTS:
+            message = f"The document has more than {MAX_ELEMENTS:,} elements."
+            raise _error(node.place, "too-large", message, "Divide it.")
         return node
 
     top = node_of(root)

@@ -3,77 +3,80 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from dataclasses import dataclass, field
-from xml.parsers import expat
 
 from prima.errors import Place
 
+MARKUP = re.compile(
+    r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']|"[^"]*"|'[^']*')*+>"""
+    r"""|(?P<start><)(?:[^>"']|"[^"]*"|'[^']*')*+>""",
+    re.DOTALL,
+)
+"""A piece of markup of a well-formed document; a start tag has its group."""
 NAME = re.compile(r"<[^\s/>]+")
 ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+PIECE = re.compile(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|.", re.DOTALL)
+"""A piece of text as written: it gives no character, several as they are, or one."""
 
 
 @dataclass(slots=True)
 class Source:
-    """The text of a document; places are found only when somebody asks for one."""
+    """The text of a well-formed document; places are found only when somebody asks for one."""
 
     file: str
     text: str
-    places: list[tuple[int, int]] | None = None
-    """The start of every element's start tag, as (line, offset in the text), in order."""
+    tags: list[int] | None = None
+    """Where every element's start tag begins in the text, in order."""
+    lines: list[int] | None = None
+    """Where every line begins."""
 
-    def _find(self) -> list[tuple[int, int]]:
-        if self.places is None:
-            found: list[tuple[int, int]] = []
-            data = self.text.encode()
-            parser = expat.ParserCreate(encoding="utf-8")
-
-            def start(_tag: str, _attributes: dict[str, str]) -> None:
-                found.append((parser.CurrentLineNumber, parser.CurrentByteIndex))
-
-            parser.StartElementHandler = start
-            try:
-                parser.Parse(data, True)
-            except expat.ExpatError:
-                pass  # expat knows fewer letters than XML has today: the rest is not placed
-            self.places = _to_characters(self.text, data, found)
-        return self.places
+    def tag(self, index: int) -> int:
+        """Where the start tag of element number ``index`` begins in the text."""
+        if self.tags is None:
+            found = MARKUP.finditer(self.text)
+            self.tags = [match.start() for match in found if match["start"]]
+        return self.tags[index]
 
     def place(self, index: int, attribute: str = "", value: bool = False) -> Place:
         """Where element number ``index`` stands, or its attribute, or the attribute's value."""
-        places = self._find()
-        if index >= len(places):
-            return Place(self.file)
-        line, offset = places[index]
-        if attribute:
-            match = NAME.match(self.text, offset)
-            while match := ATTRIBUTE.match(self.text, match.end() if match else offset):
-                if match[1] == attribute:
-                    return self.at(match.start(2) + 1 if value else match.start(1))
-        return Place(self.file, line, offset - self.text.rfind("\n", 0, offset))
+        return self.at(self._find(index, attribute, value))
 
-    def inside(self, place: Place, characters: int) -> Place:
-        """The place some characters on, line ends counted."""
-        lines = self.text.split("\n")
-        start = sum(len(one) + 1 for one in lines[: place.line - 1]) + place.column - 1
-        return self.at(min(start + characters, len(self.text)))
+    def _find(self, index: int, attribute: str, value: bool) -> int:
+        start = self.tag(index)
+        match = NAME.match(self.text, start)
+        while attribute and match:
+            match = ATTRIBUTE.match(self.text, match.end())
+            if match and match[1] == attribute:
+                return match.start(2) + 1 if value else match.start(1)
+        return start
+
+    def inside(self, index: int, attribute: str, characters: int) -> Place:
+        """Where a character of an attribute's value was written; without one, of the text."""
+        if attribute:
+            offset = self._find(index, attribute, value=True)
+        else:
+            match = MARKUP.match(self.text, self.tag(index))
+            offset = match.end() if match else self.tag(index)
+        while characters >= 0 and (piece := PIECE.match(self.text, offset)):
+            kept = piece["kept"]
+            gives = 0 if piece[0][:2] in ("<!", "<?") else 1
+            if kept is not None:
+                if characters < len(kept):
+                    return self.at(piece.start("kept") + characters)
+                gives = len(kept)
+            if characters < gives:
+                break
+            characters -= gives
+            offset = piece.end()
+        return self.at(offset)
 
     def at(self, offset: int) -> Place:
         """The place of a character of the text."""
-        line = self.text.count("\n", 0, offset) + 1
-        return Place(self.file, line, offset - self.text.rfind("\n", 0, offset))
-
-
-def _to_characters(text: str, data: bytes, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Byte offsets as character offsets; the same thing in plain ASCII."""
-    if len(data) == len(text):
-        return found
-    result: list[tuple[int, int]] = []
-    byte = character = 0
-    for line, offset in found:
-        character += len(data[byte:offset].decode())
-        byte = offset
-        result.append((line, character))
-    return result
+        if self.lines is None:
+            self.lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
+        line = bisect_right(self.lines, offset)
+        return Place(self.file, line, offset - self.lines[line - 1] + 1)
 
 
 @dataclass(slots=True, eq=False)
@@ -97,6 +100,19 @@ class Node:
         """Where an attribute stands, or its value does."""
         return self.source.place(self.index, name, value)
 
+    def code_place(self, attribute: str, line: int, column: int) -> Place:
+        """The place of a line and column of the code in an attribute, or in the text if ``""``.
+
+        XML folds an attribute's line ends and reads references such as ``&lt;`` and
+        ``&#10;`` as one character, so the code's lines need not be the file's.
+        """
+        text = self.attributes.get(attribute) if attribute else self.own_text
+        if text is None:
+            return self.place
+        before = text.split("\n")[: max(line, 1) - 1]
+        characters = sum(len(one) + 1 for one in before) + max(column, 1) - 1
+        return self.source.inside(self.index, attribute, min(characters, len(text)))
+
     @property
     def nodes(self) -> list[Node]:
         """The child elements."""
@@ -111,6 +127,11 @@ class Node:
         return self.attributes.get(name, default)
 
     @property
+    def own_text(self) -> str:
+        """The element's own text, as it is."""
+        return "".join(item for item in self.content if isinstance(item, str))
+
+    @property
     def text(self) -> str:
         """The element's own text, white space folded."""
-        return " ".join("".join(item for item in self.content if isinstance(item, str)).split())
+        return " ".join(self.own_text.split())

@@ -46,7 +46,7 @@ class Effects:
     """Whether it was turned to the human."""
     head: Head | None = None
     body: Body = field(default_factory=Body)
-    """The robot's state when that had been brought about."""
+    """The robot's state when it had been turned to him."""
 
     def add(self, row: CommandType, command: Command, data: Data, body: Body) -> None:
         """A Command of the stream has ended, or one loop of it."""
@@ -58,10 +58,9 @@ class Effects:
         if "direction" in effects and pose is not None:
             self.heading, self.human = pose[2], False
         if "human" in effects:
-            self.heading, self.human = None, True
+            self.heading, self.human, self.body = None, True, replace(body)
         if "head" in effects:
             self.head = head_of(command)
-        self.body = replace(body)
 
     def missing(self, own: frozenset[str], body: Body) -> list[Command]:
         """The Commands that bring back what a Command of ``own`` effects relies on."""

@@ -77,7 +77,7 @@ class Failures(Endings):
 
     def _let_go(self, stream: Stream, outcome: str) -> None:
         """X3: the stream is held no longer."""
-        stream.held_until = None
+        stream.hold = stream.held_until = None
         del self._holds[stream.name]
         self._touched[stream.name] = stream
         self.chronicle.stream("held", stream, "X3", outcome=outcome)

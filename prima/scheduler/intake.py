@@ -29,7 +29,7 @@ def check_command(command: Command, app: Application, table: Table) -> None:
         Refused: with ``error.unsupported.TYPE`` or ``error.semantic``.
     """
     row = table.get(command.type)
-    if row is None:
+    if row is None or row.substitute:
         if command.type in TABLE_4_2:
             message = f"This robot cannot do {command.type}."
             raise Refused(f"error.unsupported.{command.type}", message, command)
@@ -47,6 +47,20 @@ def check_command(command: Command, app: Application, table: Table) -> None:
     except ValueError as error:
         raise Refused("error.semantic", str(error), command) from None
     command.now = command.now or row.now
+
+
+def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
+    """X6: put other Commands in the place of those that the robot lacks; gives what they were."""
+    made = []
+    for step in steps:
+        if isinstance(step.what, Group):
+            made += substitute(step.what.steps, table)
+            continue
+        row = table.get(step.what.type)
+        if row is not None and row.substitute:
+            made.append((step.what, step.what.type))
+            step.what.type = row.substitute
+    return made
 
 
 def check_steps(steps: list[Step], app: Application, table: Table, unit: bool = False) -> None:

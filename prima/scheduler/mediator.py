@@ -12,15 +12,19 @@ from prima.messages import CloseUnit, Command, LeaveState, Notice, OpenUnit, Ord
 from prima.scheduler.behavior import Application, Behavior, Run, Stream
 from prima.scheduler.endings import Told
 from prima.scheduler.failures import Failures, allowance
-from prima.scheduler.intake import Refused, check_steps, link, parent_of
+from prima.scheduler.intake import Refused, check_steps, link, parent_of, substitute
 
 
 class Mediator(Failures):
     """Mediates the Commands of any number of applications by the rules of one policy."""
 
     def load(self, name: str, kind: str) -> None:
-        """An application starts; its place in the declared order is that of this call."""
-        self.memory.apps[name] = Application(name, kind, len(self.memory.apps))
+        """An application starts; its place in the declared order is that of its first call."""
+        app = Application(name, kind, len(self.memory.apps))
+        before = self.memory.apps.get(name)
+        if before is not None:  # it was there before: its names are not given out twice
+            app.order, app.streams, app.behaviors = before.order, before.streams, before.behaviors
+        self.memory.apps[name] = app
         self.chronicle.add("load", "mediator", app=name, data={"kind": kind})
 
     def unload(self, name: str, reason: str) -> None:
@@ -42,6 +46,17 @@ class Mediator(Failures):
     def request(self, name: str, asked: Request) -> None:
         """Take Commands in as one tree (U3), or refuse them all (E3)."""
         app = self.memory.apps[name]
+        if self._selector.policy.has("x6"):
+            for command, lacking in substitute(asked.steps, self._maker.table):
+                self.chronicle.add(
+                    "substitute",
+                    "mediator",
+                    app=name,
+                    rule="X6",
+                    command=lacking,
+                    by=command.type,
+                    source=command.source,
+                )
         try:
             check_steps(asked.steps, app, self._maker.table)
         except Refused as refused:

@@ -131,7 +131,8 @@ class Selector:
 
     def _insert(self, ab: Behavior, commands: list[Command], rule: str, now: int) -> bool:
         """Put Commands between an AB and what it follows, in its stream and in its place."""
-        able = [command for command in commands if command.type in self._maker.table]
+        table = self._maker.table
+        able = [one for one in commands if one.type in table and not table[one.type].substitute]
         before: Behavior | None = None
         for command in able:
             command.source = ab.command.source if ab.command else ""
@@ -211,6 +212,7 @@ class Selector:
                 ab.parent = ab.id
             ab.loop += 1
         self.started.append(ab)
+        beside = self.policy.has("x5") and self.memory.conflict(ab) is not None
         first = ab.started < 0 or ab.restarting
         ab.resumed = ab.resumed or ab.restarting
         ab.restarting = False
@@ -222,7 +224,7 @@ class Selector:
             self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
         if ab.command is not None:
             order = Order(
-                "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, app=ab.app.name
+                "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
             )
             self.orders.append(order)
         elif first and not ab.spans:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from prima.errors import DocumentError, Problem, did_you_mean
 from prima.interpreter.elements import Document
-from prima.messages import Inbound, Loaded, Record
+from prima.messages import Inbound, Loaded, Record, Unloaded
 from prima.scheduler.selection import Policy
 from prima.session import Session
 from prima.sim.person import Person
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
-from prima.sim.scenario import Map, Point, Profile, Scenario
+from prima.sim.scenario import Area, Map, Point, Profile, Scenario
 from prima.sim.services import Services
 from prima.sim.world import STEP_MS, World
 
+THRESHOLD = 0.5
+"""How far (m) outside an area the robot has left it."""
 MAX_RECORDS = 500_000
 """Records that a run may make."""
 MAX_WRITTEN = 50_000_000
@@ -29,8 +31,11 @@ class Cast:
 
     scenario: Scenario
     documents: list[Document]
+    """Those of the scenario's applications, then those that areas of the world offer."""
     world: Map
     robot: Profile
+    offers: list[tuple[Area, str]] = field(default_factory=list)
+    """Areas that offer an application, with the application's id."""
 
 
 def check_cast(cast: Cast, file: str) -> list[Problem]:
@@ -62,7 +67,9 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
                     Problem(place, "error", "no-such-name", message, did_you_mean(word, words))
                 )
     seen: set[str] = set()
-    for (_, _, node), document in zip(scenario.applications, cast.documents, strict=True):
+    nodes = [node for _, _, node in scenario.applications]
+    nodes += [area.node for area, _ in cast.offers]
+    for node, document in zip(nodes, cast.documents, strict=True):
         if document.id in seen:
             message = f'Two applications have the id "{document.id}".'
             problems.append(Problem(node.place, "error", "duplicate-id", message))
@@ -98,9 +105,11 @@ class Rehearsal:
         self._loads = sorted(
             (start, index, doc.id)
             for index, ((_, start, _), doc) in enumerate(
-                zip(scenario.applications, cast.documents, strict=True)
+                zip(scenario.applications, cast.documents, strict=False)
             )
         )
+        self._inside: set[str] = set()
+        """Areas that the robot is in."""
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.made = 0
@@ -135,6 +144,7 @@ class Rehearsal:
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
             inbound.append(Loaded(self._loads.pop(0)[2]))
+        inbound += self._cross()
         inbound += self.robot.collect(now)
         said = self.person.collect(now)
         inbound += said
@@ -150,6 +160,19 @@ class Rehearsal:
         self.made += len(records)
         self.person.observe(now, records)
         return records
+
+    def _cross(self) -> list[Inbound]:
+        """Load what an area offers that the robot has come into, and unload what it has left."""
+        crossed: list[Inbound] = []
+        for area, name in self.cast.offers:
+            inside = area.id in self._inside
+            if not inside and area.holds(self.world.position):
+                self._inside.add(area.id)
+                crossed.append(Loaded(name, area.title))
+            elif inside and not area.holds(self.world.position, THRESHOLD):
+                self._inside.discard(area.id)
+                crossed.append(Unloaded(name, area.title))
+        return crossed
 
     def _due(self) -> int | None:
         times = [

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
-from prima.messages import Command, Ended, Failed, Halted, Inbound, Json, Listening, Occurred, Order, Sensed
+from prima.messages import (
+    Command,
+    Ended,
+    Failed,
+    Halted,
+    Inbound,
+    Json,
+    Listening,
+    Occurred,
+    Order,
+    Sensed,
+)
 from prima.sim import voice
 from prima.sim.routes import Routes
 from prima.sim.scenario import Point, Profile
-from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance
+from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance, off_line
 
 ARRIVED = 0.1
 """How near a goal is reached (m)."""
@@ -27,6 +39,10 @@ ALIGNED = 1.5
 """How many degrees off a direction counts as turned to it."""
 BRAKING_MS = 200
 POINTING_MS = 1000
+REACTING_S = 0.2
+"""How long the robot goes on off its way after a dance has stopped taking it there (X5)."""
+AFTERMATH_MS = 1000
+"""How long after it moved the body a dance answers for where the robot is (X5)."""
 FAILING_MS = 300
 """How long a broken device tries before it says that it fails."""
 
@@ -37,11 +53,15 @@ class Plan:
 
     path: list[Point] | None = None
     turn_left: float = 0.0
-    since: int = 0
+    since: int = -1_000_000
     last: tuple[Point, float] | None = None
     stuck: int = 0
     sought: Point | None = None
     scanned: float = 0.0
+    track: list[Point] = field(default_factory=list)
+    """The whole way of a move, from where it began."""
+    strayed: float = 0.0
+    """How far (m) a motion composed with a move has taken the robot off its way (X5)."""
 
 
 @dataclass(slots=True)
@@ -132,7 +152,7 @@ class Robot:
         self.tasks[task.id] = task
         for device in order.devices:
             before = self._owners.get(device)
-            if before is not None and before.id in self.tasks:
+            if before is not None and before.id in self.tasks and not order.beside:
                 before.lost.add(device)  # only without a mediator
             self._owners[device] = task
         broken = sorted(order.devices & self.broken.keys())
@@ -173,6 +193,7 @@ class Robot:
                 task.fails = ("localization", f'there is no way to "{args["to"]}"')
         elif task.command.type.startswith("set-position"):
             plan.path = [(float(args["x"]), float(args["y"]))]
+        plan.track = [self.world.position, *(plan.path or ())]
 
     def _start_once(self, task: Task) -> None:
         args, now = task.command.args, self._now
@@ -205,6 +226,8 @@ class Robot:
                 if lasts is None:
                     task.fails = ("arm", f'the robot knows no gesture "{args["name"]}"')
             case other:
+                if other in self.profile.motions:
+                    task.control = self._dance
                 task.ends = max(
                     task.speech_ends, now + self.profile.durations.get(other, 1), now + 1
                 )
@@ -343,6 +366,26 @@ class Robot:
             self.world.drive = (0.0, 0.0)
         return False
 
+    def _dance(self, task: Task) -> bool:
+        """Go through the steps of an added motion, on top of a move that goes on (X5)."""
+        motion = self.profile.motions[task.command.type]
+        speed, turning = motion.at(self._now - task.began)
+        move = next((one for one in self.tasks.values() if one.plan.path is not None), None)
+        if move is None:
+            self.world.drive = (speed, turning)
+            return False
+        track = move.plan.track
+        off = min((off_line(self.world.position, *ends) for ends in pairwise(track)), default=0.0)
+        if self._now - task.plan.since <= AFTERMATH_MS:
+            task.plan.strayed = max(task.plan.strayed, off)
+        if off < motion.stray - self.profile.speed * REACTING_S:
+            task.plan.since = self._now
+            forward, left = self.world.drive
+            limit = self.profile.turn_speed
+            forward = min(max(forward + speed, -self.profile.speed), self.profile.speed)
+            self.world.drive = (forward, min(max(left + turning, -limit), limit))
+        return False
+
     # Reports ------------------------------------------------------------------------
 
     def due(self) -> int | None:
@@ -360,7 +403,8 @@ class Robot:
         """Everything that the devices report at ``now``."""
         self._now = now
         reports, self._halted = self._halted, []
-        for task in list(self.tasks.values()):
+        # What goes somewhere sets the wheels first; a dance adds to it (X5).
+        for task in sorted(self.tasks.values(), key=lambda task: task.control == self._dance):
             drives = task.control is not None and "locomotion" not in task.lost
             if drives and self._steer(task) and task.ends is None:
                 task.ends = max(now, task.speech_ends)
@@ -392,6 +436,10 @@ class Robot:
         if kind == "q-and-a":
             return [Ended(task.id, True, {"outcome": "noinput"})]
         data = self.world.pose() if "locomotion" in task.devices else {}
+        if kind in self.profile.motions:
+            data["strayed"] = round(task.plan.strayed, 3)
+            if "locomotion" not in task.lost and self._now >= task.began:
+                self.world.drive = (0.0, 0.0)
         if not row.feedback:
             return [Ended(task.id, True, data)]
         return self._end_loop(task, data)

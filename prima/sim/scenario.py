@@ -14,7 +14,7 @@ from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-from prima.values import read_value, within
+from prima.values import outside, read_value, within
 
 Point = tuple[float, float]
 
@@ -45,7 +45,8 @@ class Reader:
             return None  # told already, as a problem of the schema
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and not within(float(value), item.low, item.high):
-            self.problem(node, "out-of-range", f'{name} "{text}" is out of range.', name)
+            message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
+            self.problem(node, "out-of-range", message, name)
         return value
 
     def problem(
@@ -84,8 +85,27 @@ class Corner:
 
 
 @dataclass(slots=True)
+class Area:
+    """Where an application is offered: its corners (m), and the application's document."""
+
+    id: str
+    title: str
+    low: Point
+    high: Point
+    src: str
+    node: Node
+
+    def holds(self, point: Point, margin: float = 0.0) -> bool:
+        """Whether a point lies inside, or outside by no more than a margin."""
+        return (
+            self.low[0] - margin <= point[0] <= self.high[0] + margin
+            and self.low[1] - margin <= point[1] <= self.high[1] + margin
+        )
+
+
+@dataclass(slots=True)
 class Map:
-    """A world: places with headings (degrees), ways, walls, things, corners."""
+    """A world: places with headings (degrees), ways, walls, things, corners, areas."""
 
     id: str
     places: dict[str, Point] = field(default_factory=dict)
@@ -94,6 +114,7 @@ class Map:
     walls: list[tuple[Point, Point]] = field(default_factory=list)
     things: dict[str, Point] = field(default_factory=dict)
     corners: list[Corner] = field(default_factory=list)
+    areas: list[Area] = field(default_factory=list)
 
     def point(self, name: str) -> Point | None:
         """Where a place or thing is (m)."""
@@ -131,6 +152,14 @@ def read_world(file: str, data: bytes) -> Map:
     for node in reader.root.all("wall"):
         x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
         world.walls.append(((x1, y1), (x2, y2)))
+    for node in reader.root.all("area"):
+        if node.get("id") in seen:
+            reader.problem(node, "duplicate-id", f'"{node.get("id")}" is there twice.', "id")
+        seen.add(node.get("id"))
+        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
+        title = node.get("title", node.get("id"))
+        low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
+        world.areas.append(Area(node.get("id"), title, low, high, node.get("application"), node))
     reader.finish()
     return world
 
@@ -153,6 +182,29 @@ class Profile:
     gestures: dict[str, int] = field(default_factory=dict)
     commands: dict[str, CommandType] = field(default_factory=dict)
     durations: dict[str, int] = field(default_factory=dict)
+    motions: dict[str, Motion] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Motion:
+    """How an added Command moves the body: steps of ms, m/s and degrees/s; ``stray`` in m (X5)."""
+
+    steps: list[tuple[int, float, float]]
+    stray: float
+
+    @property
+    def duration(self) -> int:
+        """How long it takes once (ms)."""
+        return sum(step[0] for step in self.steps)
+
+    def at(self, time: int) -> tuple[float, float]:
+        """Speed and turn speed at a time (ms); it is repeated as long as it lasts."""
+        time %= self.duration
+        for lasts, speed, turning in self.steps:
+            if time < lasts:
+                return speed, turning
+            time -= lasts
+        return (0.0, 0.0)
 
 
 def read_robot(file: str, data: bytes) -> Profile:
@@ -188,23 +240,67 @@ def read_robot(file: str, data: bytes) -> Profile:
         rows[node.get("command")] = _added(reader, node)
         lacking = set(node.get("devices").split()) - profile.devices
         if lacking:
-            message = f'The robot has no device "{min(lacking)}".'
+            device = min(lacking)
+            message = f'"{node.get("command")}" needs the device "{device}", which the robot lacks.'
             reader.problem(
                 node,
                 "no-such-name",
                 message,
                 "devices",
-                did_you_mean(min(lacking), profile.devices),
+                did_you_mean(device, profile.devices) or f'Add <device name="{device}"/>.',
             )
         profile.durations[node.get("command")] = max(reader.get(node, "duration") or 1000, 1)
+        motion = _motion(reader, node)
+        if motion is not None:
+            profile.motions[node.get("command")] = motion
+            if "duration" not in node.attributes:
+                profile.durations[node.get("command")] = motion.duration
     for node in root.all("allows"):
         reader.known(node, "command", set(rows), "Command")
         row = rows.get(node.get("command"))
         if row is not None:
             rows[row.name] = replace(row, extra=row.extra | {node.get("argument")})
     profile.commands = {name: row for name, row in rows.items() if row.devices <= profile.devices}
+    for node in root.all("substitute"):
+        _substitute(reader, node, rows, profile)
     reader.finish()
     return profile
+
+
+def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
+    """Another Command in the place of one that the robot lacks (X6)."""
+    reader.known(node, "command", set(rows), "Command")
+    reader.known(node, "by", set(profile.commands), "Command")
+    lacking, other = rows.get(node.get("command")), profile.commands.get(node.get("by"))
+    if lacking is None or other is None:
+        return
+    if lacking.name in profile.commands:
+        message = f"The robot can do {lacking.name} itself."
+        reader.problem(node, "bad-value", message, "command", "Remove the substitute.")
+    unknown = sorted(lacking.arguments.keys() - other.arguments.keys())
+    if unknown:
+        message = f'{other.name} has no argument "{unknown[0]}", as {lacking.name} has.'
+        reader.problem(node, "no-such-argument", message, "by", "Add it to the Command.")
+    if lacking.text == "required" and other.text == "none":
+        reader.problem(node, "bad-value", f"{other.name} cannot say anything.", "by")
+    profile.commands[lacking.name] = replace(lacking, substitute=other.name)
+
+
+def _motion(reader: Reader, node: Node) -> Motion | None:
+    """The steps of an added Command that moves the body (X5)."""
+    steps = [
+        (
+            max(reader.get(child, "for") or 1, 1),
+            reader.get(child, "speed") or 0.0,
+            reader.get(child, "turn-speed") or 0.0,
+        )
+        for child in node.all("step")
+    ]
+    if steps and "locomotion" not in node.get("devices").split():
+        message = "Its steps move the body, but it does not occupy the locomotion."
+        reader.problem(node, "bad-value", message, "devices", 'Add "locomotion" to its devices.')
+    stray = reader.get(node, "stray")
+    return Motion(steps, 0.3 if stray is None else stray) if steps else None
 
 
 def _added(reader: Reader, node: Node) -> CommandType:
@@ -232,6 +328,7 @@ def _added(reader: Reader, node: Node) -> CommandType:
         leaves=bool(reader.get(node, "leaves")),
         engages=bool(reader.get(node, "engages")),
         text="optional" if reader.get(node, "says") else "none",
+        motion="faithful" if node.all("step") else "",
         arguments=MappingProxyType(arguments),
     )
 
@@ -276,6 +373,7 @@ class Scenario:
     robot: str
     until: int
     policy: str
+    entrances: bool
     robot_at: str
     robot_heading: float | None
     person_at: str
@@ -317,6 +415,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         robot=root.get("robot"),
         until=600_000 if (until := reader.get(root, "until")) is None else until,
         policy=root.get("policy", "prima"),
+        entrances=root.get("entrances", "open") == "open",
         robot_at=robots[0].get("at") if robots else "",
         robot_heading=(
             reader.get(robots[0], "heading")
@@ -343,8 +442,11 @@ def _when(reader: Reader, node: Node) -> When:
     given = [name for name in TRIGGERS if name in node.attributes]
     if len(given) != 1:
         message = "<when> needs exactly one of at, said, asked, doing, done, on."
-        reader.problem(node, "missing-attribute", message)
-        given = given or ["at"]
+        if given:
+            reader.problem(node, "exclusive", message, given[1], "Write a <when> for each.")
+        else:
+            reader.problem(node, "missing-attribute", message)
+            given = ["at"]
     doings = [_doing(reader, child) for child in node.nodes if child.key]
     return When(
         given[0],

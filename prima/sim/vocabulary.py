@@ -23,7 +23,7 @@ WORLD = Vocabulary(
             "world",
             "A place that a robot visits: its map, walls and things. Lengths in metres.",
             (_VERSION, _ID, _TITLE),
-            ("place", "way", "wall", "thing", "corner"),
+            ("place", "way", "wall", "thing", "corner", "area"),
         ),
         Element("place", "A place of the topological map.", (_ID, _X, _Y, _HEADING, _TITLE)),
         Element(
@@ -69,6 +69,25 @@ WORLD = Vocabulary(
                 attribute("event", "event", "which event", default="corner"),
             ),
         ),
+        Element(
+            "area",
+            "A building or room whose entrance offers an application: the robot loads it when it"
+            " comes in and unloads it when it goes out.",
+            (
+                _ID,
+                _TITLE,
+                attribute("application", "path", "the application's document", "required"),
+                *(
+                    attribute(name, "number", what, "required", low=-1000, high=1000)
+                    for name, what in (
+                        ("x1", "metres east of its west side"),
+                        ("y1", "metres north of its south side"),
+                        ("x2", "metres east of its east side"),
+                        ("y2", "metres north of its north side"),
+                    )
+                ),
+            ),
+        ),
     ),
 )
 
@@ -103,7 +122,7 @@ ROBOT = Vocabulary(
                     "loop", "duration", "a loop of a feedback Command", default="500ms", low=10
                 ),
             ),
-            ("device", "camera", "voice", "touch", "gesture", "adds", "allows"),
+            ("device", "camera", "voice", "touch", "gesture", "adds", "allows", "substitute"),
         ),
         Element(
             "device",
@@ -153,8 +172,48 @@ ROBOT = Vocabulary(
                 attribute("leaves", "boolean", "whether it leaves the user", default="false"),
                 attribute("engages", "boolean", "whether it engages the user", default="false"),
                 attribute("says", "boolean", "whether it takes a text", default="false"),
+                attribute(
+                    "stray",
+                    "number",
+                    "how far (m) its steps may take the robot off the way of a move that goes on"
+                    " meanwhile (extension x5)",
+                    default="0.3",
+                    low=0,
+                    high=5,
+                ),
             ),
-            ("argument",),
+            ("argument", "step"),
+        ),
+        Element(
+            "step",
+            "A part of an added motion such as a dance: how the body moves for a while.",
+            (
+                attribute("for", "duration", "how long", "required", low=1),
+                attribute(
+                    "speed",
+                    "number",
+                    "metres a second, backward negative",
+                    default="0",
+                    low=-2,
+                    high=2,
+                ),
+                attribute(
+                    "turn-speed",
+                    "number",
+                    "degrees a second to the left",
+                    default="0",
+                    low=-180,
+                    high=180,
+                ),
+            ),
+        ),
+        Element(
+            "substitute",
+            "Another Command that takes the place of one that the robot lacks (extension x6).",
+            (
+                attribute("command", "id", "the Command of Table 4.2 that it lacks", "required"),
+                attribute("by", "id", "the Command that takes its place", "required"),
+            ),
         ),
         Element(
             "argument",
@@ -215,6 +274,13 @@ SCENARIO = Vocabulary(
                     "until", "duration", "when the run ends, if not by itself", default="600s"
                 ),
                 attribute("policy", "text", "the mediator's policy", default="prima"),
+                attribute(
+                    "entrances",
+                    "text",
+                    "whether the robot takes up the applications that the world's areas offer",
+                    default="open",
+                    choices=("open", "closed"),
+                ),
             ),
             ("robot", "person", "application", "answer", "when", "service"),
         ),

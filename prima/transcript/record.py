@@ -30,6 +30,7 @@ PHASES = [
     "held",
     "interrupt",
     "halted",
+    "substitute",
     "event",
     "sensed",
     "note",
@@ -54,7 +55,7 @@ class Record(BaseModel):
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
         "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",
         "starve", "emergency", "listening",
-        "held", "interrupt", "halted", "event", "sensed", "note", "send", "log", "error",
+        "held", "interrupt", "halted", "substitute", "event", "sensed", "note", "send", "log", "error",
         "over",
     ] = Field(description="What the record tells.")  # fmt: skip
     actor: Literal["robot", "user", "environment", "mediator"] = Field(

@@ -66,6 +66,12 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "note":
             letter = "U" if record["actor"] == "user" else "E"
             return Row(record["time"], letter, "", record["text"], kind="note")
+        case "load" | "unload" if record["actor"] == "environment":
+            return _place_row(record)
+        case "interrupt":
+            request = asked.get(record["behavior"], record)
+            what = describe(record["command"], record.get("text"), request.get("args"))
+            return _plain(record, f"breaks off {what}", "interrupt")
         case "load" if record["actor"] == "mediator":
             return Row(record["time"], "R", record["app"], f"starts {record['app']}", kind="load")
         case "unload" if record["actor"] == "mediator":
@@ -84,6 +90,15 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "log":
             return _plain(record, f"log: {record['message']}", "log")
     return None
+
+
+def _place_row(record: Record) -> Row | None:
+    """The robot comes to where an application is offered, or goes away from there."""
+    place = (record.get("data") or {}).get("place")
+    if not place:
+        return None
+    verb = "enters" if record["phase"] == "load" else "leaves"
+    return Row(record["time"], "R", "", f"{verb} {place}", kind=verb)
 
 
 def _plain(record: Record, what: str, kind: str, event: bool = False) -> Row:
@@ -107,6 +122,8 @@ def _start_row(record: Record, asked: dict[str, Record]) -> Row | None:
         return None
     request = asked.get(record["behavior"].partition(".")[0], record)
     what = describe(command, record.get("text"), request.get("args"), request.get("extra"))
+    if request.get("inserted"):
+        what += f" [inserted, {request['inserted']}]"
     return Row(
         record["time"],
         "R",
