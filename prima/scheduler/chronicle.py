@@ -14,6 +14,8 @@ class Chronicle:
 
     def __init__(self) -> None:
         self.now = 0
+        self.extensions: frozenset[str] = frozenset()
+        """Which of X1 to X6 are on: what they rest on is recorded with a request."""
         self.records: list[Record] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
@@ -63,6 +65,10 @@ class Chronicle:
             state=ab.document_state,
             inserted=ab.inserted or None,
             before=before,
+            restartable=ab.restartable or None if "x2" in self.extensions else None,
+            hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
+            connect=ab.connect or None if "x4" in self.extensions else None,
+            motion=ab.motion or None if "x5" in self.extensions else None,
             source=(command.source if command else ab.group.source if ab.group else None) or None,
         )
 

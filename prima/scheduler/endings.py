@@ -30,6 +30,7 @@ class Endings:
         self, policy: Policy, table: Table, chronicle: Chronicle, bound: int | None = None
     ) -> None:
         self.chronicle = chronicle
+        chronicle.extensions = policy.extensions
         self.memory = Memory()
         self.told: deque[Told] = deque()
         self._maker = Maker(table)

@@ -87,6 +87,18 @@ class Record(BaseModel):
         None, description="The rule by which the mediator put it in itself (X1, X4)."
     )
     before: str | None = Field(None, description="The AB that it was put in before.")
+    restartable: bool | None = Field(
+        None, description="Whether it gives way to a reaction and starts again (X2)."
+    )
+    hold: float | None = Field(
+        None, description="How long (s) its stream is held for an event afterwards (X3)."
+    )
+    connect: bool | None = Field(
+        None, description="Whether the robot has to face the user before it starts (X4)."
+    )
+    motion: Literal["free", "faithful"] | None = Field(
+        None, description="How it moves the body: free in its path, or faithful to its own (X5)."
+    )
     unit: str | None = Field(None, description="The unit that it is a part of (U4, U5).")
     event: str | None = Field(None, description="An event's name.")
     serial: int | None = Field(None, description="An event's or message's serial number.")
