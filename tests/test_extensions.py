@@ -491,5 +491,6 @@ def test_all_extensions_together_leave_a_plain_run_as_it_is() -> None:
         stage.select()
         stage.at(200).end("fa#1")
         stage.select()
-        runs.append(stage.records)
+        rests_on = {"restartable", "hold", "connect", "motion"}
+        runs.append([{k: v for k, v in r.items() if k not in rests_on} for r in stage.records])
     assert runs[0] == runs[1]
