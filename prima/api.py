@@ -370,6 +370,9 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
     for name, digest in files.items():
         if name in loaded.files and loaded.files[name] != digest:
             raise UsageError(f"{name} is not the file that the transcript was made with.")
+        if name not in loaded.files and digest not in loaded.files.values():
+            message = f'it was made with "{name}", which is no file of this scenario.'
+            raise UsageError(f"{transcript.name}: {message}")
     if transcript.records[-1]["time"] > LONGEST_MS / 1000:
         raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
     try:

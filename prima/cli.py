@@ -176,11 +176,19 @@ def run(
         transcript = api.rehearse(loaded, policy, bound)
         _print(transcript.table(why))
     for failure in transcript.failures:
-        _tell(f"prima: {failure}")
+        _tell(f"prima: {failure.rstrip(': ')}{_handling(failure)}")
     if transcript.outcome == "limit":
         raise RunError("the run made more records than a run may.")
     if transcript.failures:
         raise Exit(3)
+
+
+def _handling(failure: str) -> str:
+    """How an application may take what it has thrown itself; errors say what is wrong."""
+    event = failure.split(": ")[1]
+    if ":" in event or event.startswith("error."):
+        return ""
+    return f'. Nothing handles it: write <on event="{event}">.'
 
 
 def _is_source(output: str, scenario: str, files: dict[str, str]) -> bool:
@@ -321,6 +329,43 @@ def explain(what: str, row: int | None) -> None:
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
     else:
         _print(api.explain_row(api.read(what), row))
+
+
+@cli.command()
+@click.argument("scenarios", nargs=-1, type=click.Path())
+@click.option("--policy", "policies", multiple=True, help="Only this policy; may be repeated.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "csv"]),
+    default="text",
+    help="What to print.",
+)
+def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
+    """Run situations under every policy and measure what became of units, streams and channel.
+
+    Without SCENARIOS these are the ten situations of the thesis. docs/measures.md
+    says what the columns count. A "!" marks a run in which an application failed.
+
+    \b
+    prima study
+    prima study my-scenario.xml --policy prima --policy fifo --format csv
+    """
+    from prima.study import POLICIES as ALL
+    from prima.study import format_csv, format_table, result_data, situations
+    from prima.study import study as run_study
+
+    chosen, results = scenarios or tuple(map(str, situations())), []
+    total = len(chosen) * len(policies or ALL)
+    _start_watchdog()
+    for result in run_study(chosen, policies or ALL):
+        results.append(result)
+        if sys.stderr.isatty():
+            click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
+    if form == "json":
+        _print_json([result_data(result) for result in results])
+    else:
+        _print(format_csv(results) if form == "csv" else format_table(results))
 
 
 def main() -> None:

@@ -44,7 +44,7 @@ CODES: dict[str, str] = {
     " scenario's own folder.",
     "no-answer": "A field without options, grammar or type takes no answer: the user could never"
     " leave it.",
-    "empty-answer": "An option that holds nothing to say can never be said.",
+    "empty-answer": "An option or a grammar that holds nothing to say can never be said.",
     "nothing-to-say": "A Command that speaks has no text.",
     "empty": "The element holds nothing.",
     "after-else": "Nothing but content may stand after <else>: it takes all that is left.",

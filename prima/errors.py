@@ -74,7 +74,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     words = sorted(known)
     if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
         return ""
-    nearest = get_close_matches(word, words, n=1, cutoff=0.6)
+    alike = [one for one in words if one.casefold() == word.casefold()]
+    nearest = alike or get_close_matches(word, words, n=1, cutoff=0.6)
     return f'Did you mean "{nearest[0]}"?' if nearest else ""
 
 

@@ -96,6 +96,8 @@ def _event_list(text: str) -> str:
     if not text:
         raise ValueError("names no event.")
     for name in re.split(f"[{XML_SPACE}]+", text):
+        if "," in name:
+            raise ValueError("holds a comma. Separate the names by spaces.")
         if not _fits(EVENT, name):
             raise ValueError(f'holds "{name}", which is not an event name such as "touch.head".')
     return re.sub(f"[{XML_SPACE}]+", " ", text)
@@ -105,6 +107,8 @@ def _name_list(text: str) -> str:
     if not text:
         raise ValueError("names no variable.")
     for name in re.split(f"[{XML_SPACE}]+", text):
+        if "," in name:
+            raise ValueError("holds a comma. Separate the names by spaces.")
         if not _fits(VARIABLE, name):
             raise ValueError(f'holds "{name}", which is not a variable name.')
     return re.sub(f"[{XML_SPACE}]+", " ", text)

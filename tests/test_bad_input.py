@@ -328,6 +328,14 @@ MEANING = [
     ("references", block('<log expr="1 &lt; 2 &amp;&amp; &#x6e;o"/>'), "2:52", '"no" is not declared'),
     ("script-line", block("<script>\n var a = 1;\n <![CDATA[ a = ) ]]></script>"), "4:16", "ECMAScript"),
     ("script-name", block("<script>var a;\n a = nobody;</script>"), "3:6", '"nobody", which nothing'),
+    ("no-clock", block('<log expr="new Date()"/>'), "2:36", "session.time is the clock"),
+    ("sensor", form('<watch name="w" when="sensr.x"/>'), "2:36", 'Did you mean "sensor"?'),
+    ("event-comma", form('<on event="touch,message"/>'), "2:25", "Separate the names by spaces"),
+    ("html", block("<speak><b>x</b></speak>"), "2:28", "Speech is plain text"),
+    ("empty-grammar", grammar(""), "2:30", "nothing to say"),
+    ("script-src", block('<script src="x.js"/>'), "2:29", "It has no attributes"),
+    ("language", form("<block><exit/></block>").replace("<form", '<form xml:lang="en"'), "2:7", "root element alone"),
+    ("goto-case", block('<goto next="#G"/>') + form("", "g"), "2:33", 'Did you mean "g"?'),
     ("send-both", block('<send to="a" event="b"/>'), "2:41", "Keep one of them. [exclusive]"),
     ("send-neither", block("<send/>"), "2:21", "either to or event. [missing-attribute]"),
     ("link-both", form('<link next="#f" event="x"><grammar>a</grammar></link>'), "2:37", "[exclusive]"),
@@ -420,6 +428,10 @@ SCENARIOS = [
     ("negative", scenario(PLAY + '<when at="-1s"/>'), "s.xml:2:39", "with its unit"),
     ("walk", scenario(PLAY + '<when at="1s"><walk/></when>'), "s.xml:2:43", "a place to go to"),
     ("policy", scenario(PLAY, 'policy="fixd"'), "s.xml:1:", 'Did you mean "fixed"?'),
+    ("walk-half", scenario(PLAY + '<when at="1s"><walk x="1"/></when>'), "s.xml:2:43", "or x and y"),
+    ("walk-twice", scenario(PLAY + '<when at="1s"><walk to="lab" x="1" y="1"/></when>'), "s.xml:2:61", "Keep one"),
+    ("person-half", scenario(PLAY + '<person x="1"/>'), "s.xml:2:29", "or x and y"),
+    ("person-twice", scenario(PLAY + '<person at="lab" x="1" y="1"/>'), "s.xml:2:49", "Keep one"),
     ("two-robots", scenario('<robot at="lab"/>' * 2 + PLAY), "s.xml:2:18", "a second <robot>"),
     ("infinite", scenario(PLAY + '<person x="1e999" y="0"/>'), "s.xml:2:40", "is not a number"),
     ("service", scenario(PLAY + '<service name="a"><replay/></service>'), "s.xml:2:47", "reply"),
@@ -908,6 +920,17 @@ def test_edited_transcripts(
     prima("replay", "t.jsonl", "s.xml").check(code, message)
 
 
+def test_a_transcript_of_other_applications(prima: Prima, tmp_path: Path, transcript: str) -> None:
+    write(tmp_path, "other.xml", app(block("<exit/>")))
+    write(tmp_path, "s2.xml", scenario('<application src="other.xml"/>'))
+    prima("replay", "good.jsonl", "s2.xml").check(2, 'made with "s.xml"')
+
+
+def test_an_event_that_nothing_handles(prima: Prima, tmp_path: Path) -> None:
+    path = stage(tmp_path, app(block('<throw event="bored"/>')))
+    prima("run", path).check(3, "prima: a: bored", 'write <on event="bored">')
+
+
 def test_a_time_far_away(prima: Prima, tmp_path: Path) -> None:
     loop = form('<block><send event="e"/></block><on event="e"><send event="e"/></on>')
     prima("run", stage(tmp_path, app(loop), attributes='until="1s"'), "-o", "t").check(0)
@@ -956,6 +979,9 @@ USAGES: list[Any] = [
     (["validate", "."], 2, ".: cannot be read"),
     (["validate", "/dev/zero"], 2, "/dev/zero: cannot be read"),
     (["show", "s.xml"], 2, "s.xml:1: this is not a line of JSON"),
+    (["replay", "good.jsonl", "app.xml"], 1, "a scenario is needed here"),
+    (["run", "s.xml", "--policy", "fixed:A"], 2, 'Did you mean "a"?'),
+    (["run", "s.xml", "--policy", "fixd"], 2, "fixed:APP"),
     (["show", "no"], 2, "no: cannot be read"),
     (["show", "x" * 5000], 2, "cannot be read"),
     (["diff", "good.jsonl"], 2, "Missing argument"),

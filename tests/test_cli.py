@@ -99,6 +99,62 @@ def test_every_command_has_help_with_an_example() -> None:
         assert f"prima {name} " in prima(name, "--help").stdout
 
 
+UNIT = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="f">
+<iu><block><speak>One.</speak></block></iu>
+<block><iu><speak>Two.</speak></iu><exit/></block></form></prima>"""
+
+
+def test_explain_the_unit_around_a_row_and_what_comes_from_outside(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(UNIT)
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
+        f' world="{ROOT}/documents/worlds/office.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<person x="1" y="0"/><application src="a.xml"/>'
+        '<when at="0.1s"><say>Hello.</say></when></scenario>'
+    )
+    prima("run", "s.xml", "-o", "t.jsonl", cwd=tmp_path)
+    table = prima("show", "t.jsonl", cwd=tmp_path).stdout
+    lines = table.splitlines()[1:]
+    number = {
+        word: next(str(row) for row, line in enumerate(lines) if word in line)
+        for word in ("One.", "Two.", "Hello.")
+    }
+    for word, rule in (("One.", "U5"), ("Two.", "U4")):
+        why = prima("explain", "t.jsonl", number[word], cwd=tmp_path).stdout
+        assert "the unit a#" in why and "selected by rule S1" in why
+        assert f"(rule {rule})" in why
+    heard = prima("explain", "t.jsonl", number["Hello."], cwd=tmp_path).stdout
+    assert 's: "Hello."' in heard and "from outside" in heard
+
+
+def test_a_transcript_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    out = tmp_path / "t.jsonl"
+    prima("run", DEMO, "-o", out)
+    marked = tmp_path / "marked.jsonl"
+    marked.write_bytes(b"\xef\xbb\xbf" + out.read_bytes())
+    assert prima("show", marked).stdout == prima("show", out).stdout
+
+
+def test_ctrl_c_while_python_is_still_importing_ends_quietly() -> None:
+    """Imports of compiled modules lose or change a KeyboardInterrupt; the handler does not."""
+    code = (
+        "import os, signal, sys\n"
+        "from prima.__main__ import main\n"
+        "name = sys.argv.pop(1)\n"
+        "class Interrupting:\n"
+        "    def find_spec(self, wanted, path=None, target=None):\n"
+        "        if wanted == name: os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Interrupting())\n"
+        "main()\n"
+    )
+    for module in ("click", "lxml.etree", "_quickjs"):
+        done = subprocess.run(
+            [sys.executable, "-c", code, module, "validate", str(DEMO)],
+            capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (130, "prima: interrupted\n"), module
+
+
 def test_ctrl_c_leaves_what_was_written_readable(tmp_path: Path) -> None:
     app = tmp_path / "busy.xml"
     app.write_text(

@@ -21,6 +21,7 @@ LAYERS = [
     {"session"},
     {"sim", "replay"},
     {"api"},
+    {"study"},
     {"cli", "__init__", "reference"},
     {"__main__"},
 ]

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+import time
 from pathlib import Path
 
 import pytest
 
+from prima.commands import Argument, check_argument
 from prima.errors import DocumentError, Problem
+from prima.interpreter.names import declared_names, free_names
 from prima.interpreter.reader import read_document
+from prima.markup.reader import parse
 from prima.sim.scenario import read_robot, read_scenario, read_world
 from tests.robot import read, xml
 
@@ -81,6 +86,11 @@ def test_a_problem_says_what_to_write_instead(body: str, code: str, remedy: str)
         ('<form id="a"><field name="x" type="text"/><block name="x"/></form>', "duplicate-name"),
         ('<form id="a"><field name="x"><grammar><ruleref uri="#no"/></grammar></field></form>', "no-such-rule"),
         ('<form id="a"><block><goto/></block></form>', "missing-attribute"),
+        ('<form id="a"><block><send to="x" event="y"/></block></form>', "exclusive"),
+        ('<form id="a"><block><send/></block></form>', "missing-attribute"),
+        ('<form id="a"><block><set-direction heading="1" toward="x"/></block></form>', "exclusive"),
+        ('<form id="a"><link><grammar>x</grammar></link></form>', "missing-attribute"),
+        ('<form id="a"><link next="#a" event="x"><grammar>x</grammar></link></form>', "exclusive"),
         ('<form id="a"><block><goto nextitem="b"/></block></form>', "no-such-item"),
         ('<form id="a"><block><set-direction/></block></form>', "missing-attribute"),
         ("", "no-form"),
@@ -119,6 +129,65 @@ def test_an_expression_without_fault_is_left_in_peace() -> None:
       <log expr="f(1, 2) + g.length + h.a + `t ${n}` + Math.max(n, 2) + (event ? 1 : 2)"/><exit/>
     </block></form>"""
     assert problems(body) == []
+
+
+NAMES: list[tuple[str, set[str]]] = [
+    ("({m(a) { return a }, get x() { return 1 }, set x(v) { this.y = v }})", set()),
+    ("({a, b, 'c': 1, [d]: 2, ...e})", {"a", "b", "d", "e"}),
+    ("({async m() {}, *g(a) { yield a }})", set()),
+    ("var {a, b: c, d = n} = o; a + c + d", {"n", "o"}),
+    ("const [x, , y = 2, ...z] = q, {k} = q; x + y + z + k", {"q"}),
+    ("(a = n, {b, c: [d]}, ...r) => a + b + d + r", {"n"}),
+    ("outer: for (let i = 0; i < m; i++) { continue outer }", {"m"}),
+    ("for (const [k, v] of Object.entries(o)) k + v", {"o"}),
+    ("function f(a, b = a) { return /foo+[/]bar/.test(a) + b } f(1)", set()),
+    ("try { p() } catch ({message}) { message }", {"p"}),
+    ("class A { x = 1; static y = z; m(q) { return this.x + q } }", {"z"}),
+    ("x ? y : z", {"x", "y", "z"}),
+    ("switch (v) { case A: break; default: B }", {"v", "A", "B"}),
+    ("`a ${ `b ${c}` } d ${e}`", {"c", "e"}),
+    ("a / b / c // d", {"a", "b", "c"}),
+    ("get(1) + o.var + o?.p", {"get", "o"}),
+]
+
+
+@pytest.mark.parametrize(("code", "names"), NAMES)
+def test_names_that_code_uses_without_declaring_them(code: str, names: set[str]) -> None:
+    assert free_names(code).keys() == names
+    assert all(code[start:].startswith(name) for name, start in free_names(code).items())
+
+
+def test_names_that_code_declares() -> None:
+    code = "var {a, b: c} = o, d\nlet [e] = f; function g() {} class H {} i = 1"
+    assert declared_names(code) == {"a", "c", "d", "e", "g", "H"}
+
+
+@pytest.mark.parametrize(
+    "code", ["'" + "\\'" * 99_999, "/*" * 99_999, "var [," * 30_000 + "]" * 30_000]
+)
+def test_names_are_found_in_time_in_hostile_code(code: str) -> None:
+    began = time.monotonic()
+    declared_names(f"var x;{code}")
+    assert time.monotonic() - began < 5
+
+
+CALLING = '<form id="a"><subdialog src="#b"/></form><form id="b"><block>{}</block></form>'
+
+
+@pytest.mark.parametrize(
+    ("body", "remedies"),
+    [
+        (CALLING.format("<speak>x</speak>"), {"a": "<exit/>", "b": "<return/>"}),
+        (CALLING.format("<return/>"), {"a": "<exit/>"}),
+        (CALLING.format("<exit/>"), {}),
+        (CALLING.format('<goto next="#c"/>') + '<form id="c"/>', {"a": "<exit/>", "c": "<return/>"}),
+    ],
+)  # fmt: skip
+def test_a_dead_end_says_how_to_leave_it(body: str, remedies: dict[str, str]) -> None:
+    made = [p for p in read(body)[1] if p.code == "dead-end"]
+    assert len(made) == len(remedies)
+    for name, remedy in remedies.items():
+        assert any(f'"{name}"' in p.message and remedy in p.remedy for p in made)
 
 
 DOCTYPE = '<!DOCTYPE prima PUBLIC "-//X//Y" "http://example.invalid/x.dtd">'
@@ -169,3 +238,43 @@ def test_other_documents_are_checked_alike(tmp_path: Path) -> None:
     with pytest.raises(DocumentError) as several:
         read_scenario("s.xml", scenario)
     assert [p.code for p in several.value.problems] == ["missing-element", "missing-attribute"]
+    two = scenario.replace(b"<when>", b'<application src="a"/><when at="1s" said="x">')
+    with pytest.raises(DocumentError) as several:
+        read_scenario("s.xml", two)
+    assert [p.code for p in several.value.problems] == ["exclusive"]
+
+
+def test_places_of_elements_and_of_characters_in_attributes_and_texts() -> None:
+    text = '<a><!-- <x> --><![CDATA[<y>]]><?p <z>?><b\n c="1&gt;2 >\n&#10;x">d<!-- e -->&lt;<![CDATA[f]]></b></a>'
+    [node] = parse("x.xml", text.encode()).nodes
+    assert node.place[1:] == (1, 40)
+    assert node.attribute_place("c")[1:] == (2, 5)
+    assert [node.code_place("c", *at)[1:] for at in ((1, 3), (1, 6), (2, 1))] == [
+        (2, 10),
+        (2, 13),
+        (3, 6),
+    ]
+    assert [node.code_place("", 1, column)[1:] for column in (1, 2, 3)] == [
+        (3, 9),
+        (3, 20),
+        (3, 33),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "message"),
+    [
+        (None, "id", 'x "undefined" is not a name.'),
+        (math.nan, "number", 'x "NaN" is not a number.'),
+        (math.inf, "number", 'x "Infinity" is not a number.'),
+        (True, "number", 'x "true" is not a number.'),
+        (1.5, "boolean", 'x "1.5" is not true or false.'),
+        (0, "duration", 'x "0" is out of range: from 1s to 60s.'),
+    ],
+)
+def test_values_in_messages_are_written_as_the_author_writes_them(
+    value: object, kind: str, message: str
+) -> None:
+    with pytest.raises(ValueError) as wrong:
+        check_argument("x", Argument(kind, "", 1000, 60_000), value)
+    assert str(wrong.value) == message

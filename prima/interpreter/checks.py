@@ -51,6 +51,18 @@ MS_A_LETTER = 70
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
+VARIABLES = frozenset({"event", "_event", "_message", "session", "sensor"})
+"""What the language itself declares."""
+ABSENT = {
+    "Date": "session.time is the clock, in seconds.",
+    "console": 'Write <log expr="..."/>.',
+    "alert": 'Write <log expr="..."/>.',
+    "setTimeout": 'Write <send event="..." delay="..."/> and handle the event.',
+    "fetch": 'Write <send to="..."/>, which asks a service.',
+    "require": "Write the functions into a <script>.",
+}
+"""What to write instead of what ECMAScript has elsewhere."""
+
 
 def check_document(document: Document) -> list[Problem]:
     """All problems of meaning in a document."""
@@ -381,8 +393,9 @@ class Checker:
                     self._undeclared(value.node.attribute_place("namelist"), name, known)
 
     def _undeclared(self, place: Place, name: str, known: set[str]) -> None:
-        shown = {word for word in known if not word.startswith("$")}
-        remedy = did_you_mean(name, shown) or f'Declare it: <var name="{name}"/>.'
+        shown = {word for word in known | VARIABLES if not word.startswith("$")}
+        remedy = ABSENT.get(name) or did_you_mean(name, shown)
+        remedy = remedy or f'Declare it: <var name="{name}"/>.'
         message = f'The variable "{name}" is not declared.'
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 

@@ -33,6 +33,8 @@ def read_grammar(note: Note, node: Node) -> Grammar:
         if node.text:
             note(node, "stray-text", "This grammar has rules; its own text counts for nothing.")
     else:
+        if not node.nodes and not fold(node.text):
+            note(node, "empty-answer", "This grammar holds nothing to say.", "Write what it takes.")
         grammar.root = "root"
         grammar.rules["root"] = _expansion(note, node)
     if grammar.root not in grammar.rules:

@@ -118,8 +118,10 @@ def _check_attributes(node: Node, element: Element, root: bool, problems: list[P
 
 def _unknown_attribute(node: Node, name: str, known: list[str]) -> Problem:
     remedy = did_you_mean(name, known)
-    if not remedy and known:
-        remedy = f"It may have {one_of(known)}."
+    if name == "xml:lang":
+        remedy = "It stands on the root element alone."
+    elif not remedy:
+        remedy = f"It may have {one_of(known)}." if known else "It has no attributes."
     message = f'<{node.tag}> has no attribute "{name}".'
     place = node.attribute_place(name, value=False)
     return Problem(place, "error", "unknown-attribute", message, remedy)

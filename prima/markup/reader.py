@@ -50,6 +50,7 @@ REMEDIES = (
     (r"Attribute (\S+) redefined", "Keep one of them."),
     (r"Unescaped '<' not allowed in attributes", "Write &lt; for <, or close the quote before."),
     (r"EntityRef|xmlParseEntityRef", "Write &amp; for &."),
+    (r"attributes construct error", "Put a space between attributes, and quote their values."),
     (r"AttValue", 'Write the value in quotes: name="value".'),
     (r"Extra content at the end", "A document has one root element; nothing may stand after it."),
     (r"StartTag: invalid element name", "Write &lt; for a < that begins no tag."),

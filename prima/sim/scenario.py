@@ -406,6 +406,8 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         reader.problem(root, "missing-element", "The scenario runs no <application>.")
     person = people[0] if people else None
     point: Point | None = None
+    if person is not None:
+        _check_where(reader, person, "at", "a place to be at", needed=False)
     if person is not None and "x" in person.attributes:
         point = (reader.get(person, "x") or 0.0, reader.get(person, "y") or 0.0)
     scenario = Scenario(
@@ -461,11 +463,22 @@ def _when(reader: Reader, node: Node) -> When:
 def _doing(reader: Reader, node: Node) -> Doing:
     element = reader.vocabulary.elements[node.key]
     values = {item.name: reader.get(node, item.name) for item in element.attributes}
-    if node.tag == "walk" and values["to"] is None and (values["x"] is None or values["y"] is None):
-        reader.problem(node, "missing-attribute", "<walk> needs a place to go to, or x and y.")
+    if node.tag == "walk":
+        _check_where(reader, node, "to", "a place to go to")
     if node.tag == "event":
         values["data"] = _data(node)
     return Doing(node.tag, node.text, values)
+
+
+def _check_where(reader: Reader, node: Node, name: str, what: str, needed: bool = True) -> None:
+    """A place by its name, or by x and y, and not both."""
+    numbers = [key for key in ("x", "y") if key in node.attributes]
+    if name in node.attributes and numbers:
+        message = f'<{node.tag}> has both "{name}" and "{numbers[0]}".'
+        reader.problem(node, "exclusive", message, numbers[0], "Keep one of them.")
+    elif len(numbers) == 1 or (needed and not numbers and name not in node.attributes):
+        message = f"<{node.tag}> needs {what}, or x and y."
+        reader.problem(node, "missing-attribute", message)
 
 
 def _answer(reader: Reader, node: Node) -> When:

@@ -147,4 +147,6 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
         return f"this is no transcript's record: {error}."
     if text.lstrip().startswith("{") and not text.endswith("\n"):
         return "the record is cut off; the transcript was not written to its end."
+    if text.lstrip().startswith("<"):
+        return "this is not a line of JSON but of XML. Transcripts are written by prima run -o."
     return "this is not a line of JSON. Transcripts are written by prima run -o."

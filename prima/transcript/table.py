@@ -86,7 +86,9 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
             what = f"{record.get('command')} loses the {record.get('device')}"
             return _plain(record, what, "collision")
         case "starve":
-            return _plain(record, f"{record['behavior']} starves", "starve")
+            request = asked.get(record["behavior"].partition(".")[0], record)
+            what = describe(request.get("command") or "", request.get("text"), request.get("args"))
+            return _plain(record, f"still waits after {record['loop']} loops: {what}", "starve")
         case "log":
             return _plain(record, f"log: {record['message']}", "log")
     return None
@@ -254,7 +256,7 @@ def format_rows(rows: list[Row], why: bool = False) -> str:
     apps = max([3, *(width(row.app) for row in rows)])
     shown = [printable(row.what) for row in rows]
     column = min(max([8, *(width(what) for what in shown)]), 76)
-    head = f"        No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
+    head = f"       No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
     lines = [head + ("  Rule" if why else "")]
     for row, what in zip(rows, shown, strict=True):
         mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
@@ -289,3 +291,31 @@ def _wrap(text: str, columns: int) -> list[str]:
             word = word[cut:]
         current = word
     return [*lines, current]
+
+
+def read_table(text: str) -> list[Row]:
+    """Read a printed table back: who, application, behaviour and event of each row.
+
+    Raises:
+        ValueError: it has no head, or a row that does not fit under it.
+    """
+    lines = text.splitlines()
+    head = next((line for line in lines if "No." in line and "Behavior" in line), "")
+    if not head:
+        raise ValueError("it has no head")
+    who, app, what, event = (head.index(word) for word in ("Who", "App", "Behavior", "Event"))
+    rows: list[Row] = []
+    for line in lines[lines.index(head) + 1 :]:
+        number = line[:who].split()
+        if not line.strip():
+            continue
+        if not number and rows:
+            rows[-1].what += " " + line.strip()
+            continue
+        row = Row(float(number[-1]), line[who:app].strip(), line[app:what].strip(), "")
+        row.what, row.event = line[what:event].strip(), line[event : event + 1] == "o"
+        row.number = len(rows)
+        rows.append(row)
+    for row in rows:
+        row.resumed = row.what.startswith("resumes ")
+    return rows

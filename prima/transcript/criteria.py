@@ -1,0 +1,230 @@
+"""The thesis's criteria for a mediated order, counted in a transcript (docs/measures.md).
+
+Nothing of the mediator's own view is used (its floor, its suspensions): requests,
+starts, ends and events alone say what a user has seen, so that all policies are
+measured alike. Times in seconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from statistics import fmean
+
+from prima.messages import Record
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """An event, and how long (s) until an application's first Command because of it started."""
+
+    event: str
+    serial: int
+    app: str
+    seconds: float
+
+
+@dataclass(slots=True)
+class Criteria:
+    """What a run did to units, streams and the channel, and how soon it answered."""
+
+    units_cut: int = 0
+    """Behaviors that lost a device to another application while they ran."""
+    restarts: int = 0
+    """Behaviors that gave way because their author allowed it (X2)."""
+    broken: int = 0
+    """Streams broken by no reaction."""
+    broken_waiting: int = 0
+    """Waits for a server into which another application came by no reaction (first pattern)."""
+    unfaced: int = 0
+    """Conversations begun without the channel (second pattern)."""
+    left: int = 0
+    """Conversations that the robot went away from before they were over."""
+    reactions: int = 0
+    """Events that some application reacted to."""
+    reaction_mean: float = 0.0
+    reaction_max: float = 0.0
+    delays: list[Delay] = field(default_factory=list)
+    """How soon each application answered each event."""
+
+
+@dataclass(slots=True)
+class _Tree:
+    """A Communication Stream as far as a user can tell."""
+
+    name: str
+    app: str
+    pending: dict[str, Record] = field(default_factory=dict)
+    """Requests of it that have not ended, by AB."""
+    running: set[str] = field(default_factory=set)
+    begun: bool = False
+    engaged: bool = False
+    broken_by: str = ""
+    """The stream that has come in between since it last did something, if any."""
+    by_reaction: bool = False
+    left_by: set[str] = field(default_factory=set)
+    reacting: float = -1.0
+    """When a reaction of it started last."""
+
+
+@dataclass(slots=True)
+class _Wait:
+    """An application waits for a service's answer."""
+
+    talked: bool
+    """Whether it was or has been doing something for the user: else nobody notices."""
+    broken: bool = False
+    """Whether another application came in, by no reaction."""
+
+
+class Observer:
+    """Goes through the records of one run, in order."""
+
+    def __init__(self) -> None:
+        self.found = Criteria()
+        self._trees: dict[str, _Tree] = {}
+        self._of: dict[str, _Tree] = {}
+        self._talks: set[str] = set()
+        """Streams that have asked or will ask the user something."""
+        self._first_word: dict[str, bool] = {}
+        self._seen = False
+        self._cut: set[str] = set()
+        self._events: dict[int, Record] = {}
+        self._delays: dict[tuple[str, int], Delay] = {}
+        self._waits: dict[tuple[str, str], _Wait] = {}
+        """Applications that wait for a service's answer, by application and service."""
+
+    def add(self, record: Record) -> None:
+        """Take in one record."""
+        match record["phase"]:
+            case "request":
+                self._request(record)
+            case "start":
+                self._start(record)
+            case "end" | "cancel" | "fail" if record.get("behavior"):
+                self._end(record)
+            case "stream-end":
+                self._trees.pop(record["tree"], None)
+            case "event":
+                self._event(record)
+            case "send":
+                talking = any(
+                    tree.running for tree in self._trees.values() if tree.app == record["app"]
+                )
+                self._waits[record["app"], record["data"]["to"]] = _Wait(talking)
+            case "collision":
+                self._collide(record)
+            case "interrupt":
+                self.found.restarts += 1
+                self._end(record, again=True)
+
+    def result(self) -> Criteria:
+        """What has been counted."""
+        found = self.found
+        found.delays = list(self._delays.values())
+        delays = [delay.seconds for delay in found.delays]
+        found.unfaced = sum(
+            not faced for tree, faced in self._first_word.items() if tree in self._talks
+        )
+        found.reactions = len(delays)
+        found.reaction_mean = round(fmean(delays), 3) if delays else 0.0
+        found.reaction_max = round(max(delays, default=0.0), 3)
+        return found
+
+    def _request(self, record: Record) -> None:
+        tree = self._trees.get(record["tree"])
+        if tree is None:
+            tree = self._trees[record["tree"]] = _Tree(record["tree"], record["app"])
+        tree.pending[record["behavior"]] = record
+        self._of[record["behavior"]] = tree
+        if record["command"] == "q-and-a":
+            self._talks.add(tree.name)
+
+    def _start(self, record: Record) -> None:
+        name = record["behavior"].partition(".")[0]
+        tree = self._of.get(name)
+        if tree is None:
+            return
+        request = tree.pending.get(name, record)
+        if record.get("cause") in self._events:
+            app, event = record["app"], self._events[record["cause"]]
+            seconds = round(record["time"] - event["time"], 3)
+            delay = Delay(event["event"], record["cause"], app, seconds)
+            self._delays.setdefault((app, record["cause"]), delay)
+        if record.get("reactive"):
+            tree.reacting = record["time"]
+        if record.get("text"):
+            for (app, _), wait in self._waits.items():
+                wait.talked = wait.talked or app == tree.app
+        if record.get("text") and record["command"] != "active-sensing-human":
+            self._first_word.setdefault(tree.name, self._seen)
+        again = not record.get("resumed") and record["behavior"].partition(".")[2] not in ("", "1")
+        if not again:
+            self._come_in(tree)
+            if request.get("leaves"):
+                self._leave(tree, record["behavior"])
+        if tree.broken_by:
+            self.found.broken += not tree.by_reaction
+            tree.broken_by = ""
+        tree.begun = True
+        tree.running.add(name)
+        tree.engaged = tree.engaged or bool(request.get("engages"))
+
+    def _come_in(self, tree: _Tree) -> None:
+        """Something of a stream begins: what others have not finished may be broken by it."""
+        for other in self._trees.values():
+            if other.app == tree.app or other.broken_by or not other.begun:
+                continue
+            if other.pending and not other.running:
+                other.broken_by, other.by_reaction = tree.name, tree.reacting >= 0
+        for (app, _), wait in self._waits.items():
+            wait.broken = wait.broken or (wait.talked and app != tree.app and tree.reacting < 0)
+
+    def _leave(self, tree: _Tree, behavior: str) -> None:
+        """The robot goes away: is another application in the middle of a conversation?"""
+        for other in self._trees.values():
+            if other.app == tree.app or not other.engaged:
+                continue
+            doing = [other.pending[name] for name in other.running if name in other.pending]
+            if doing and all(one.get("leaves") for one in doing):
+                continue
+            if tree.name not in other.left_by:
+                other.left_by.add(tree.name)
+                self.found.left += 1
+
+    def _end(self, record: Record, again: bool = False) -> None:
+        name = record["behavior"].partition(".")[0]
+        tree = self._of.get(name)
+        if tree is None:
+            return
+        tree.running.discard(name)
+        if not (again or record.get("outcome") in ("again", "halted")):
+            tree.pending.pop(name, None)
+
+    def _event(self, record: Record) -> None:
+        name = record["event"]
+        if name in ("human.found", "human.lost"):
+            self._seen = name == "human.found"
+        if record.get("serial"):
+            self._events[record["serial"]] = record
+        for kind in ("reply.", "error.service."):
+            service = name.removeprefix(kind)
+            wait = self._waits.pop((record.get("app") or "", service), None)
+            if name.startswith(kind) and wait is not None:
+                self.found.broken_waiting += wait.broken
+
+    def _collide(self, record: Record) -> None:
+        name = record["behavior"].partition(".")[0]
+        mine, theirs = self._of.get(name), self._of.get(record["by"].partition(".")[0])
+        if mine is None or theirs is None or mine.app == theirs.app or name in self._cut:
+            return
+        self._cut.add(name)
+        self.found.units_cut += 1
+
+
+def observe(records: Iterable[Record]) -> Criteria:
+    """Count the criteria in a whole transcript."""
+    observer = Observer()
+    for record in records:
+        observer.add(record)
+    return observer.result()
