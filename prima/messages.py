@@ -83,6 +83,8 @@ class OpenUnit:
     cause: int | None = None
     source: str = ""
     connect: bool = False
+    types: tuple[str, ...] = ()
+    """Commands in it: those that the robot's profile adds have devices of their own."""
 
 
 @dataclass(slots=True)

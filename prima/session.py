@@ -229,6 +229,11 @@ class Session:
                 data = {"outcome": "filled", "utterance": value.text, "value": answer}
                 self._conclude(question.id, data)
                 return
+            link = self.apps[question.app.name].listens_to(value.text)
+            if link is not None and link.event:
+                # As in VoiceXML, a link ends the input of the field that is being visited.
+                self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
+                return
         if self._follow_links(value.text) or question is None or question.silent:
             return
         self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})

@@ -693,3 +693,49 @@ def test_what_comes_out_in_one_instant_is_bounded() -> None:
     assert "characters come out at once" in bench.session.failures[0]
     assert sum(len(text) for text in bench.logs()) <= 1_000_000
     assert max(len(text) for text in bench.logs()) == 90_000
+
+
+def test_a_link_of_its_own_ends_the_question_that_listens() -> None:
+    bench = Bench(
+        """<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt>
+          <help><speak>Say yes or no.</speak></help></field>
+        <link event="help"><grammar><item>help me</item></grammar></link></form>"""
+    )
+    bench.listens()
+    bench.hears("help me")
+    assert bench.saying() == ["Say yes or no."]
+    bench.finish("Say yes or no.")
+    assert bench.saying() == ["q-and-a"], "it listens again; a reprompt would ask again"
+
+
+def test_a_link_of_another_application_lets_the_question_listen_on() -> None:
+    bench = Bench(
+        '<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field></form>',
+        document(
+            """<form id="a"><link event="lamp"><grammar><item>light on</item></grammar></link>
+            <on event="lamp"><move-head pan="10"/></on></form>""",
+            "ea",
+            "other",
+        ),
+    )
+    bench.listens()
+    bench.hears("light on")
+    assert bench.saying() == ["Well?", "move-head"]
+
+
+def test_an_error_in_a_script_is_told_at_its_own_line() -> None:
+    bench = Bench(
+        """<form id="a"><block><script>
+          let a = 1;
+          a.b.c();
+        </script></block></form>"""
+    )
+    assert bench.session.failures[0].startswith("app: error.semantic: app.xml:3: ")
+
+
+def test_an_event_that_nobody_handles_is_told_with_its_place() -> None:
+    bench = Bench(
+        """<form id="a"><block>
+          <throw event="foo"/></block></form>"""
+    )
+    assert bench.session.failures == ["app: foo: app.xml:2"]

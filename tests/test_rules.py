@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from prima.commands import TABLE_4_2
-from prima.messages import Command, Group, Step
+from prima.messages import Command, Group, OpenUnit, Step
 from tests.stage import Stage, ask, chain, command, move, say, search
 
 EVENT = 7
@@ -677,3 +677,24 @@ def test_none_does_not_let_a_unit_collide_with_itself() -> None:
     stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
     stage.select()
     assert stage.phases("collision") == []
+
+
+def test_u5_a_unit_owns_the_devices_of_what_the_profile_adds() -> None:
+    camera = replace(TABLE_4_2["turn"], name="take-picture", devices=frozenset({"camera"}))
+    stage = Stage(table={**TABLE_4_2, "take-picture": camera})
+    asked = OpenUnit(1, 1, frozenset({"speaker"}), types=("take-picture",))
+    stage.mediator.open_unit("fa", asked)
+    stage.select()
+    stage.request("ea", Command("take-picture", {"angle": 1}))
+    assert stage.select() == []
+    stage.request("fa", Command("take-picture", {"angle": 1}), unit=1)
+    assert stage.select() == ["fa#2"]
+
+
+def test_u4_no_feedback_command_of_the_profile_runs_in_a_unit_either() -> None:
+    stage = Stage()
+    stage.open("fa", 1, "speaker")
+    stage.select()
+    stage.request("fa", search(), unit=1)
+    stage.select()
+    assert stage.told("fa") == ["error.semantic"]

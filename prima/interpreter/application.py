@@ -220,7 +220,7 @@ class Interpreter:
     def give_up(self, node: Node, reason: str) -> NoReturn:
         """End the application: it has gone past a limit that no handler can mend."""
         place = source(node)
-        raise GoOut(f"{place}: error.semantic: {reason}", True, place)
+        raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
@@ -292,6 +292,8 @@ class Interpreter:
     def _unhandled(self, thrown: Thrown) -> None:
         event = thrown.event
         message = str(event.data.get("message", ""))
+        if thrown.source and not message.startswith(thrown.source):
+            message = f"{thrown.source}: {message}" if message else thrown.source
         self.actions.append(Say("error", f"{event.name}: {message}", thrown.source))
         self._quit(f"{event.name}: {message}", failed=True, place=thrown.source)
 

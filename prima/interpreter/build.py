@@ -43,8 +43,8 @@ from prima.interpreter.elements import (
     Throw,
     Unit,
     Watch,
-    all_acts,
     run_commands,
+    unit_commands,
 )
 from prima.interpreter.grammar import (
     Answers,
@@ -407,6 +407,7 @@ class Builder:
             if row is not None:
                 devices |= row.occupied("x" if command.text else None)
         unit.devices = devices
+        unit.types = tuple(sorted({command.type for command in unit_commands(unit)}))
         return unit
 
     def in_unit(self, command: CommandTemplate) -> None:
@@ -647,20 +648,3 @@ class Builder:
             )
         delay = self.expression(node, "delay-expr") or self.value(node, "delay", "duration", 0)
         return SendOut(to, event, delay, self.params(node), node)
-
-
-def unit_commands(unit: Unit) -> list[CommandTemplate]:
-    """All Commands in a unit, those of its fields' and its own handlers included."""
-    found: list[CommandTemplate] = []
-    contents: list[list[Act]] = [handler.content for handler in unit.handlers]
-    for item in unit.items:
-        contents += [handler.content for handler in item.handlers]
-        if isinstance(item, Block):
-            contents.append(item.content)
-        elif isinstance(item, Field):
-            contents += [part.content for part in item.filled]
-    for content in contents:
-        for act in all_acts(content):
-            if isinstance(act, Run):
-                found += run_commands(act.steps)
-    return found

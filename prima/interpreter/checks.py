@@ -35,6 +35,7 @@ from prima.interpreter.elements import (
     all_acts,
     all_items,
     run_commands,
+    unit_commands,
 )
 from prima.interpreter.expressions import (
     ScriptError,
@@ -75,7 +76,7 @@ def check_commands(
     document: Document, commands: Mapping[str, CommandType], devices: frozenset[str] = frozenset()
 ) -> list[Problem]:
     """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
-    problems = []
+    problems = _outside_units(document, commands)
     for command in document_commands(document):
         row = commands.get(command.type)
         if row is None or row.substitute:
@@ -101,6 +102,29 @@ def check_commands(
                 problems.append(
                     Problem(command.node.place, "error", "no-such-argument", message, hint)
                 )
+    return problems
+
+
+def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """U4: Commands of the profile's own that cannot stand in a unit."""
+    inside: list[CommandTemplate] = []
+    for form in document.forms.values():
+        for item in form.items:
+            if isinstance(item, Unit):
+                inside += unit_commands(item)
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            for step in act.steps if isinstance(act, Run) else ():
+                if isinstance(step.what, GroupTemplate):
+                    inside += run_commands([step])
+    problems = []
+    for command in inside:
+        row = commands.get(command.type)
+        if row is not None and row.name not in TABLE_4_2 and (row.feedback or row.leaves):
+            why = "leaves the user" if row.leaves else "works in a feedback loop"
+            message = f'The Command "{row.name}" {why}; it cannot stand in a unit.'
+            remedy = "Move it out of the <iu>."
+            problems.append(Problem(command.node.place, "error", "not-in-unit", message, remedy))
     return problems
 
 

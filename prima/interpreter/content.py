@@ -40,7 +40,7 @@ from prima.interpreter.frame import (
 )
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step
-from prima.values import read_value
+from prima.values import read_value, shown
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
@@ -75,7 +75,7 @@ class Executor:
 
     def failure(self, error: ScriptError, expr: Expression) -> Thrown:
         """``error.semantic`` with the place of the expression that failed."""
-        place = where(expr)
+        place = where(expr, error)
         message = f"{place}: {expr.code.strip()[:80]}: {error}"
         return Thrown(self.owner.internal("error.semantic", message), place)
 
@@ -97,14 +97,14 @@ class Executor:
         """Text with its values filled in, of ``most`` characters."""
         said, length = [], 0
         for part in parts:
-            text = part if isinstance(part, str) else self.shown(part, fiber)
+            text = part if isinstance(part, str) else self.said(part, fiber)
             said.append(text)
             length += len(text)
             if length > RESULT_LIMIT:
                 break  # far more than is ever said
         return " ".join("".join(said).split())[:most]
 
-    def shown(self, expr: Expression, fiber: Fiber) -> str:
+    def said(self, expr: Expression, fiber: Fiber) -> str:
         """An expression's value as text."""
         try:
             return self.engine.text(expr.code, self.scopes(fiber))
@@ -165,8 +165,8 @@ class Executor:
             case Goto():
                 self.goto(act, fiber)
             case Throw():
-                name = str(self.plain(act.event, fiber))[:MAX_NAME]
-                message = str(self.plain(act.message, fiber) or "")
+                name = shown(self.plain(act.event, fiber))[:MAX_NAME]
+                message = shown(self.plain(act.message, fiber) or "")
                 raise Thrown(self.owner.internal(name, message), source(act.node))
             case Return():
                 expressions = [Expression(name, act.node, "namelist") for name in act.names]
@@ -215,12 +215,12 @@ class Executor:
     def goto(self, act: Goto, fiber: Fiber) -> None:
         """Leave for a form or an item."""
         if act.item is not None:
-            name = str(self.plain(act.item, fiber))
+            name = shown(self.plain(act.item, fiber))
             if all(item.name != name for item in all_items(fiber.frame.form.items)):
                 message = f'{source(act.node)}: there is no form item "{name}"'
                 raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
             raise GoItem(name)
-        target = str(self.plain(act.form, fiber)).removeprefix("#")
+        target = shown(self.plain(act.form, fiber)).removeprefix("#")
         if target not in self.owner.document.forms:
             message = f'{source(act.node)}: there is no form "{target}"'
             raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
@@ -234,7 +234,7 @@ class Executor:
             delay = self.plain(act.delay, fiber)
             self.owner.delay(act.event, params, self.milliseconds(delay, act.node), fiber)
         else:
-            service = str(self.plain(act.service, fiber))
+            service = shown(self.plain(act.service, fiber))
             self.owner.send(service, params, source(act.node))
 
     def milliseconds(self, value: Json, node: Node) -> int:
@@ -246,7 +246,7 @@ class Executor:
                 return round(value) if "delay" in node.attributes else round(value * 1000)
         except ValueError:
             pass
-        message = f'{source(node)}: delay "{value}" is not a time'
+        message = f'{source(node)}: delay "{shown(value)}" is not a time'
         raise Thrown(self.owner.internal("error.semantic", message), source(node))
 
     def branch(self, act: If, fiber: Fiber) -> Content:
@@ -332,9 +332,7 @@ def source(node: Node) -> str:
     return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"
 
 
-def where(expr: Expression) -> str:
-    """The document and line of an expression."""
-    if not expr.attribute:
-        return source(expr.node)
-    place = expr.node.attribute_place(expr.attribute)
+def where(expr: Expression, error: ScriptError) -> str:
+    """The document and line of what failed in an expression or script."""
+    place = expr.node.code_place(expr.attribute, error.line, error.column)
     return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"

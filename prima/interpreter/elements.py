@@ -290,10 +290,11 @@ class Subdialog(Item):
 
 @dataclass(slots=True)
 class Unit(Item):
-    """A unit around form items (U5), with the devices of all its content."""
+    """A unit around form items (U5), with the devices and Commands of all its content."""
 
     items: list[Item] = field(default_factory=list)
     devices: frozenset[str] = frozenset()
+    types: tuple[str, ...] = ()
     longest: int = 60000
 
 
@@ -381,4 +382,21 @@ def run_commands(steps: list[StepTemplate]) -> list[CommandTemplate]:
             found += run_commands(step.what.steps)
         else:
             found.append(step.what)
+    return found
+
+
+def unit_commands(unit: Unit) -> list[CommandTemplate]:
+    """All Commands in a unit, those of its fields' and its own handlers included."""
+    found: list[CommandTemplate] = []
+    contents: list[list[Act]] = [handler.content for handler in unit.handlers]
+    for item in unit.items:
+        contents += [handler.content for handler in item.handlers]
+        if isinstance(item, Block):
+            contents.append(item.content)
+        elif isinstance(item, Field):
+            contents += [part.content for part in item.filled]
+    for content in contents:
+        for act in all_acts(content):
+            if isinstance(act, Run):
+                found += run_commands(act.steps)
     return found

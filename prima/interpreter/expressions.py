@@ -122,10 +122,11 @@ SCOPES = ("application", "document", "dialog", "local")
 class ScriptError(Exception):
     """An expression or script failed; becomes ``error.semantic`` in the application."""
 
-    def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
+    def __init__(self, message: str, places: list[tuple[int, int]] | None = None) -> None:
         super().__init__(message)
-        self.line = line
-        self.column = column
+        self.places = places or []
+        """Lines and columns of the functions that were being called, innermost first."""
+        self.line, self.column = self.places[-1] if self.places else (0, 0)
 
 
 def _script_error(error: Exception) -> ScriptError:
@@ -138,9 +139,13 @@ def _script_error(error: Exception) -> ScriptError:
         message = "it threw null, or used too much memory"
     elif "out of memory" in message or message == "" or "string too long" in message:
         message = "it used too much memory"
-    place = re.search(r"<input>:(\d+):(\d+)", text)
-    line, column = (int(place[1]), int(place[2])) if place else (0, 0)
-    return ScriptError(message, line, column)
+    elif message.startswith("(Failed obtaining"):
+        message = "it threw a value that cannot be shown"
+    elif message == "[object Object]":
+        message = "it threw an object that is no Error"
+    # The outermost place is in this code; inner ones may be in a function declared elsewhere.
+    found = re.findall(r"<input>:(\d+):(\d+)", text)
+    return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
 
 
 class Engine:
@@ -316,7 +321,12 @@ class Engine:
             args = ",".join(f"{name[0:2]}_" for name in SCOPES)
             body = f"(function({args},$$){{{withs}{{(function(){{\n{code}\n;{exports}}})()}}}})"
             function = self._compiled[key] = self._call(self._context.eval, body)
-        self._call(function, *scopes, scope)
+        try:
+            self._call(function, *scopes, scope)
+        except ScriptError as error:
+            if len(error.places) > 1:  # the outermost function is ours
+                error.line, error.column = error.places[-2]
+            raise
 
     @staticmethod
     def _bounded(text: str) -> str:
@@ -365,9 +375,13 @@ def _check(context: Any, code: str, body: str, before: int) -> None:
         place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", str(error))
         if place:
             line, column = max(int(place[0][0]) - 2 - before, 1), int(place[0][1])
-            lines = code.splitlines()
-            if lines and line > len(lines):  # it ends too early: say so where it ends
+            lines = code.split("\n")
+            if line > len(lines):
+                failure = ScriptError("it ends too early")
                 line, column = len(lines), len(lines[-1]) + 1
+            else:  # the engine counts bytes
+                seen = lines[line - 1].encode()[: column - 1]
+                column = len(seen.decode(errors="ignore")) + 1
             failure.line, failure.column = line, column
         raise failure from None
 

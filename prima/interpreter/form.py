@@ -232,6 +232,7 @@ class Algorithm:
                 cause,
                 source(unit.node),
                 self.owner.connects(frame),
+                unit.types,
             )
         )
         frame.connected = True

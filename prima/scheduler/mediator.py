@@ -9,7 +9,7 @@ applications) and the chronicle's records.
 from __future__ import annotations
 
 from prima.messages import CloseUnit, Command, LeaveState, Notice, OpenUnit, Order, Request
-from prima.scheduler.behavior import Application, Behavior, Run, Stream
+from prima.scheduler.behavior import NO_DEVICES, Application, Behavior, Run, Stream
 from prima.scheduler.endings import Told
 from prima.scheduler.failures import Failures, allowance
 from prima.scheduler.intake import Refused, check_steps, link, parent_of, substitute
@@ -58,7 +58,7 @@ class Mediator(Failures):
                     source=command.source,
                 )
         try:
-            check_steps(asked.steps, app, self._maker.table)
+            check_steps(asked.steps, app, self._maker.table, unit=asked.unit in app.units)
         except Refused as refused:
             self._refuse(app, asked, refused)
             return
@@ -85,6 +85,7 @@ class Mediator(Failures):
         """U5: a unit that spans questions is requested like an AB of its own."""
         app = self.memory.apps[name]
         stream, parent = self._place(app, asked.cause, None)
+        asked.devices |= self._devices_of(asked.types)
         unit = self._maker.spanning(app, stream, asked, self._now())
         app.units[asked.unit] = unit
         self._root(unit, parent, asked.cause)
@@ -92,6 +93,17 @@ class Mediator(Failures):
         self.memory.add(unit)
         self.chronicle.request(unit)
         app.latest = unit
+
+    def _devices_of(self, types: tuple[str, ...]) -> frozenset[str]:
+        """The devices of Commands as this robot does them, substitutes included (X6)."""
+        table, devices = self._maker.table, NO_DEVICES
+        for name in types:
+            row = table.get(name)
+            if row is not None and row.substitute and self._selector.policy.has("x6"):
+                row = table[row.substitute]
+            if row is not None and not row.substitute:
+                devices |= row.devices
+        return devices
 
     def close_unit(self, name: str, asked: CloseUnit) -> None:
         """U5: the unit is left; what runs in it finishes, the rest is deleted."""

@@ -181,11 +181,13 @@ class Selector:
             for other_rank, other in lower
             if other.devices & ab.devices or self.policy.refusal(other, self.memory)
         ]
+        # Of several reactions that the floor would let in, it is their rank that decided.
+        rivals = [other for _, other in losers if reaction is not None and other.reaction]
         if not self.policy.exclusive:
             rule = "none"
         elif composed:
             rule = "X5"
-        elif by_floor_rule and self.policy.floor:
+        elif by_floor_rule and self.policy.floor and not rivals:
             rule = "F2"
         elif losers:
             pairs = zip(self.policy.rules, rank, losers[0][0], strict=True)

@@ -132,7 +132,9 @@ class Person:
             case "say":
                 self.robot.speech_begins(now)
                 script.speaking = doing.text
-                script.time = now + voice.duration(doing.text, "", self.robot.profile.voices)
+                script.time = now + voice.duration(
+                    doing.text, voice.language(doing.text), self.robot.profile.voices
+                )
             case "touch":
                 sensor = values["sensor"]
                 return [Occurred(f"touch.{sensor}", "user", {"sensor": sensor})]

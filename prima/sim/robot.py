@@ -543,6 +543,6 @@ class Robot:
 
     def speech_over(self, now: int) -> None:
         """The user has spoken and nobody took it as the answer: listen on."""
-        task = self._question()
-        if task is not None and task.listening and task.ends is None:
-            task.ends = now + max(int(task.command.args["timeout"]), 1)
+        for task in self.tasks.values():
+            if task.command.type == "q-and-a" and task.listening and task.ends is None:
+                task.ends = now + max(int(task.command.args["timeout"]), 1)

@@ -53,3 +53,11 @@ def beginning(text: str, lang: str, share: float) -> str:
         if not after.strip() or not (text[index].isascii() and after.isascii()):
             cut = index + 1
     return text[:cut].strip()
+
+
+def language(text: str) -> str:
+    """The language of an utterance that has no tag, as far as its letters tell; else nothing."""
+    names = {unicodedata.name(letter, "").partition(" ")[0] for letter in text}
+    if names & {"HIRAGANA", "KATAKANA"}:
+        return "ja"
+    return "ko" if "HANGUL" in names else ""
