@@ -181,6 +181,10 @@ def load_scenario(path: str | Path) -> Loaded:
         except DocumentError as error:
             problems += error.problems
     place = scenario.node.attribute_place("policy")
+    if world is not None and scenario.entrances and not world.areas:
+        place = scenario.node.attribute_place("entrances")
+        message = f'The world "{world.id}" has no <area> that offers an application.'
+        problems.append(Problem(place, "error", "no-such-name", message))
     try:
         policy_named(scenario.policy)
     except UsageError as error:

@@ -144,7 +144,7 @@ def validate(files: tuple[str, ...], form: str) -> None:
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
-@click.option("--why", is_flag=True, help="Print the rule that put each row there.")
+@click.option("--why", "--explain", is_flag=True, help="Print the rule that put each row there.")
 @_format
 def run(
     scenario: str, output: str | None, policy: str | None, bound: int | None, why: bool, form: str
@@ -249,7 +249,7 @@ def _start_watchdog() -> None:
 
 @cli.command()
 @click.argument("transcript", type=click.Path())
-@click.option("--why", is_flag=True, help="Print the rule that put each row there.")
+@click.option("--why", "--explain", is_flag=True, help="Print the rule that put each row there.")
 def show(transcript: str, why: bool) -> None:
     """Print a transcript as the table that people read.
 

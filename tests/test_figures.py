@@ -208,7 +208,7 @@ def told(rows: list[Row]) -> list[Told]:
     made: list[Told] = []
     started: set[tuple[str, str]] = set()
     for row in rows:
-        if row.kind in ("note", "load", "unload") or row.resumed:
+        if row.kind in ("note", "load", "unload", "enters", "leaves") or row.resumed:
             continue
         if row.kind in ("speak", "q-and-a"):
             made.append(("says", row.app, row.what.strip('"')))

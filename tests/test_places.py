@@ -67,6 +67,7 @@ def play(
     **others: str,
 ) -> api.Transcript:
     (folder / "world.xml").write_text(WORLD.format(areas=areas))
+    scenario = scenario or ('entrances="open"' if areas else "")
     (folder / "robot.xml").write_text(ROBOT.format(more=more))
     named = {f"app{index}": text for index, text in enumerate(apps)}
     for name, text in {**named, **others}.items():
@@ -146,7 +147,9 @@ def test_streams_of_what_is_left_end_in_order_and_the_fa_goes_on(tmp_path: Path)
 
 
 @pytest.mark.parametrize(
-    ("scenario", "beside"), [('entrances="closed"', ()), ("", ("shop",))], ids=["closed", "named"]
+    ("scenario", "beside"),
+    [('entrances="closed"', ()), ('entrances="open"', ("shop",))],
+    ids=["closed", "named"],
 )
 def test_a_scenario_may_say_itself_what_runs(
     tmp_path: Path, scenario: str, beside: tuple[str, ...]
@@ -240,7 +243,7 @@ def test_x6_the_same_ea_runs_on_robots_that_differ(tmp_path: Path) -> None:
         return whats(play(tmp_path, POINTER, more=more, policy=policy))[1:-1]
 
     assert said(ARM, "prima") == ["Point by Hand (toward far)", '"Over there."']
-    assert said(LASER, "prima+x6") == ["Point by laser (toward far)", '"Over there."']
+    assert said(LASER, "prima+x6") == ["Point by Laser (toward far)", '"Over there."']
     assert '"I cannot point."' in said(LASER, "prima")
 
 

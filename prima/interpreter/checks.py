@@ -89,6 +89,8 @@ def check_commands(
                 if known
                 else f'This robot has no Command "{command.type}".'
             )
+            if row is not None:
+                message += f" With the extension x6 {row.substitute} takes its place."
             hint = "" if known else did_you_mean(command.type, commands)
             severity: Severity = "warning" if known else "error"
             problems.append(

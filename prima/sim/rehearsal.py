@@ -176,6 +176,7 @@ class Rehearsal:
 
     def _due(self) -> int | None:
         times = [
+            0 if self.cast.offers and not self.made else None,
             self._loads[0][0] if self._loads else None,
             self.robot.due(),
             self.person.due(),

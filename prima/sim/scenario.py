@@ -402,8 +402,10 @@ def read_scenario(file: str, data: bytes) -> Scenario:
     applications = [
         (node.get("src"), reader.get(node, "start") or 0, node) for node in root.all("application")
     ]
-    if not applications:
-        reader.problem(root, "missing-element", "The scenario runs no <application>.")
+    if not applications and root.get("entrances") != "open":
+        message = "The scenario runs no <application>."
+        remedy = 'Name one, or write entrances="open" to take up what the world offers.'
+        reader.problem(root, "missing-element", message, "", remedy)
     person = people[0] if people else None
     point: Point | None = None
     if person is not None:
@@ -417,7 +419,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         robot=root.get("robot"),
         until=600_000 if (until := reader.get(root, "until")) is None else until,
         policy=root.get("policy", "prima"),
-        entrances=root.get("entrances", "open") == "open",
+        entrances=root.get("entrances") == "open",
         robot_at=robots[0].get("at") if robots else "",
         robot_heading=(
             reader.get(robots[0], "heading")

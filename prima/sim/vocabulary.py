@@ -278,7 +278,7 @@ SCENARIO = Vocabulary(
                     "entrances",
                     "text",
                     "whether the robot takes up the applications that the world's areas offer",
-                    default="open",
+                    default="closed",
                     choices=("open", "closed"),
                 ),
             ),

@@ -11,6 +11,8 @@ from prima.messages import Record
 
 LONGEST_SHOWN = 5000
 """Letters of a row that are printed."""
+SMALL = frozenset({"a", "an", "and", "at", "by", "for", "of", "on", "the", "to", "with"})
+"""Words of a title that have no capital."""
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
@@ -146,7 +148,7 @@ def describe(
 ) -> str:
     """A Command in words: what it says, or its title and what it was given."""
     row = TABLE_4_2.get(command)
-    title = row.title if row else command.replace("-", " ").capitalize()
+    title = row.title if row else " ".join(map(_capital, command.split("-")))
     if command in ("speak", "q-and-a") and text:
         return f'"{text}"'
     if command == "q-and-a":
@@ -163,6 +165,10 @@ def describe(
         for name, value in given.items()
     )
     return title + (f" ({shown})" if shown else "") + (f', saying "{text}"' if text else "")
+
+
+def _capital(word: str) -> str:
+    return word if word in SMALL else word[:1].upper() + word[1:]
 
 
 def _value(value: object) -> str:
