@@ -16,12 +16,14 @@ check: $(VENV)/.dev
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m prima.reference --check
+	$(BIN)/python -m prima.pictures --check
 
 bench: $(VENV)/.bench
 	$(BIN)/python -m bench.run
 
 schemas: $(VENV)/.dev
 	$(BIN)/python -m prima.reference
+	$(BIN)/python -m prima.pictures
 
 build: $(VENV)/.dev
 	$(BIN)/python -m build --wheel

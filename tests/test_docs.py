@@ -102,6 +102,27 @@ def stage(page: Path, folder: Path) -> None:
             )
 
 
+def save(example: Example, folder: Path) -> None:
+    """Write a named file when the page comes to it, as a reader does.
+
+    A part takes the place of the element with the same tag and id or name; if there
+    is none, it is added at the document's end.
+    """
+    path, part = folder / example.name, example.text
+    if not example.complete:
+        whole = path.read_text(encoding="utf-8")
+        start = re.match(r"\s*(<([\w-]+)(?: (?:id|name)=\"[^\"]*\")?)", part)
+        assert start, str(example)
+        old = re.compile(
+            rf"^ *{re.escape(start[1])}(?=[\s>]).*?</{start[2]}>\n", re.DOTALL | re.MULTILINE
+        )
+        end = whole.rindex("</")
+        found = old.search(whole)
+        at = found.span() if found else (end, end)
+        part = whole[: at[0]] + part + whole[at[1] :]
+    path.write_text(part, encoding="utf-8")
+
+
 def run(words: list[str], folder: Path) -> tuple[int, list[str]]:
     paths = [
         sorted(path.relative_to(folder).as_posix() for path in folder.glob(word))
@@ -144,6 +165,8 @@ def test_complete_examples_are_valid(page: Path, tmp_path: Path) -> None:
 def test_commands_give_what_is_shown(page: Path, tmp_path: Path) -> None:
     stage(page, tmp_path)
     for example in examples(page):
+        if example.language == "xml" and example.name:
+            save(example, tmp_path)
         if example.language not in ("", "console", "sh", "bash", "shell"):
             continue
         for shown in commands(example):

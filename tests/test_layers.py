@@ -22,7 +22,7 @@ LAYERS = [
     {"sim", "replay"},
     {"api"},
     {"study"},
-    {"cli", "__init__", "reference"},
+    {"cli", "__init__", "reference", "pictures"},
     {"__main__"},
 ]
 """Lowest first; parts of one layer do not know each other."""
