@@ -440,8 +440,9 @@ def _reason(record: Record, row: Row) -> str:
         return ""
     if phase == "decision" and record.get("winner") in (row.behavior, row.unit):
         unit = f"the unit {row.unit} is " if record["winner"] == row.unit else ""
-        lost = ", ".join(record["losers"]) or "nobody"
-        return f"{unit}selected by rule {record['rule']} before {lost} ({record['losers_count']} in all)."
+        lost, count = ", ".join(record["losers"]), record["losers_count"]
+        before = f"before {lost} ({count} in all)" if lost else "; nothing competed with it"
+        return f"{unit}selected by rule {record['rule']} {before}.".replace(" ;", ";")
     about = (record.get("behavior") or "").partition(".")[0]
     if about not in (base, row.unit) or not about:
         return ""

@@ -130,9 +130,10 @@ def validate(files: tuple[str, ...], form: str) -> None:
         _tell(f"prima: {message}")
     errors = sum(problem.severity == "error" for problem in problems)
     if form == "text" and not unread:
-        warnings = len(problems) - errors
-        counts = f"errors: {errors}, warnings: {warnings}" if problems else "no problems"
-        _tell(f"files: {len(files)}; {counts}")
+        notes = sum(problem.severity == "note" for problem in problems)
+        warnings = len(problems) - errors - notes
+        counts = f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
+        _tell(f"files: {len(files)}; {counts}" + (f", notes: {notes}" if notes else ""))
     if unread or errors:
         raise Exit(2 if unread else 1)
 
@@ -163,7 +164,8 @@ def run(
     if output is not None and _is_source(output, scenario, loaded.files):
         raise UsageError(f"{output}: this is one of the run's own documents; write elsewhere.")
     for problem in loaded.problems:
-        _tell(str(problem))
+        if problem.severity != "note":
+            _tell(str(problem))
     _start_watchdog()
     if output is not None:
         transcript = _run_into(
@@ -329,6 +331,28 @@ def explain(what: str, row: int | None) -> None:
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
     else:
         _print(api.explain_row(api.read(what), row))
+
+
+@cli.command()
+@click.argument("folder", type=click.Path())
+def documents(folder: str) -> None:
+    """Copy the documents that come with PRIMA to a new FOLDER, to read, run and change.
+
+    \b
+    prima documents my-robot
+    prima run my-robot/scenarios/follow-during-navigation.xml
+    """
+    import shutil
+
+    from prima import api
+
+    try:
+        shutil.copytree(api.documents_folder(), folder)
+    except FileExistsError:
+        raise UsageError(f"{folder}: is there already; name a new folder.") from None
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be written: {error.strerror}.") from None
+    _tell(f"{folder}: applications, worlds, robots and scenarios")
 
 
 @cli.command()

@@ -67,6 +67,11 @@ CODES: dict[str, str] = {
     " into pieces at semantic breakpoints (thesis 4.5).",
     "shared-device": "Branches of a par that need one device cannot run at once: they run one after"
     " the other, in document order (rule U3).",
+    "hold-price": "A stream hint (rule X3) keeps other applications out while this one waits for an event:"
+    " all but their reactions wait for as long as hold-for says, after each last Command of the"
+    " state. The note tells this price; it counts only in a run with the extension x3.",
+    "idle-hint": "A hint that can never have an effect: hold-for without stream, or a stream held in a"
+    " state that handles no event to wait for, or that asks for no Command.",
     "endless": "The Command goes on for ever, and the state handles no event that could end it;"
     " another application's equal behaviours may starve (rule E4).",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 MANY_LETTERS, MANY_WORDS = 60, 300
 """Beyond these no guess is made at what was meant: it would take too long."""
 
-Severity = Literal["error", "warning"]
+Severity = Literal["error", "warning", "note"]
 
 
 class Place(NamedTuple):

@@ -31,7 +31,8 @@ def prima(*args: str | Path, cwd: Path | None = None) -> subprocess.CompletedPro
 def test_what_the_readme_promises(tmp_path: Path) -> None:
     documents = sorted((ROOT / "documents").glob("*a/*.xml"))
     checked = prima("validate", *documents)
-    assert (checked.returncode, checked.stdout) == (0, "")
+    assert checked.returncode == 0
+    assert all(": note: " in line for line in checked.stdout.splitlines())
     mediated, fifo = tmp_path / "mediated.jsonl", tmp_path / "fifo.jsonl"
     assert prima("run", DEMO, "-o", mediated).returncode == 0
     assert prima("run", DEMO, "--policy", "fifo", "-o", fifo).returncode == 0
@@ -219,3 +220,31 @@ def test_a_wheel_holds_schemas_and_documents_and_works_from_any_folder(tmp_path:
         "assert len(prima.rehearse(path).rows()) > 20\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)
+
+
+def test_the_documents_are_copied_to_a_new_folder_and_run_there(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    assert prima("documents", folder).returncode == 0
+    ran = prima("run", folder / "scenarios" / "touched-on-the-way.xml")
+    assert ran.returncode == 0
+    again = prima("documents", folder)
+    assert (again.returncode, "is there already" in again.stderr) == (2, True)
+
+
+def test_the_price_of_a_held_stream_is_told(tmp_path: Path) -> None:
+    checked = prima("validate", ROOT / "documents" / "fa" / "video-timer.xml")
+    assert checked.returncode == 0
+    assert "waits up to 30 s" in checked.stdout
+    assert "notes: 1" in checked.stderr
+
+
+def test_a_hint_that_can_have_no_effect_is_told(tmp_path: Path) -> None:
+    document = tmp_path / "a.xml"
+    document.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">'
+        '<form id="f" hold-for="3s"><block><goto next="#g"/></block></form>'
+        '<form id="g" stream="hold"><block><speak>Hm.</speak><exit/></block></form></prima>'
+    )
+    checked = prima("validate", document)
+    assert checked.returncode == 0
+    assert checked.stdout.count("[idle-hint]") == 2

@@ -185,6 +185,7 @@ class Checker:
     def check(self) -> None:
         """Check everything."""
         self._targets()
+        self._hints()
         self._reachable()
         self._names()
         self._expressions()
@@ -260,6 +261,30 @@ class Checker:
                 leads = self._leads(self.document.forms[name])
                 waiting += sorted(leads.targets | (leads.calls if calls else set()))
         return reached
+
+    def _hints(self) -> None:
+        """X3: what a held stream costs others, and hints that can have no effect."""
+        for form in self.document.forms.values():
+            for one in (form, *all_items(form.items)):
+                node = one.node
+                if "hold-for" in node.attributes and "stream" not in node.attributes:
+                    message = "hold-for says how long, but nothing is held."
+                    self.note(
+                        node, "idle-hint", message, 'Add stream="hold".', "hold-for", "warning"
+                    )
+                if one.hold is None or "stream" not in node.attributes:
+                    continue
+                handlers = (*form.handlers, *self.document.handlers)
+                if not (handlers or form.watches or form.links or self.document.links):
+                    message = "The stream is held, but there is no event to wait for here."
+                    remedy = 'Handle the event with <on event="...">.'
+                    self.note(node, "idle-hint", message, remedy, "stream", "warning")
+                else:
+                    message = (
+                        f"With the extension x3 another application waits up to {one.hold / 1000:g} s"
+                        " for each event awaited here, unless it reacts to one itself."
+                    )
+                    self.note(node, "hold-price", message, "", "stream", "note")
 
     def _reachable(self) -> None:
         forms = self.document.forms

@@ -154,12 +154,16 @@ class Engine:
     evaluations = 0
     """How many evaluations have begun in this process, odd while one runs: a watchdog reads it."""
 
-    def __init__(self) -> None:
+    def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
         context = quickjs.Context()
         context.set_memory_limit(MEMORY_LIMIT)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         self._context = context
+        self._scopes = scopes
+        names = [_short(name) for name in scopes]
+        self._names = ",".join(names)
+        self._withs = "".join(f"with({name})" for name in names)
         self.spent = 0.0
         """Seconds of evaluations since the owner last set it to nought."""
         self._compiled: dict[str, Any] = {}
@@ -198,9 +202,8 @@ class Engine:
         return function
 
     def _compile(self, body: str) -> Any:
-        withs = "".join(f"with({name[0:2]}_)" for name in SCOPES)
-        names = ",".join(f"{name[0:2]}_" for name in SCOPES)
-        return self._call(self._context.eval, f"(function({names}){{{withs}{{{body}}}}})")
+        code = f"(function({self._names}){{{self._withs}{{{body}}}}})"
+        return self._call(self._context.eval, code)
 
     def scope(self, **values: Json) -> Scope:
         """A new, empty scope object."""
@@ -302,7 +305,7 @@ class Engine:
         function = self._compiled.get(key)
         if function is None:
             check_expression(self._context, code)
-            function = self._compiled[key] = self._compile(_assignment(name, code))
+            function = self._compiled[key] = self._compile(_assignment(name, code, self._scopes))
         self._call(function, *scopes)
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
@@ -317,9 +320,8 @@ class Engine:
             names = sorted(declared_names(code))
             exports = "".join(f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in names)
             check_script(self._context, code)
-            withs = "".join(f"with({name[0:2]}_)" for name in SCOPES)
-            args = ",".join(f"{name[0:2]}_" for name in SCOPES)
-            body = f"(function({args},$$){{{withs}{{(function(){{\n{code}\n;{exports}}})()}}}})"
+            inner = f"(function(){{\n{code}\n;{exports}}})()"
+            body = f"(function({self._names},$$){{{self._withs}{{{inner}}}}})"
             function = self._compiled[key] = self._call(self._context.eval, body)
         try:
             self._call(function, *scopes, scope)
@@ -335,12 +337,17 @@ class Engine:
         return text
 
 
-def _assignment(name: str, code: str) -> str:
+def _short(scope: str) -> str:
+    """The name of a scope's parameter; their first two letters tell scopes apart."""
+    return f"{scope[0:2]}_"
+
+
+def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
     """The body of an assignment that fails where the variable is not declared."""
     head, dot, rest = name.partition(".")
-    where = [f"{scope[0:2]}_" for scope in reversed(SCOPES)]
-    if dot and head in SCOPES:
-        where, head = [f"{head[0:2]}_"], rest.partition(".")[0]
+    where = [_short(scope) for scope in reversed(scopes)]
+    if dot and head in scopes:
+        where, head = [_short(head)], rest.partition(".")[0]
     declared = " || ".join(f"{json.dumps(head)} in {scope}" for scope in where)
     missing = json.dumps(f'the variable "{name}" is not declared')
     target = f"{where[0]}.{rest}" if len(where) == 1 else name

@@ -60,9 +60,11 @@ class _Tree:
     begun: bool = False
     engaged: bool = False
     broken_by: str = ""
-    """The stream that has come in between since it last did something, if any."""
+    """The application that has come in since it last did something, if any."""
     by_reaction: bool = False
     left_by: set[str] = field(default_factory=set)
+    started: float = 0.0
+    """When something of it started last."""
     reacting: float = -1.0
     """When a reaction of it started last."""
 
@@ -73,6 +75,7 @@ class _Wait:
 
     talked: bool
     """Whether it was or has been doing something for the user: else nobody notices."""
+    since: float
     broken: bool = False
     """Whether another application came in, by no reaction."""
 
@@ -93,6 +96,8 @@ class Observer:
         self._delays: dict[tuple[str, int], Delay] = {}
         self._waits: dict[tuple[str, str], _Wait] = {}
         """Applications that wait for a service's answer, by application and service."""
+        self._answered: dict[int, str] = {}
+        """Answers to waits that were broken, by their serial number, until they are taken up."""
 
     def add(self, record: Record) -> None:
         """Take in one record."""
@@ -108,10 +113,9 @@ class Observer:
             case "event":
                 self._event(record)
             case "send":
-                talking = any(
-                    tree.running for tree in self._trees.values() if tree.app == record["app"]
-                )
-                self._waits[record["app"], record["data"]["to"]] = _Wait(talking)
+                app = record["app"]
+                talking = any(tree.begun for tree in self._trees.values() if tree.app == app)
+                self._waits[app, record["data"]["to"]] = _Wait(talking, record["time"])
             case "collision":
                 self._collide(record)
             case "interrupt":
@@ -151,6 +155,9 @@ class Observer:
             seconds = round(record["time"] - event["time"], 3)
             delay = Delay(event["event"], record["cause"], app, seconds)
             self._delays.setdefault((app, record["cause"]), delay)
+        if self._answered.get(record.get("cause") or 0) == record["app"]:
+            del self._answered[record["cause"]]
+            self.found.broken_waiting += 1
         if record.get("reactive"):
             tree.reacting = record["time"]
         if record.get("text"):
@@ -166,7 +173,7 @@ class Observer:
         if tree.broken_by:
             self.found.broken += not tree.by_reaction
             tree.broken_by = ""
-        tree.begun = True
+        tree.begun, tree.started = True, record["time"]
         tree.running.add(name)
         tree.engaged = tree.engaged or bool(request.get("engages"))
 
@@ -176,9 +183,13 @@ class Observer:
             if other.app == tree.app or other.broken_by or not other.begun:
                 continue
             if other.pending and not other.running:
-                other.broken_by, other.by_reaction = tree.name, tree.reacting >= 0
+                other.broken_by = tree.app
+                # A stream that only goes on where the other had come in breaks nothing.
+                back = tree.broken_by == other.app
+                other.by_reaction = back or tree.reacting >= other.started
         for (app, _), wait in self._waits.items():
-            wait.broken = wait.broken or (wait.talked and app != tree.app and tree.reacting < 0)
+            broken = wait.talked and app != tree.app and tree.reacting < wait.since
+            wait.broken = wait.broken or broken
 
     def _leave(self, tree: _Tree, behavior: str) -> None:
         """The robot goes away: is another application in the middle of a conversation?"""
@@ -210,8 +221,8 @@ class Observer:
         for kind in ("reply.", "error.service."):
             service = name.removeprefix(kind)
             wait = self._waits.pop((record.get("app") or "", service), None)
-            if name.startswith(kind) and wait is not None:
-                self.found.broken_waiting += wait.broken
+            if name.startswith(kind) and wait is not None and wait.broken:
+                self._answered[record["serial"]] = record["app"]
 
     def _collide(self, record: Record) -> None:
         name = record["behavior"].partition(".")[0]

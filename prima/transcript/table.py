@@ -48,13 +48,22 @@ def make_rows(records: Iterable[Record]) -> list[Row]:
     handled = {record["cause"] for record in held if record.get("cause")}
     asked = {record["behavior"]: record for record in held if record["phase"] == "request"}
     rows: list[Row] = []
+    collided: set[tuple[str, str]] = set()
     for record in held:
         row = _row(record, asked, handled)
+        if record["phase"] == "collision":
+            pair = (_base(record["behavior"]), _base(record.get("by") or ""))
+            row = None if pair in collided else row  # loops collide at every turn
+            collided.add(pair)
         if row is not None:
             row.number = len(rows)
             rows.append(row)
     _bracket(rows)
     return rows
+
+
+def _base(behavior: str) -> str:
+    return behavior.partition(".")[0]
 
 
 def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | None:
