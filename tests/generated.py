@@ -11,15 +11,16 @@ alone, so that shrinking one part of a play does not change the others.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import count
 from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
 
-from prima.commands import TABLE_4_2
+from prima.commands import TABLE_4_2, CommandType
 from prima.interpreter.reader import read_document
 from prima.messages import (
     CloseUnit,
@@ -28,6 +29,7 @@ from prima.messages import (
     Ended,
     Failed,
     Group,
+    Halted,
     Heard,
     Inbound,
     LeaveState,
@@ -44,13 +46,48 @@ from prima.messages import (
 )
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator
-from prima.scheduler.selection import policy_named
+from prima.scheduler.selection import EXTENSIONS, policy_named
 from prima.session import Session
 from prima.transcript.lines import line
 
 STEPS = 600
 """Instants that a run may have; more is a run cut off, which is no fault as such."""
 APPS = ("fa", "ea", "xa")
+
+
+def _own(name: str, *devices: str) -> CommandType:
+    """A motion that the robot's maker has added: it is faithful to its own path (X5)."""
+    return CommandType(name, name.title(), "", frozenset(devices), motion="faithful")
+
+
+DANCES = ("dance", "spin", "waltz")
+TABLE: Mapping[str, CommandType] = {
+    **TABLE_4_2,
+    "dance": _own("dance", "locomotion", "neck", "arm"),
+    "spin": _own("spin", "locomotion"),
+    "waltz": _own("waltz", "locomotion", "localization"),
+}
+"""The robot's Commands: Table 4.2 and what its maker has added."""
+
+
+def without_arm() -> Mapping[str, CommandType]:
+    """The Commands of a robot that has a laser where others have an arm (X6)."""
+    hand = TABLE["point-by-hand"]
+    laser = replace(hand, name="point-by-laser", title="Laser", devices=frozenset({"laser"}))
+    lacking = replace(hand, substitute=laser.name)
+    return {**TABLE, laser.name: laser, hand.name: lacking}
+
+
+LACKING = without_arm()
+
+baselines = st.sampled_from(("fifo", "fair", "fixed", "fixed:ea", "none"))
+extended: st.SearchStrategy[str] = st.one_of(
+    st.sets(st.sampled_from(EXTENSIONS), min_size=1).map(
+        lambda names: "+".join(("prima", *sorted(names)))
+    ),
+    st.just("prima+all"),
+)
+"""``prima`` with some of the extensions."""
 
 # The world --------------------------------------------------------------------
 
@@ -66,6 +103,13 @@ class World:
     """Of a hundred questions, how many nobody answers, or not so that they understand."""
     endless: bool = False
     """Whether a tracking never reaches its goal."""
+    lacks: bool = False
+    """Whether the robot has a laser instead of an arm (X6)."""
+
+    @property
+    def table(self) -> Mapping[str, CommandType]:
+        """What the robot can do."""
+        return LACKING if self.lacks else TABLE
 
 
 class Devices:
@@ -73,13 +117,14 @@ class Devices:
 
     def __init__(self, world: World) -> None:
         self.world = world
-        self.agenda: list[tuple[int, int, Inbound]] = []
-        self.tasks: set[str] = set()
+        self.agenda: list[tuple[int, int, Inbound, int]] = []
+        self.tasks: dict[str, int] = {}
+        """What the robot does, and which of its tasks that is: an AB may start again."""
         self.starts: list[str] = []
         self._serial = count()
 
-    def plan(self, time: int, value: Inbound) -> None:
-        heapq.heappush(self.agenda, (time, next(self._serial), value))
+    def plan(self, time: int, value: Inbound, task: int = -1) -> None:
+        heapq.heappush(self.agenda, (time, next(self._serial), value, task))
 
     def due(self) -> int | None:
         return self.agenda[0][0] if self.agenda else None
@@ -88,52 +133,73 @@ class Devices:
         """What happens now; what an aborted AB would have reported does not."""
         found: list[Inbound] = []
         while self.agenda and self.agenda[0][0] <= now:
-            value = heapq.heappop(self.agenda)[2]
-            if isinstance(value, Ended | Failed | Listening) and value.behavior not in self.tasks:
-                continue
-            if isinstance(value, Ended | Failed):
-                self.tasks.discard(value.behavior)
+            _, _, value, task = heapq.heappop(self.agenda)
+            if isinstance(value, Ended | Failed | Listening):
+                if self.tasks.get(value.behavior) != task:
+                    continue
+                if not isinstance(value, Listening):
+                    del self.tasks[value.behavior]
             found.append(value)
         return found
 
     def order(self, now: int, order: Order) -> None:
-        if order.verb == "abort":
-            self.tasks.discard(order.behavior)
-        elif order.verb == "start":
-            self.starts.append(order.behavior)
-            self.tasks.add(order.behavior)
-            self._begin(now, order)
-        elif order.verb == "send":
-            dice = Random(f"{self.world.seed} {order.behavior}")
-            name = f"reply.{order.data['to']}"
-            self.plan(now + dice.randint(1, 2000), Occurred(name, app=order.app))
+        match order.verb:
+            case "abort":
+                self.tasks.pop(order.behavior, None)
+            case "interrupt":
+                self._halt(now, order.behavior)
+            case "start":
+                self.starts.append(order.behavior)
+                self.tasks[order.behavior] = len(self.starts)
+                self._begin(now, order)
+            case "send":
+                dice = Random(f"{self.world.seed} {order.behavior}")
+                name = f"reply.{order.data['to']}"
+                self.plan(now + dice.randint(1, 2000), Occurred(name, app=order.app))
+
+    def _halt(self, now: int, name: str) -> None:
+        """X2: tell how much was done, at once or when it may have started again."""
+        assert name in self.tasks, f"{name} is interrupted and does not run"
+        del self.tasks[name]
+        dice = Random(f"{self.world.seed} halt {name}")
+        done = dice.randint(0, 4) / 4
+        self.plan(now + dice.choice((1, 1, 40, 900)), Halted(name, {"done": done, "heard": "He"}))
 
     def _begin(self, now: int, order: Order) -> None:
-        assert order.command is not None
-        world, name = self.world, order.behavior
+        command = order.command
+        assert command is not None
+        world, name, task = self.world, order.behavior, self.tasks[order.behavior]
+        row = world.table[command.type]
         dice = Random(f"{world.seed} {name}")
-        lasts = dice.randint(1, 600 if TABLE_4_2[order.command.type].feedback else 3000)
+        lasts = dice.randint(1, 600 if row.feedback else 3000)
+        data = self._pose(name, command) if "locomotion" in order.devices else {}
         if dice.randrange(100) < world.fails:
             device = dice.choice(sorted(order.devices))
-            self.plan(now + lasts, Failed(name, device, "it fails"))
-        elif order.command.type == "q-and-a":
+            self.plan(now + lasts, Failed(name, device, "it fails"), task)
+        elif command.type == "q-and-a":
             self._ask(now, now + lasts, name, dice)
-        elif TABLE_4_2[order.command.type].feedback:
+        elif row.feedback:
             # The goal depends on the Command, not on the loop, so that it is reached for certain.
             loops = Random(f"{world.seed} {name.partition('.')[0]}").randint(1, 6)
-            endless = world.endless and order.command.type == "tracking-human"
-            self.plan(now + lasts, Ended(name, order.loop >= loops and not endless))
+            endless = world.endless and command.type == "tracking-human"
+            self.plan(now + lasts, Ended(name, order.loop >= loops and not endless, data), task)
         else:
-            self.plan(now + lasts, Ended(name))
+            self.plan(now + lasts, Ended(name, True, data), task)
+
+    def _pose(self, name: str, command: Command) -> dict[str, float]:
+        """Where the robot stands afterwards: where it was told to go, or anywhere (X1)."""
+        dice = Random(f"{self.world.seed} pose {name}")
+        anywhere = {"x": dice.choice((0.0, 3.0)), "y": 0.0, "heading": dice.choice((0.0, 90.0))}
+        return {key: float(command.args.get(key, value)) for key, value in anywhere.items()}
 
     def _ask(self, now: int, said: int, name: str, dice: Random) -> None:
-        later = said + dice.randint(1, 3000)
-        self.plan(said, Listening(name))
+        later, task = said + dice.randint(1, 3000), self.tasks[name]
+        self.plan(said, Listening(name), task)
         if dice.randrange(100) >= self.world.silent:
             self.plan(later, Heard(dice.choice(("yes", "no"))))
         elif dice.random() < 0.5:
             self.plan(later, Heard("mumble"))
-        self.plan(later + 1, Ended(name, True, {"outcome": "noinput"}))
+        self.plan(later + 1, Ended(name, True, {"outcome": "noinput"}), task)
 
 
 @dataclass
@@ -178,7 +244,7 @@ def perform(play: Play, policy: str = "prima", bound: int | None = None) -> Run:
         errors = [str(problem) for problem in problems if problem.severity == "error"]
         assert not errors, (errors, text)
         documents.append(document)
-    session = Session(documents, policy_named(policy), TABLE_4_2, bound)
+    session = Session(documents, policy_named(policy), play.world.table, bound)
     devices = Devices(play.world)
     for document, start in zip(documents, play.loads, strict=True):
         devices.plan(start, Loaded(document.id))
@@ -233,6 +299,9 @@ PLAIN = (
     '<point-by-hand angle="20"/>',
     '<gesture name="nod"/>',
 )
+MORE = (*PLAIN, *(f'<command type="{name}"/>' for name in DANCES))
+"""What may be asked for outside units too."""
+NESTED = '<iu><speak>In.</speak><turn angle="1"/></iu>'
 NOW = (
     "<stop-moving/>",
     '<speak order="now">Wait.</speak>',
@@ -249,6 +318,14 @@ LOOPS = (
 )
 HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}</on></speak>'
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
+
+
+HINTS = re.compile(r' (stream|hold-for|channel|restartable)="[^"]*"')
+
+
+def without_hints(play: Play) -> Play:
+    """The same play, but its applications tell the mediator nothing of what they would like."""
+    return replace(play, documents=tuple(HINTS.sub("", text) for text in play.documents))
 
 
 class Author:
@@ -293,12 +370,27 @@ class Author:
             self.handler(index, self.one((*EVENTS, "own", "end", "cancel", "error")))
             for _ in range(self.some(0, 2))
         )
-        return f'<form id="{self.forms[index]}">{items}{handlers}</form>'
+        hints = self.hold(4) + self.connect(4)
+        return f'<form id="{self.forms[index]}"{hints}>{items}{handlers}</form>'
+
+    def hold(self, of: int) -> str:
+        """X3: now and then the hint that the stream be kept open."""
+        return f' stream="hold" hold-for="{self.some(1, 6000)}ms"' if self.chance(of) else ""
+
+    def connect(self, of: int) -> str:
+        """X4: now and then the hint that the robot turn to the user first."""
+        return ' channel="connect"' if self.chance(of) else ""
+
+    def restart(self, text: str) -> str:
+        """X2: now and then the hint that a Command or unit may be interrupted."""
+        if not self.chance(3):
+            return text
+        return re.sub(r"^<[\w-]+", r'\g<0> restartable="true"', text)
 
     def item(self, index: int) -> str:
         kind = self.some(0, 5)
         if kind < 3:
-            return f"<block>{self.content(index, sends=True)}</block>"
+            return f"<block{self.hold(6)}>{self.content(index, sends=True)}</block>"
         if kind < 5:
             return self.question(index)
         return self.unit(index)
@@ -313,7 +405,9 @@ class Author:
             parts.append(f"<filled>{self.content(index, unit=unit)}</filled>")
         if self.chance(4):
             parts.append(self.handler(index, self.one(EVENTS), unit))
-        return f'<field name="q{next(self.fields)}" type="boolean">{"".join(parts)}</field>'
+        hints = self.hold(6) + self.connect(6)
+        name = f'name="q{next(self.fields)}" type="boolean"'
+        return f"<field {name}{hints}>{''.join(parts)}</field>"
 
     def unit(self, index: int) -> str:
         parts = []
@@ -379,8 +473,8 @@ class Author:
         if not unit and self.chance(3):
             return self.one(LOOPS)
         if self.chance(12):
-            return HOOKED.format(self.effortless())
-        return self.one(PLAIN)
+            return self.restart(HOOKED.format(self.effortless()))
+        return self.restart(self.one(MORE))
 
     def branch(self, unit: bool) -> str:
         if self.chance(3):
@@ -390,9 +484,10 @@ class Author:
     def group(self) -> str:
         inside = [self.one(PLAIN) for _ in range(self.some(1, 3))]
         if self.chance(3):
-            inside.append(f"<par>{self.one(PLAIN)}{self.one(PLAIN)}</par>")
+            second = self.one((*PLAIN, NESTED, NESTED, NESTED))
+            inside.append(f"<par>{self.one(PLAIN)}{second}</par>")
         longest = f' longest="{self.some(1, 3000)}ms"' if self.chance(4) else ""
-        return f"<iu{longest}>{''.join(inside)}</iu>"
+        return self.restart(f"<iu{longest}>{''.join(inside)}</iu>")
 
 
 @st.composite
@@ -414,13 +509,14 @@ def plays(draw: Any, lively: bool = False) -> Play:
         events.append((draw(st.integers(1, 8000)), Unloaded(draw(st.sampled_from(names)))))
     events.sort(key=lambda event: event[0])
     seed = draw(st.integers(0, 10_000))
-    world = World(seed)
+    world = World(seed, lacks=draw(st.integers(1, 5)) == 5)
     if not lively:
         world = World(
             seed,
             draw(st.sampled_from((0, 0, 5, 20))),
             draw(st.sampled_from((0, 30, 60))),
             draw(st.booleans()),
+            world.lacks,
         )
     return Play(documents, loads, tuple(events), world)
 
@@ -435,6 +531,9 @@ class Ask:
     whats: tuple[str | tuple[str, ...], ...]
     after: tuple[tuple[int, ...], ...]
     now: bool = False
+    hold: int | None = None
+    connect: bool = False
+    restartable: bool = False
 
 
 @dataclass(frozen=True)
@@ -474,6 +573,8 @@ class Script:
     events: tuple[tuple[int, tuple[tuple[Deed, ...], ...]], ...]
     emergencies: tuple[tuple[int, int, bool], ...]
     world: World
+    views: tuple[tuple[int, bool], ...] = ()
+    """When the camera comes to see the user, or loses him (V4, X4)."""
 
     def deeds(self) -> list[Deed]:
         """All that anybody may do."""
@@ -495,13 +596,15 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
 }
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
 GROUPED = tuple(name for name in PIECES if name != "q-and-a")
-ALL = tuple(TABLE_4_2)
+ALL = (*TABLE_4_2, *DANCES)
 
 
-def command(name: str, now: bool = False) -> Command:
-    """A Command of a type that is valid."""
-    text = "Hello." if TABLE_4_2[name].text == "required" else None
-    return Command(name, dict(ARGUMENTS.get(name, {})), text, now)
+def command(name: str, now: bool = False, restartable: bool = False) -> Command:
+    """A Command of a type that is valid; only what is one piece is ever restartable."""
+    row = TABLE[name]
+    text = "Hello." if row.text == "required" else None
+    restartable = restartable and not row.feedback and not row.now
+    return Command(name, dict(ARGUMENTS.get(name, {})), text, now, restartable=restartable)
 
 
 class Requester:
@@ -526,7 +629,9 @@ class Requester:
                     if not steps:
                         continue
                     number = next(self._numbers)
-                    asked = Request(number, steps, self.state, cause, self.unit)
+                    asked = Request(
+                        number, steps, self.state, cause, self.unit, deed.hold, deed.connect
+                    )
                     mediator.request(self.name, asked)
                     cause = None
                 case Open() if self.unit is None:
@@ -559,18 +664,19 @@ class Requester:
         for what, after in zip(asked.whats, asked.after, strict=True):
             names = (what,) if isinstance(what, str) else what
             if self.unit is not None and not all(
-                name in PIECES and TABLE_4_2[name].occupied(command(name).text) <= self.devices
+                name in PIECES and TABLE[name].occupied(command(name).text) <= self.devices
                 for name in names
             ):
                 return []
             if isinstance(what, str):
-                steps.append(Step(command(what, asked.now and not steps), after))
+                now = asked.now and not steps
+                steps.append(Step(command(what, now, asked.restartable), after))
             else:
                 inner = [
                     Step(command(name), (index - 1,) if index % 2 else ())
                     for index, name in enumerate(what)
                 ]
-                steps.append(Step(Group(inner, 4000), after))
+                steps.append(Step(Group(inner, 4000, restartable=asked.restartable), after))
         return steps
 
     def told(self, mediator: Mediator, notice: Notice) -> None:
@@ -584,7 +690,7 @@ class Requester:
 def drive(script: Script, policy: str = "prima") -> Run:
     """Run a script; it does what a session does, by rule V3."""
     chronicle = Chronicle()
-    mediator = Mediator(policy_named(policy), TABLE_4_2, chronicle)
+    mediator = Mediator(policy_named(policy), script.world.table, chronicle)
     apps = {
         name: Requester(name, windows) for name, windows in zip(APPS, script.windows, strict=False)
     }
@@ -594,6 +700,8 @@ def drive(script: Script, policy: str = "prima") -> Run:
     events = dict(enumerate(script.events, 1))
     for serial, (time, _) in events.items():
         devices.plan(time, Occurred("event", data={"serial": serial}))
+    for time, seen in script.views:
+        devices.plan(time, Occurred("human.found" if seen else "human.lost"))
     for pressed, lasts, resume in script.emergencies:
         devices.plan(pressed, Emergency(True))
         devices.plan(pressed + lasts, Emergency(False, resume))
@@ -635,8 +743,13 @@ def drive(script: Script, policy: str = "prima") -> Run:
                     if question is not None and question.listening:
                         mediator.orders.append(Order("abort", question.id))
                         mediator.ended(question.id, True, {"outcome": "filled"}, inbound=False)
+                case Halted():
+                    mediator.interrupted(value.behavior, value.data)
                 case Emergency():
                     mediator.emergency(value.pressed, value.resume)
+                case Occurred(name="human.found" | "human.lost"):
+                    chronicle.add("event", "environment", event=value.name, inbound=True)
+                    mediator.sees_user(value.name == "human.found")
                 case Occurred():
                     serial = value.data["serial"]
                     for app, deeds in zip(apps.values(), events[serial][1], strict=False):
@@ -668,7 +781,14 @@ def _asks(draw: Any) -> Ask:
             whats.append(draw(st.sampled_from(ALL)))
         parents = draw(st.sets(st.integers(0, index - 1), max_size=2)) if index else set()
         after.append(tuple(sorted(parents)))
-    return Ask(tuple(whats), tuple(after), draw(st.integers(1, 6)) == 6)
+    return Ask(
+        tuple(whats),
+        tuple(after),
+        draw(st.integers(1, 6)) == 6,
+        draw(st.integers(1, 6000)) if draw(st.integers(1, 4)) == 4 else None,
+        draw(st.integers(1, 4)) == 4,
+        draw(st.integers(1, 3)) == 3,
+    )
 
 
 _opens = st.builds(
@@ -715,5 +835,7 @@ def scripts(draw: Any) -> Script:
         draw(st.integers(0, 10_000)),
         draw(st.sampled_from((0, 0, 5, 20))),
         draw(st.sampled_from((0, 50))),
+        lacks=draw(st.integers(1, 5)) == 5,
     )
-    return Script(windows, tuple(events), tuple(emergencies), world)
+    views = draw(st.lists(st.tuples(st.integers(1, 8000), st.booleans()), max_size=3))
+    return Script(windows, tuple(events), tuple(emergencies), world, tuple(views))

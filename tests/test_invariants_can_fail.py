@@ -8,17 +8,19 @@ generated runs meet it as well, without being made for it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
-from prima.messages import Data
-from prima.scheduler import selection
-from prima.scheduler.behavior import Behavior
+from prima.messages import Command, Data
+from prima.scheduler import selection, selector
+from prima.scheduler.behavior import Application, Behavior, Stream
+from prima.scheduler.effects import Body, Effects
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy, Refusal
+from prima.scheduler.selector import Selector
 from tests.generated import Ask, Leave, Play, Run, Script, World, drive, perform, plays, scripts
 from tests.invariants import check, numbers
 
@@ -175,6 +177,206 @@ def chance(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(selection, "rank_declared", rank)
 
 
+# The extensions, broken ------------------------------------------------------------
+
+
+def anything_composed(patch: pytest.MonkeyPatch) -> None:
+    """X5 lets any two ABs use one device."""
+
+    def occupant(selector: Selector, ab: Behavior) -> None:
+        return None
+
+    patch.setattr(Selector, "_occupant", occupant)
+
+
+def carried_by_anything(patch: pytest.MonkeyPatch) -> None:
+    """X5 lets a move go on whatever the floor's stream does."""
+
+    def composes(ab: Behavior, memory: Memory) -> bool:
+        return ab.motion == "free"
+
+    patch.setattr(selection, "composes_with_floor", composes)
+    patch.setattr(selector, "composes_with_floor", composes)
+
+
+def unmarked_interrupted(patch: pytest.MonkeyPatch) -> None:
+    """X2 interrupts what is not restartable."""
+
+    def give_way(selector: Selector, reaction: Behavior) -> bool:
+        if reaction.reaction is None:
+            return False
+        for ab in selector.memory.conflicts(reaction):
+            selector._interrupt(ab, reaction)
+        return True
+
+    patch.setattr(Selector, "_give_way", give_way)
+
+
+def everything_interrupted(patch: pytest.MonkeyPatch) -> None:
+    """X2 interrupts what is in nobody's way."""
+    interrupt = Selector._interrupt
+
+    def all_of_it(selector: Selector, ab: Behavior, reaction: Behavior) -> None:
+        interrupt(selector, ab, reaction)
+        for other in list(selector.memory.running.values()):
+            if other.restartable:
+                interrupt(selector, other, reaction)
+
+    patch.setattr(Selector, "_interrupt", all_of_it)
+
+
+def restarted_in_part(patch: pytest.MonkeyPatch) -> None:
+    """X2 starts a unit again, but not all of it."""
+    open_group = Selector._open_group
+    opened: list[Behavior] = []
+
+    def open_part(selector: Selector, unit: Behavior, now: int) -> None:
+        if unit in opened and unit.group is not None:
+            unit.group.steps = unit.group.steps[:1]
+        opened.append(unit)
+        open_group(selector, unit, now)
+
+    patch.setattr(Selector, "_open_group", open_part)
+
+
+def restarted_as_new(patch: pytest.MonkeyPatch) -> None:
+    """X2 forgets that the AB was interrupted."""
+    interrupt = Selector._interrupt
+
+    def forget(selector: Selector, ab: Behavior, reaction: Behavior) -> None:
+        interrupt(selector, ab, reaction)
+        ab.restarting = False
+
+    patch.setattr(Selector, "_interrupt", forget)
+
+
+def nothing_interrupted(patch: pytest.MonkeyPatch) -> None:
+    """X2 is gone, though it is on."""
+
+    def give_way(selector: Selector, reaction: Behavior) -> bool:
+        return False
+
+    patch.setattr(Selector, "_give_way", give_way)
+
+
+def inserted_beside(patch: pytest.MonkeyPatch) -> None:
+    """X4 puts something in, and what it is put in for does not wait."""
+
+    def unwait(memory: Memory, ab: Behavior) -> None:
+        return None
+
+    patch.setattr(Memory, "unwait", unwait)
+
+
+def nothing_put_in(patch: pytest.MonkeyPatch) -> None:
+    """X1 and X4 are gone, though they are on."""
+
+    def prepare(selector: Selector, ab: Behavior, now: int) -> bool:
+        return False
+
+    patch.setattr(Selector, "_prepare", prepare)
+
+
+def camera_forgotten(patch: pytest.MonkeyPatch) -> None:
+    """X4 turns to a user who is seen."""
+    prepare = Selector._prepare
+
+    def blind(selector: Selector, ab: Behavior, now: int) -> bool:
+        selector.in_view = False
+        return prepare(selector, ab, now)
+
+    patch.setattr(Selector, "_prepare", blind)
+
+
+def restored_for_nothing(patch: pytest.MonkeyPatch) -> None:
+    """X1 restores what was not suspended."""
+    seen: list[Behavior] = []
+
+    def prepare(selector: Selector, ab: Behavior, now: int) -> bool:
+        if ab.inserted or ab in seen:
+            return False
+        seen.append(ab)
+        return selector._insert(ab, [Command("set-direction", {"heading": 0.0})], "X1", now)
+
+    patch.setattr(Selector, "_prepare", prepare)
+
+
+def place_forgotten(patch: pytest.MonkeyPatch) -> None:
+    """X1 does not know where a stream stood."""
+
+    def missing(effects: Effects, own: frozenset[str], body: Body) -> list[Command]:
+        return []
+
+    patch.setattr(Effects, "missing", missing)
+
+
+def held_too_long(patch: pytest.MonkeyPatch) -> None:
+    """X3 holds a stream beyond its longest time."""
+    keep_open = Mediator._keep_open
+
+    def longer(mediator: Mediator, stream: Stream) -> None:
+        keep_open(mediator, stream)
+        mediator._holds[stream.name] += 1000
+
+    patch.setattr(Mediator, "_keep_open", longer)
+
+
+def not_held(patch: pytest.MonkeyPatch) -> None:
+    """X3 is gone, though it is on."""
+
+    def end(mediator: Mediator, stream: Stream) -> None:
+        del mediator.memory.streams[stream.name]
+        if stream in mediator.memory.floor:
+            mediator.memory.floor.remove(stream)
+
+    patch.setattr(Mediator, "_keep_open", end)
+
+
+def held_without_floor(patch: pytest.MonkeyPatch) -> None:
+    """X3 keeps the stream, but not the floor."""
+    keep_open = Mediator._keep_open
+
+    def floorless(mediator: Mediator, stream: Stream) -> None:
+        keep_open(mediator, stream)
+        mediator.memory.floor.remove(stream)
+
+    patch.setattr(Mediator, "_keep_open", floorless)
+
+
+def held_without_channel(patch: pytest.MonkeyPatch) -> None:
+    """X3 keeps the stream, but not the channel."""
+    engages = Stream.engages_user
+
+    def engages_user(stream: Stream) -> bool:
+        return stream.held_until is None and engages(stream)
+
+    patch.setattr(Stream, "engages_user", engages_user)
+
+
+def nothing_joins(patch: pytest.MonkeyPatch) -> None:
+    """X3 holds a stream that no request joins."""
+    place = Mediator._place
+
+    def apart(
+        mediator: Mediator, app: Application, reaction: int | None, unit: Behavior | None
+    ) -> tuple[Stream, Behavior | None]:
+        holds, mediator._holds = mediator._holds, {}
+        found = place(mediator, app, reaction, unit)
+        mediator._holds = holds
+        return found
+
+    patch.setattr(Mediator, "_place", apart)
+
+
+def always_substituted(patch: pytest.MonkeyPatch) -> None:
+    """X6 works though it is off."""
+
+    def has(policy: Policy, extension: str) -> bool:
+        return extension == "x6"
+
+    patch.setattr(Policy, "has", has)
+
+
 @dataclass(frozen=True)
 class Mutation:
     """A rule broken on purpose, the invariant that falls, and a run in which it shows."""
@@ -182,8 +384,26 @@ class Mutation:
     invariant: int
     patch: Patch
     made: Play | Script
+    policy: str = "prima"
 
 
+STORY = Ask(("speak",), ((),), restartable=True)
+YES = ("fa", one("speak"))
+CONNECTED = Ask(("speak",), ((),), connect=True)
+HELD = Ask(("speak",), ((),), hold=6000)
+GOES = (one("topological-move"),)
+TWICE = Script(((), ()), ((50, ((HELD,), ())), (4000, ((HELD,), ()))), (), World())
+"""Its stream is held when the application asks again."""
+TAKEN_AWAY = Script(
+    ((), ()),
+    (
+        (50, ((), (one("set-position", *("speak",) * 6),))),
+        (4000, ((one("set-speed-and-time"),), ())),
+    ),
+    (),
+    World(),
+)
+"""The robot has gone somewhere to speak, when the other application drives it away."""
 TWO_BRANCHES = Ask(("turn", "speak", "turn", "speak", "turn"), ((), (), (0,), (1,), (2,)))
 
 MUTATIONS = (
@@ -212,22 +432,92 @@ MUTATIONS = (
         floor_ignored,
         at_events(("ea", one("topological-move")), ("fa", one("speak", "move-head"))),
     ),
+    Mutation(
+        1,
+        anything_composed,
+        at_events(("ea", one("topological-move")), ("fa", one("turn"))),
+        "prima+x5",
+    ),
+    Mutation(2, unmarked_interrupted, at_events(("ea", one("speak")), YES), "prima+x2"),
+    Mutation(
+        2,
+        everything_interrupted,
+        at_events(("ea", replace(STORY, whats=("speak", "turn"), after=((), ()))), YES),
+        "prima+x2",
+    ),
+    Mutation(
+        3,
+        restarted_in_part,
+        at_events(("ea", replace(STORY, whats=(("speak", "turn"),))), YES),
+        "prima+x2",
+    ),
+    Mutation(3, restarted_as_new, at_events(("ea", STORY), YES), "prima+x2"),
+    Mutation(
+        3,
+        always_substituted,
+        replace(at_events(("ea", one("point-by-hand"))), world=World(lacks=True)),
+    ),
+    Mutation(
+        4,
+        inserted_beside,
+        replace(at_events(("fa", one("turn"))), windows=(((CONNECTED,),), ())),
+        "prima+x4",
+    ),
+    Mutation(
+        5,
+        held_without_floor,
+        at_events(("ea", one("speak", "speak")), ("fa", HELD)),
+        "prima+x3",
+    ),
+    Mutation(
+        6,
+        nothing_interrupted,
+        at_events(("ea", STORY), YES, ("ea", one("move-head"))),
+        "prima+x2",
+    ),
+    Mutation(
+        7,
+        held_without_channel,
+        replace(
+            at_events(("fa", replace(HELD, whats=("face-human",)))),
+            events=((50, ((replace(HELD, whats=("face-human",)),), ())), (4000, ((), GOES))),
+        ),
+        "prima+x3",
+    ),
+    Mutation(
+        7,
+        carried_by_anything,
+        at_events(("ea", one("topological-move")), ("fa", one("speak", "speak"))),
+        "prima+x5",
+    ),
+    Mutation(10, held_too_long, at_events(("fa", HELD)), "prima+x3"),
+    Mutation(10, not_held, TWICE, "prima+x3"),
+    Mutation(10, nothing_joins, TWICE, "prima+x3"),
+    Mutation(11, nothing_put_in, at_events(("fa", CONNECTED)), "prima+x4"),
+    Mutation(
+        11,
+        camera_forgotten,
+        replace(at_events(("fa", CONNECTED)), views=((10, True),)),
+        "prima+x4",
+    ),
+    Mutation(11, restored_for_nothing, at_events(("fa", one("speak"))), "prima+x1"),
+    Mutation(11, place_forgotten, TAKEN_AWAY, "prima+x1"),
 )
 IDS = [f"{mutation.invariant}-{mutation.patch.__name__}" for mutation in MUTATIONS]
 
 
-def run(made: Play | Script) -> Run:
-    return perform(made) if isinstance(made, Play) else drive(made)
+def run(made: Play | Script, policy: str = "prima") -> Run:
+    return perform(made, policy) if isinstance(made, Play) else drive(made, policy)
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=IDS)
 def test_a_broken_rule_violates_its_invariant_and_no_other(
     mutation: Mutation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sound = run(mutation.made)
-    assert check(sound.records) + sound.problems == []
+    sound = run(mutation.made, mutation.policy)
+    assert check(sound.records, mutation.policy) + sound.problems == []
     mutation.patch(monkeypatch)
-    broken = check(run(mutation.made).records)
+    broken = check(run(mutation.made, mutation.policy).records, mutation.policy)
     assert numbers(broken) == {mutation.invariant}, broken
 
 
@@ -269,7 +559,8 @@ def test_generated_runs_meet_it_too(mutation: Mutation, monkeypatch: pytest.Monk
     )
     def meet(play: Play, script: Script) -> None:
         for made in (play, script):
-            if mutation.invariant in numbers(check(run(made).records)):
+            records = run(made, mutation.policy).records
+            if mutation.invariant in numbers(check(records, mutation.policy)):
                 raise Met
 
     with pytest.raises(Met):

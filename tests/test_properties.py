@@ -15,12 +15,23 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.generated import Play, Run, Script, drive, perform, plays, scripts
+from tests.generated import (
+    Play,
+    Run,
+    Script,
+    baselines,
+    drive,
+    extended,
+    perform,
+    plays,
+    scripts,
+    without_hints,
+)
 from tests.invariants import check, numbers, unfinished
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
 ROOT = Path(__file__).resolve().parent.parent
-SCENARIOS = sorted(ROOT.glob("documents/scenarios/*.xml"))
+SCENARIOS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
 
 
 def examples(percent: int) -> settings:
@@ -40,31 +51,45 @@ def violations(run: Run, policy: str = "prima") -> list[str]:
 
 
 @given(plays())
-@examples(35)
+@examples(17)
 def test_documents_keep_the_invariants(play: Play) -> None:
     run = perform(play)
     assert violations(run) == []
 
 
 @given(scripts())
-@examples(35)
+@examples(17)
 def test_requests_keep_the_invariants(script: Script) -> None:
     run = drive(script)
     assert violations(run) == []
 
 
-@given(plays(lively=True))
-@examples(15)
-def test_everything_ends_when_users_answer_and_devices_end(play: Play) -> None:
-    """Invariant 9, with 1 to 7."""
-    run = perform(play)
+@given(plays(), extended)
+@examples(20)
+def test_documents_keep_the_invariants_with_extensions(play: Play, policy: str) -> None:
+    run = perform(play, policy)
+    assert violations(run, policy) == []
+
+
+@given(scripts(), extended)
+@examples(20)
+def test_requests_keep_the_invariants_with_extensions(script: Script, policy: str) -> None:
+    run = drive(script, policy)
+    assert violations(run, policy) == []
+
+
+@given(plays(lively=True), st.one_of(st.just("prima"), extended))
+@examples(16)
+def test_everything_ends_when_users_answer_and_devices_end(play: Play, policy: str) -> None:
+    """Invariant 9, with the others."""
+    run = perform(play, policy)
     assert run.complete, "the run does not come to rest"
-    assert violations(run) == []
-    assert unfinished(run.records) == []
+    assert violations(run, policy) == []
+    assert unfinished(run.records, policy) == []
 
 
-@given(plays(), scripts(), st.sampled_from(("fifo", "fair", "fixed", "fixed:ea", "none")))
-@examples(10)
+@given(plays(), scripts(), baselines)
+@examples(8)
 def test_the_baselines_keep_what_applies_to_them(play: Play, script: Script, policy: str) -> None:
     for run in (perform(play, policy), drive(script, policy)):
         found = violations(run, policy)
@@ -74,12 +99,18 @@ def test_the_baselines_keep_what_applies_to_them(play: Play, script: Script, pol
         assert found == []
 
 
-@given(plays(), scripts())
-@examples(5)
-def test_the_same_inputs_give_the_same_transcript(play: Play, script: Script) -> None:
+@given(plays(), scripts(), st.one_of(st.just("prima"), extended))
+@examples(6)
+def test_the_same_inputs_give_the_same_transcript(play: Play, script: Script, policy: str) -> None:
     """Invariant 8, within one process."""
-    assert perform(play).lines() == perform(play).lines()
-    assert drive(script).lines() == drive(script).lines()
+    assert perform(play, policy).lines() == perform(play, policy).lines()
+    assert drive(script, policy).lines() == drive(script, policy).lines()
+
+
+@given(plays(), st.one_of(st.just("prima"), baselines))
+@examples(6)
+def test_hints_change_nothing_where_no_extension_is_on(play: Play, policy: str) -> None:
+    assert perform(play, policy).lines() == perform(without_hints(play), policy).lines()
 
 
 CHILD = """
@@ -93,22 +124,22 @@ from prima.messages import *
 for path in sys.argv[1:]:
     print("".join(f"{record}\\n" for record in rehearse(path).records))
 for text in sys.stdin:
-    made = eval(text)
-    print((perform if isinstance(made, Play) else drive)(made).lines())
+    made, policy = eval(text)
+    print((perform if isinstance(made, Play) else drive)(made, policy).lines())
 """
 
 
-def _some() -> list[Play | Script]:
-    """A few generated runs, always the same ones."""
-    found: list[Play | Script] = []
+def _some() -> list[tuple[Play | Script, str]]:
+    """A few generated runs and their policies, always the same ones."""
+    found: list[tuple[Play | Script, str]] = []
 
-    @given(plays(), scripts())
+    @given(plays(), scripts(), extended)
     @settings(max_examples=12, derandomize=True, deadline=None, database=None)
-    def gather(play: Play, script: Script) -> None:
-        found.extend((play, script))
+    def gather(play: Play, script: Script, policy: str) -> None:
+        found.extend(((play, policy), (script, policy), (play, "prima"), (script, "prima")))
 
     gather()
-    return found[-12:]
+    return found[-24:]
 
 
 @pytest.mark.parametrize("first, second", [("0", "1"), ("2", "random")])
@@ -131,7 +162,7 @@ def test_no_hash_seed_decides_anything(first: str, second: str) -> None:
     assert outputs[0] == outputs[1]
 
 
-@pytest.mark.parametrize("policy", ["prima", "fifo", "fair", "fixed", "none"])
+@pytest.mark.parametrize("policy", ["prima", "prima+all", "fifo", "fair", "fixed", "none"])
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
     """What the package shows keeps the rules too."""

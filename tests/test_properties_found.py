@@ -5,10 +5,24 @@ They stay, so that nothing found once comes back.
 
 from __future__ import annotations
 
-from prima.messages import Emergency, Inbound, Occurred, Record
-from tests.generated import Ask, Go, Leave, Open, Play, Script, World, command, drive, perform
+from dataclasses import replace
+
+from prima.messages import Command, Emergency, Group, Inbound, Occurred, Record, Step
+from tests.generated import (
+    TABLE,
+    Ask,
+    Go,
+    Leave,
+    Open,
+    Play,
+    Script,
+    World,
+    command,
+    drive,
+    perform,
+)
 from tests.invariants import check
-from tests.stage import Stage
+from tests.stage import Stage, ask, chain, move, say
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="{}">{}</prima>'
 IDLE = HEAD.format("fa", '<form id="f1"/>')
@@ -116,3 +130,202 @@ def test_a_script_opens_a_unit_and_goes() -> None:
     asked = Ask(("speak",), ((),))
     run = drive(Script(((), ()), ((1, ((unit, asked, Go()), (asked,))),), (), World()))
     assert check(run.records) + run.problems == []
+
+
+# With the extensions ------------------------------------------------------------------
+
+
+def restartable(what: Command) -> Command:
+    return replace(what, restartable=True)
+
+
+def test_x2_does_not_interrupt_what_has_just_been_preferred() -> None:
+    # Of two reactions to one event the first starts (S2f), and in the same selection the
+    # second, which it outranks, interrupts it.
+    stage = Stage("prima+x2")
+    stage.request("fa", steps=[Step(restartable(say("First."))), Step(say("Second."))], cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_an_earlier_reaction_does_not_interrupt_a_later_one_at_its_start() -> None:
+    stage = Stage("prima+x2")
+    stage.request("ea", say("First."), cause=1)
+    stage.request("fa", restartable(say("Second.")), cause=2)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_reaction_that_leaves_does_not_go_before_what_outranks_it() -> None:
+    # Two restartable Commands want the body; a reaction of low priority interrupts the one
+    # that runs, and the other, which outranks it by S2a, is passed over.
+    stage = Stage("prima+x2")
+    turn = restartable(command("turn"))
+    stage.request("ea", steps=[Step(turn), Step(restartable(command("turn")))])
+    stage.select()
+    stage.at(100).request("fa", move(), cause=1)
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_nothing_is_interrupted_for_a_reaction_that_is_held_back() -> None:
+    # The speaker is held back for the reaction that ranks first and waits for the body (S3):
+    # the other reaction interrupts the story, and must then wait for the first one (S3).
+    stage = Stage("prima+x2")
+    stage.request("ea", steps=[Step(restartable(say("A story."))), Step(command("turn"))])
+    stage.select()
+    stage.at(100).request("ea", say("Soon."), cause=1)
+    stage.request("fa", command("face-human-and-speak"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_unit_in_a_unit_is_interrupted_with_it() -> None:
+    # The unit inside is taken out, but what runs in it goes on: it is never told to stop.
+    stage = Stage("prima+x2")
+    inside = Group(chain(say("One."), say("Two.")))
+    stage.request("ea", Group([Step(inside)], restartable=True))
+    stage.select()
+    stage.at(100).request("fa", ask(), cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+    orders = [(order.verb, order.behavior) for order in stage.orders]
+    assert orders == [("start", "ea#3"), ("interrupt", "ea#3"), ("start", "fa#1")]
+    stage.at(900).end("fa#1")
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_motion_that_can_be_composed_is_in_nobodys_way() -> None:
+    # Of the move and the nod only the nod is in the dance's way (X5), and it is restartable.
+    stage = Stage("prima+x2+x5", table=TABLE)
+    nod = restartable(command("gesture"))
+    stage.request("ea", steps=[Step(move()), Step(nod)])
+    stage.select()
+    stage.at(100).request("fa", Command("dance"), cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2+x5") == []
+
+
+def test_x2_nothing_is_interrupted_where_a_composed_motion_stays_in_the_way() -> None:
+    # A move and a spin share the body (X5). The spin gives way; the move does not.
+    stage = Stage("prima+x2+x5", table=TABLE)
+    stage.request("ea", move())
+    stage.select()
+    stage.at(50).request("ea", restartable(Command("spin")), cause=1)
+    stage.select()
+    stage.at(100).request("fa", command("turn"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x2+x5") == []
+
+
+def test_x5_two_dances_are_not_composed_with_one_move() -> None:
+    # The move that has started last hides the first dance from the second.
+    stage = Stage("prima+x5", table=TABLE)
+    stage.request("ea", Command("dance"))
+    stage.select()
+    stage.at(50).request("ea", move(), cause=1)
+    stage.select()
+    stage.at(100).request("fa", Command("spin"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x5") == []
+
+
+def test_x5_two_moves_are_not_composed_with_one_dance() -> None:
+    stage = Stage("prima+x5", table=TABLE)
+    stage.request("ea", move())
+    stage.select()
+    stage.at(50).request("fa", Command("waltz"), cause=1)
+    stage.select()
+    stage.at(100).request("ea", command("set-position"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x5") == []
+
+
+def test_x3_a_unit_joins_the_stream_that_is_held() -> None:
+    # Its stream stays held while the unit is of it, and its time runs out then.
+    stage = Stage("prima+x3")
+    stage.request("fa", say(), hold=5000)
+    stage.select()
+    stage.at(100).end("fa#1")
+    stage.select()
+    stage.at(200).open("fa", 1, "speaker")
+    stage.select()
+    stage.at(300).request("ea", command("turn"))
+    stage.select()
+    assert check(stage.records, "prima+x3") == []
+
+
+def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
+    # Both streams end in one instant; the one to be held comes first and finds the floor
+    # taken by the other, which ends then: nobody has it.
+    stage = Stage("prima+x3")
+    stage.request("ea", command("turn"), hold=5000)
+    stage.select()
+    stage.request("fa", say(), cause=1)
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.end("fa#1")
+    stage.select()
+    stage.at(200).request("fa", command("turn"))
+    assert stage.select() == []
+    assert check(stage.records, "prima+x3") == []
+
+
+def ends(stage: Stage, behavior: str, x: float, y: float) -> None:
+    """An AB ends with the robot at a place."""
+    stage.end(behavior, x=x, y=y, heading=0.0)
+    stage.select()
+
+
+def test_x1_a_unit_that_goes_on_beneath_the_floor_does_not_resume_its_stream() -> None:
+    # F1 lets the unit finish. Its second Command counts as if the suspended stream had
+    # resumed, so that nothing is restored when it does.
+    stage = Stage("prima+x1")
+    stage.request("ea", move(), Group(chain(say("One."), say("Two."))), say("Three."))
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    stage.at(600).end("ea#4")
+    stage.select()
+    stage.at(700).end("ea#5")
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_a_held_stream_that_was_suspended_is_restored_too() -> None:
+    # A reaction breaks in while nothing of the held stream is in working memory.
+    stage = Stage("prima+x1+x3")
+    stage.request("ea", move(), say("One."), hold=5000)
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.at(600).end("ea#2")
+    stage.select()
+    stage.at(700).request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    stage.at(1000).request("ea", say("Two."), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x1+x3") == []
+
+
+def test_x1_branches_go_back_once() -> None:
+    # Each branch of the suspended stream is given a way back of its own.
+    stage = Stage("prima+x1")
+    steps = [
+        Step(move()),
+        Step(say("One."), (0,)),
+        Step(say("Two."), (1,)),
+        Step(command("gesture"), (1,)),
+    ]
+    stage.request("ea", steps=steps)
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    stage.at(700).end("ea#2")
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    assert check(stage.records, "prima+x1") == []

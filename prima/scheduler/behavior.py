@@ -127,6 +127,8 @@ class Behavior:
     """Its state has been left (O3): a question ends as soon as it listens."""
     connect: bool = False
     """Whether the robot has to face the user before it starts (X4)."""
+    reacted: int = -1
+    """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
     restarting: bool = False
     """Whether the AB was interrupted and has not started again (X2)."""
     inserted: str = ""

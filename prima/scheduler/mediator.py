@@ -85,6 +85,8 @@ class Mediator(Failures):
         """U5: a unit that spans questions is requested like an AB of its own."""
         app = self.memory.apps[name]
         stream, parent = self._place(app, asked.cause, None)
+        if stream.held_until is not None:
+            self._let_go(stream, "joined")
         asked.devices |= self._devices_of(asked.types)
         unit = self._maker.spanning(app, stream, asked, self._now())
         app.units[asked.unit] = unit
@@ -233,11 +235,12 @@ class Mediator(Failures):
     def _close_streams(self) -> None:
         """C1, F3: streams that nothing keeps open end, and hold no floor then."""
         touched, self._touched = self._touched, {}
+        kept: list[Stream] = []
         for stream in touched.values():
             if stream.open or stream.name not in self.memory.streams:
                 continue
             if stream.hold and not stream.app.gone:
-                self._keep_open(stream)
+                kept.append(stream)  # after those that end have given the floor back
                 continue
             del self.memory.streams[stream.name]
             self.chronicle.stream("stream-end", stream, "C1")
@@ -247,6 +250,9 @@ class Mediator(Failures):
                 self.chronicle.stream(
                     "floor", stream, "F3", outcome="returned", floor=[held.name for held in floor]
                 )
+
+        for stream in kept:
+            self._keep_open(stream)
 
     def _keep_open(self, stream: Stream) -> None:
         """X3: the stream stays open, with the floor unless another has it, and waits."""

@@ -96,20 +96,22 @@ class Memory:
 
     def conflicts(self, ab: Behavior) -> list[Behavior]:
         """All running ABs that occupy one of the devices, in the order of their serial numbers."""
-        found = {
-            self.occupied[device].serial: device for device in ab.devices & self.occupied.keys()
-        }
-        return [self.occupied[found[serial]] for serial in sorted(found)]
+        found = [
+            other
+            for other in self.running.values()
+            if other.unit is None and other.devices & ab.devices
+        ]
+        return sorted(found, key=lambda other: other.serial)
 
     def unwait(self, ab: Behavior) -> None:
         """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
         self.waiting.pop(ab.name, None)
         ab.state = State.LINKED
 
-    def conflict(self, ab: Behavior, devices: frozenset[str] | None = None) -> Behavior | None:
+    def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit
-        for device in sorted(ab.devices if devices is None else devices):
+        for device in sorted(ab.devices):
             if unit is not None and device in unit.devices:
                 other = unit.busy.get(device)
             else:

@@ -70,21 +70,28 @@ class Selector:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
+        kept = min(ab.devices & held.keys(), default="")
         other = self._occupant(ab)
-        if other is not None and self._give_way(ab):
+        if other is not None and not kept and self._give_way(ab):
             other = self._occupant(ab)
         if other is not None:
             return ("S1", other.id)
-        for device in sorted(ab.devices & held.keys()):
-            return ("S3", held[device].id)
-        return None
+        return ("S3", held[kept].id) if kept else None
 
     def _occupant(self, ab: Behavior) -> Behavior | None:
         """Who occupies one of the AB's devices, but for a motion to be composed with (X5)."""
         other = self.memory.conflict(ab)
-        if other is None or not self.policy.has("x5") or {ab.motion, other.motion} != COMPOSED:
+        if other is None or not self.policy.has("x5") or not ab.motion:
             return other
-        return self.memory.conflict(ab, ab.devices - other.devices)
+        return next(iter(self._in_the_way(ab)), None)
+
+    def _in_the_way(self, ab: Behavior) -> list[Behavior]:
+        """All running ABs that have to end before this one may start."""
+        return [
+            other
+            for other in self.memory.conflicts(ab)
+            if not self.policy.has("x5") or {ab.motion, other.motion} != COMPOSED
+        ]
 
     # Extensions -------------------------------------------------------------
 
@@ -92,8 +99,8 @@ class Selector:
         """X2: interrupt what is restartable and in the way of a reaction; true if that frees all."""
         if not self.policy.has("x2") or reaction.reaction is None:
             return False
-        ways = self.memory.conflicts(reaction)
-        if not all(ab.restartable for ab in ways):
+        ways = self._in_the_way(reaction)
+        if not all(yields(ab, reaction) for ab in ways):
             return False
         for ab in ways:
             self._interrupt(ab, reaction)
@@ -101,23 +108,28 @@ class Selector:
 
     def _interrupt(self, ab: Behavior, reaction: Behavior) -> None:
         self.chronicle.behavior("interrupt", ab, rule="X2", by=reaction.id)
-        for inner in list(ab.inner.values()):
-            if inner.state is State.RUNNING:
-                self._stop_device(inner)
-            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state.value)
-            self.memory.remove(inner)
+        self._empty(ab)
         if ab.command is not None:
             self._stop_device(ab)
         ab.restarting = True
         self.memory.release(ab)
         self.memory.wait(ab)
 
+    def _empty(self, unit: Behavior) -> None:
+        """Take out what is in a unit that starts again from its beginning."""
+        for inner in list(unit.inner.values()):
+            self._empty(inner)
+            if inner.state is State.RUNNING and inner.command is not None:
+                self._stop_device(inner)
+            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state.value)
+            self.memory.remove(inner)
+
     def _stop_device(self, ab: Behavior) -> None:
         self.orders.append(Order("interrupt", ab.id, ab.command, app=ab.app.name))
 
     def _prepare(self, ab: Behavior, now: int) -> bool:
         """X1, X4: put in what has to come first; true if something was put in."""
-        if ab.inserted:
+        if ab.inserted or any(one.inserted == "X1" for one in ab.stream.members.values()):
             return False
         if ab.stream.suspended is not None and self.policy.has("x1"):
             own = ab.type.effects if ab.type is not None else frozenset()
@@ -150,8 +162,13 @@ class Selector:
             before = made
         if before is None:
             return False
-        link(before, ab)
-        self.memory.unwait(ab)
+        behind = [ab]
+        if rule == "X1":  # other branches of the stream wait for the same way back
+            behind += [one for one in ab.stream.contending() if one.name in self.memory.waiting]
+        for one in dict.fromkeys(behind):
+            if not one.inserted:
+                link(before, one)
+                self.memory.unwait(one)
         return True
 
     def _hold(self, ab: Behavior, refusal: Refusal) -> None:
@@ -174,6 +191,7 @@ class Selector:
         by_floor_rule = holder is not None and holder.app is not ab.app and not composed
         others = bool(self.memory.running)
         reaction, ab.reaction = ab.reaction, None
+        ab.reacted = -1 if reaction is None else reaction
         self._run(ab, now)
         changed = self._take_floor(ab, reaction, by_floor_rule)
         losers = [
@@ -221,7 +239,7 @@ class Selector:
         self.memory.start(ab, now)
         stream = ab.stream
         stream.engaged = stream.engaged or ab.engages
-        if stream.suspended is not None:
+        if stream.suspended is not None and ab.unit is None:
             stream.suspended = None
             self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
         if ab.command is not None:
@@ -277,7 +295,7 @@ class Selector:
 
     def _suspend_others(self, stream: Stream) -> None:
         for other in self.memory.streams.values():
-            if other.app is not stream.app and other.members and other.suspended is None:
+            if other.app is not stream.app and other.open and other.suspended is None:
                 self._suspensions += 1
                 other.suspended = self._suspensions
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
@@ -332,3 +350,9 @@ class Selector:
                 self._record_start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
+
+
+def yields(ab: Behavior, reaction: Behavior) -> bool:
+    """X2: whether a running AB gives way: to a reaction to a later event that it does not outrank."""
+    later = reaction.reaction is not None and ab.reacted < reaction.reaction
+    return ab.restartable and later and ab.priority <= reaction.priority
