@@ -33,11 +33,6 @@ SECONDS = 20
 """How long anything here may take at most; what is bounded takes a fraction of it."""
 
 
-def fails(*case: object, reason: str, id: str = "") -> Any:
-    """A case that does not hold yet."""
-    return pytest.param(*case, marks=pytest.mark.xfail(strict=True, reason=reason), id=id or None)
-
-
 # Documents ----------------------------------------------------------------------
 
 
