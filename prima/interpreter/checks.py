@@ -25,6 +25,7 @@ from prima.interpreter.elements import (
     Form,
     Goto,
     GroupTemplate,
+    Item,
     Return,
     Run,
     Script,
@@ -265,7 +266,8 @@ class Checker:
     def _hints(self) -> None:
         """X3: what a held stream costs others, and hints that can have no effect."""
         for form in self.document.forms.values():
-            for one in (form, *all_items(form.items)):
+            pieces: list[Form | Item] = [form, *all_items(form.items)]
+            for one in pieces:
                 node = one.node
                 if "hold-for" in node.attributes and "stream" not in node.attributes:
                     message = "hold-for says how long, but nothing is held."
