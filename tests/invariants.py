@@ -1008,7 +1008,7 @@ class Checker:
                 near = [one for one in self.failed if one.tree is ab.tree]
                 if not near:
                     self.report(number, "E1", f"{shown}, but nothing of its tree has failed")
-                if cut.was == RUNNING and not any(one.unit is ab.unit for one in near if one.unit):
+                if cut.was == RUNNING and not any(ab.inside(one.unit) for one in near if one.unit):
                     self.report(2, "E1", f"{shown}, but nothing of its unit has failed")
             case "X2":
                 if not any(ab.inside(unit) for unit, _, _ in self.gave_way):

@@ -329,3 +329,15 @@ def test_x1_branches_go_back_once() -> None:
     stage.select()
     ends(stage.at(900), "fa#1", 0.0, 0.0)
     assert check(stage.records, "prima+x1") == []
+
+
+def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
+    # What runs in the inner unit is a part of the outer one, which fails as a whole (U4).
+    stage = Stage()
+    inner = Group([Step(say("In.")), Step(command("turn"))])
+    stage.request("ea", Group([Step(command("move-head")), Step(inner)]))
+    stage.select()
+    stage.at(100).mediator.failed("ea#2", "neck", "it fails")
+    stage.select()
+    assert stage.running == set()
+    assert check(stage.records, "prima") == []
