@@ -56,8 +56,10 @@ class Prima:
 
     def count(self) -> int:
         """The counter, read by the application itself; the trace has to be there too."""
+        from prima.interpreter.application import Interpreter
+
         app = self.session.apps["ring"]
-        assert app.frame is not None
+        assert isinstance(app, Interpreter) and app.frame is not None
         assert len(self.session.drain()) >= self.now, "records are missing"
         return int(app.engine.get(app.frame.document, "n"))
 

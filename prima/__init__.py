@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         read,
         rehearse,
         replay,
+        stage,
         validate,
     )
 
@@ -49,6 +50,7 @@ __all__ = [
     "read",
     "rehearse",
     "replay",
+    "stage",
     "validate",
 ]
 

@@ -6,27 +6,29 @@ everything below them works on text and values.
 
 from __future__ import annotations
 
-import hashlib
-import posixpath
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.codes import CODES
-from prima.errors import DocumentError, Place, Problem, RunError, UsageError, did_you_mean, one_of
-from prima.interpreter.checks import check_commands
+from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
 from prima.interpreter.elements import Document
-from prima.interpreter.reader import read_document
-from prima.interpreter.vocabulary import DIALOGUE
-from prima.markup.check import check_root
-from prima.markup.reader import MAX_BYTES, parse, too_large
+from prima.loading import (
+    FAVOURITE,
+    Loaded,
+    documents_folder,
+    favourite_problem,
+    load,
+    load_scenario,
+    stage,
+    validate,
+)
 from prima.messages import Record
 from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
-    from prima.sim.rehearsal import Cast
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
     from prima.transcript.table import Row
@@ -34,192 +36,6 @@ if TYPE_CHECKING:
 # What one use needs and another does not is imported where it is used: most commands are short.
 
 VERSION = "1.0.0"
-
-
-def read_file(path: str | Path) -> bytes:
-    """Read a document's bytes, up to the limit.
-
-    Raises:
-        DocumentError: the file is larger than any document may be.
-        UsageError: it cannot be read.
-    """
-    try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise UsageError(f"{path}: cannot be read: it is not a file.")
-        with Path(path).open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-            if len(data) > MAX_BYTES:
-                size = Path(path).stat().st_size
-                raise too_large(str(path), max(size, len(data)))
-            return data
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except ValueError:
-        raise UsageError(f"{path!r} is not a file's name.") from None
-
-
-def load(path: str | Path) -> Document:
-    """Load an application.
-
-    Raises:
-        DocumentError: with all problems, if any is an error.
-        UsageError: the file cannot be read.
-    """
-    document, problems = read_document(str(path), read_file(path))
-    if any(problem.severity == "error" for problem in problems):
-        raise DocumentError(problems)
-    return document
-
-
-@dataclass(slots=True)
-class Loaded:
-    """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
-
-    cast: Cast
-    files: dict[str, str]
-    problems: list[Problem] = field(default_factory=list)
-
-
-def validate(paths: Iterable[str | Path]) -> list[Problem]:
-    """Give all problems of documents of any kind; a scenario's also those of what it names.
-
-    Raises:
-        UsageError: a file cannot be read.
-    """
-    problems: list[Problem] = []
-    for path in paths:
-        problems += _validate_one(str(path))
-    return sorted(set(problems))
-
-
-def _validate_one(path: str) -> list[Problem]:
-    try:
-        data = read_file(path)
-        root = parse(path, data)
-        if root.namespace == DIALOGUE.namespace:
-            return read_document(path, data)[1]
-        from prima.sim.scenario import read_robot, read_world
-        from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-
-        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
-        if vocabulary is WORLD:
-            read_world(path, data)
-        elif vocabulary is ROBOT:
-            read_robot(path, data)
-        else:
-            return load_scenario(path).problems
-    except DocumentError as error:
-        return error.problems
-    return []
-
-
-def load_scenario(path: str | Path) -> Loaded:
-    """Load a scenario with its world, robot and applications.
-
-    Raises:
-        DocumentError: with the problems of all files, if any is an error.
-        UsageError: the scenario's file cannot be read.
-    """
-    from prima.scheduler.selection import policy_named
-    from prima.sim.rehearsal import Cast, check_cast
-    from prima.sim.scenario import read_robot, read_scenario, read_world
-
-    path = Path(path)
-    data = read_file(path)
-    scenario = read_scenario(str(path), data)
-    files = {path.name: _digest(data)}
-    problems: list[Problem] = []
-
-    def related(name: str, place: Place) -> tuple[str, bytes] | None:
-        target = path.parent / name
-        try:
-            content = read_file(target)
-        except UsageError as error:
-            message = str(error).removeprefix(f"{target}: ")
-            problems.append(Problem(place, "error", "no-such-file", f'"{name}" {message}'))
-        except DocumentError as error:
-            problems.extend(error.problems)
-        else:
-            files[name] = _digest(content)
-            return str(target), content
-        return None
-
-    documents = []
-    for src, _, node in scenario.applications:
-        found = related(src, node.attribute_place("src"))
-        try:
-            if found is not None:
-                document, noted = read_document(*found)
-                problems += noted
-                documents.append(document)
-        except DocumentError as error:
-            problems += error.problems
-    world = robot = None
-    try:
-        found = related(scenario.world, scenario.node.attribute_place("world"))
-        world = read_world(*found) if found else None
-    except DocumentError as error:
-        problems += error.problems
-    try:
-        found = related(scenario.robot, scenario.node.attribute_place("robot"))
-        robot = read_robot(*found) if found else None
-    except DocumentError as error:
-        problems += error.problems
-    offers = []
-    beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
-    for area in world.areas if world is not None and scenario.entrances else []:
-        name = posixpath.normpath(posixpath.join(posixpath.dirname(scenario.world), area.src))
-        if name in beside:
-            continue  # the scenario itself says when it runs
-        try:
-            found = related(name, area.node.attribute_place("application"))
-            if found is not None:
-                document, noted = read_document(*found)
-                problems += noted
-                documents.append(document)
-                offers.append((area, document.id))
-        except DocumentError as error:
-            problems += error.problems
-    place = scenario.node.attribute_place("policy")
-    if world is not None and scenario.entrances and not world.areas:
-        place = scenario.node.attribute_place("entrances")
-        message = f'The world "{world.id}" has no <area> that offers an application.'
-        problems.append(Problem(place, "error", "no-such-name", message))
-    try:
-        policy_named(scenario.policy)
-    except UsageError as error:
-        message = f"{error} {FAVOURITE}"
-        problems.append(Problem(place, "error", "bad-value", message))
-    if robot is not None:
-        for document in documents:
-            problems += check_commands(document, robot.commands, robot.devices)
-    complete = len(documents) == len(scenario.applications) + len(offers)
-    if world is None or robot is None or not complete:
-        raise DocumentError(problems)
-    if problem := _favourite_problem(scenario.policy, documents):
-        problems.append(Problem(place, "error", "no-such-name", *problem))
-    cast = Cast(scenario, documents, world, robot, offers)
-    problems += check_cast(cast, str(path))
-    if any(problem.severity == "error" for problem in problems):
-        raise DocumentError(set(problems))
-    return Loaded(cast, files, sorted(set(problems)))
-
-
-FAVOURITE = "fixed:APP prefers the application APP."
-
-
-def _favourite_problem(policy: str, documents: list[Document]) -> tuple[str, str] | None:
-    """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
-    kind, _, first = policy.partition(":")
-    names = [document.id for document in documents]
-    if kind != "fixed" or not first or first in names:
-        return None
-    hint = did_you_mean(first, names) or f"Write {one_of(names)}."
-    return f'The policy "{policy}" names an application that is not in the scenario.', hint
-
-
-def _digest(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
 
 
 @dataclass(slots=True)
@@ -303,7 +119,7 @@ def rehearse(
         chosen = policy_named(name)
     except UsageError as error:
         raise UsageError(f"{error} {FAVOURITE}") from None
-    if problem := _favourite_problem(name, cast.documents):
+    if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
     rehearsal = Rehearsal(cast, chosen, bound)
     head: Record = {
@@ -462,14 +278,8 @@ def _reason(record: Record, row: Row) -> str:
     return ""
 
 
-def documents_folder() -> Path:
-    """The folder of the demo documents that come with the package."""
-    inside = Path(__file__).parent / "documents"
-    return inside if inside.is_dir() else Path(__file__).parent.parent / "documents"
-
-
 __all__ = [
     "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Transcript",
     "UsageError", "diff", "documents_folder", "explain", "explain_row", "load", "load_scenario",
-    "read", "rehearse", "replay", "validate",
+    "read", "rehearse", "replay", "stage", "validate",
 ]  # fmt: skip

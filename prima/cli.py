@@ -139,7 +139,10 @@ def validate(files: tuple[str, ...], form: str) -> None:
 
 
 @cli.command()
-@click.argument("scenario", type=click.Path())
+@click.argument("scenario", type=click.Path(), required=False)
+@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
+@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
 @click.option("-o", "--output", type=click.Path(), help="Write the transcript here as JSON lines.")
 @click.option("--policy", help=f"The mediator's policy: {POLICIES}.")
 @click.option(
@@ -148,20 +151,38 @@ def validate(files: tuple[str, ...], form: str) -> None:
 @click.option("--why", "--explain", is_flag=True, help="Print the rule that put each row there.")
 @_format
 def run(
-    scenario: str, output: str | None, policy: str | None, bound: int | None, why: bool, form: str
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    says: tuple[str, ...],
+    output: str | None,
+    policy: str | None,
+    bound: int | None,
+    why: bool,
+    form: str,
 ) -> None:
     """Run a scenario in simulation and print the mediated transcript.
+
+    Without SCENARIO, the applications named by --fa and --ea run in an empty room,
+    and the user says what --say tells, one after the other, to the questions.
 
     With -o the transcript is written as JSON lines while the run goes on, and
     only a summary is printed. Exit code 3 if the run ended by an error or a limit.
 
     \b
     prima run documents/scenarios/follow-during-navigation.xml -o mediated.jsonl
+    prima run --ea documents/ea/library.xml --say "The C Primer"
     """
     from prima import api
 
-    loaded = api.load_scenario(scenario)
-    if output is not None and _is_source(output, scenario, loaded.files):
+    if (scenario is None) == (not fas and not eas):
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if scenario is not None and says:
+        raise UsageError(
+            "A scenario says itself what the user says; --say goes with --fa and --ea."
+        )
+    loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas, says)
+    if output is not None and _is_source(output, scenario or "", loaded.files):
         raise UsageError(f"{output}: this is one of the run's own documents; write elsewhere.")
     for problem in loaded.problems:
         if problem.severity != "note":

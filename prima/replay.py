@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from prima.commands import CommandType
 from prima.errors import UsageError
-from prima.interpreter.elements import Document
 from prima.messages import (
     Emergency,
     Ended,
@@ -23,7 +22,7 @@ from prima.messages import (
     Unloaded,
 )
 from prima.scheduler.selection import policy_named
-from prima.session import Session
+from prima.session import AnyDocument, Session
 
 
 def inbound_of(record: Record) -> Inbound | None:
@@ -59,7 +58,7 @@ def inbound_of(record: Record) -> Inbound | None:
 
 
 def replay_records(
-    records: Iterable[Record], documents: Iterable[Document], commands: Mapping[str, CommandType]
+    records: Iterable[Record], documents: Iterable[AnyDocument], commands: Mapping[str, CommandType]
 ) -> Iterator[Record]:
     """Run the inbound records of a transcript through a session; times of both in s and ms.
 

@@ -10,6 +10,7 @@ the inbound values is a journal, and feeding them again a replay.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
 from prima.commands import CommandType
 from prima.interpreter.application import Interpreter
@@ -46,6 +47,13 @@ from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.selection import Policy
 
+if TYPE_CHECKING:
+    from prima.voicexml.application import VoiceInterpreter
+    from prima.voicexml.document import VoiceDocument
+
+AnyDocument: TypeAlias = "Document | VoiceDocument"
+App: TypeAlias = "Interpreter | VoiceInterpreter"
+
 
 class Session:
     """One robot's applications under one policy."""
@@ -55,13 +63,13 @@ class Session:
 
     def __init__(
         self,
-        documents: Iterable[Document],
+        documents: Iterable[AnyDocument],
         policy: Policy,
         commands: Mapping[str, CommandType],
         bound: int | None = None,
     ) -> None:
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {doc.id: Interpreter(doc, own) for doc in documents}
+        self.apps = {doc.id: interpreter_of(doc, own) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound)
@@ -125,7 +133,7 @@ class Session:
         active = self.mediator.memory.active
         return -1 if active is not None and active.name == name else self.order.get(name, 0)
 
-    def _in_order(self) -> list[Interpreter]:
+    def _in_order(self) -> list[App]:
         """V3: the applications in declared order, the one whose stream is active first."""
         return [
             self.apps[name]
@@ -181,7 +189,7 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            app = self.apps[name] = Interpreter(app.document, app.arguments)
+            app = self.apps[name] = interpreter_of(app.document, app.arguments)
         self._loaded.add(name)
         app.sensors.update(self._sensors)
         self.mediator.load(name, app.kind)
@@ -207,7 +215,7 @@ class Session:
         self._raise(value.name, dict(value.data), apps)
 
     def _raise(
-        self, name: str, data: dict[str, Json], apps: list[Interpreter], reactive: bool = True
+        self, name: str, data: dict[str, Json], apps: list[App], reactive: bool = True
     ) -> None:
         """V1: an event goes to every application; each one's handlers decide."""
         self._serial += 1
@@ -271,9 +279,7 @@ class Session:
                 self._own_event(app, name, {}, reactive=True)
             self._act(app)
 
-    def _own_event(
-        self, app: Interpreter, name: str, data: dict[str, Json], reactive: bool
-    ) -> None:
+    def _own_event(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
         """An event that one application alone has defined."""
         self.chronicle.add(
             "event",
@@ -312,7 +318,7 @@ class Session:
             self._act(app)
         self.mediator.close_window(told)
 
-    def _act(self, app: Interpreter) -> None:
+    def _act(self, app: App) -> None:
         """Carry out what an application wants."""
         while app.actions:
             actions, app.actions = app.actions, []
@@ -335,7 +341,7 @@ class Session:
                     case Quit():
                         self._quit(app, action)
 
-    def _send(self, app: Interpreter, action: Send) -> None:
+    def _send(self, app: App, action: Send) -> None:
         data = {"to": action.service, "params": action.data}
         self.chronicle.add(
             "send", "robot", app=app.name, data=data, serial=action.serial, source=action.source
@@ -344,7 +350,7 @@ class Session:
         order.data = data
         self._sends.append(order)
 
-    def _log(self, app: Interpreter, action: Say) -> None:
+    def _log(self, app: App, action: Say) -> None:
         self.chronicle.add(
             "log" if action.level == "log" else "error",
             "robot",
@@ -353,10 +359,19 @@ class Session:
             source=action.source or None,
         )
 
-    def _quit(self, app: Interpreter, action: Quit) -> None:
+    def _quit(self, app: App, action: Quit) -> None:
         if action.failed:
             self.failures.append(f"{app.name}: {action.reason}")
         self.mediator.unload(app.name, action.reason)
+
+
+def interpreter_of(document: AnyDocument, arguments: Mapping[str, frozenset[str]]) -> App:
+    """The interpreter of a document, of whichever language it is."""
+    if isinstance(document, Document):
+        return Interpreter(document, arguments)
+    from prima.voicexml.application import VoiceInterpreter
+
+    return VoiceInterpreter(document, arguments)
 
 
 def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:

@@ -21,6 +21,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from prima.commands import TABLE_4_2, CommandType
+from prima.interpreter.application import Interpreter
 from prima.interpreter.reader import read_document
 from prima.messages import (
     CloseUnit,
@@ -279,7 +280,7 @@ def _stuck(session: Session) -> list[str]:
     for app in session.apps.values():
         # Private, but nothing else tells an application that waits for a Command
         # which is gone from one that waits for an event.
-        waiting = sorted(app._waiting)
+        waiting = sorted(app._waiting) if isinstance(app, Interpreter) else []
         if waiting and not app.over and not memory.behaviors:
             found.append(f"invariant 9: {app.name} waits for {waiting}, which nobody will end")
     return found

@@ -248,3 +248,32 @@ def test_a_hint_that_can_have_no_effect_is_told(tmp_path: Path) -> None:
     checked = prima("validate", document)
     assert checked.returncode == 0
     assert checked.stdout.count("[idle-hint]") == 2
+
+
+def test_applications_run_without_a_scenario(tmp_path: Path) -> None:
+    library = ROOT / "documents" / "ea" / "library.xml"
+    ran = prima("run", "--ea", library, "--say", "The C Primer")
+    assert ran.returncode == 0
+    assert '"The C Primer"' in ran.stdout and '"Wait a minute."' in ran.stdout
+    both = prima("run", "--fa", ROOT / "documents" / "fa" / "emotions.xml", "--ea", library)
+    assert both.returncode == 0 and "starts emotions" in both.stdout
+
+
+def test_a_voicexml_document_is_checked_and_run_as_it_is(tmp_path: Path) -> None:
+    pizza = ROOT / "documents" / "ea" / "pizza.vxml"
+    assert prima("validate", pizza).returncode == 0
+    ran = prima("run", "--ea", pizza, "--say", "a small pizza with cheese", "--say", "yes")
+    assert ran.returncode == 0
+    assert '"A small pizza with cheese. Is that right?"' in ran.stdout
+    wrong = tmp_path / "wrong.vxml"
+    wrong.write_text(pizza.read_text(encoding="utf-8").replace("<prompt>Which", "<promt>Which"))
+    assert prima("validate", wrong).returncode == 1
+
+
+@pytest.mark.parametrize(
+    "words", [(), ("a.xml", "--ea", "b.xml"), ("a.xml", "--say", "x"), ("--ea", "nowhere.xml")]
+)
+def test_what_cannot_be_run_is_told(words: tuple[str, ...]) -> None:
+    ran = prima("run", *words)
+    assert ran.returncode in (1, 2)
+    assert ran.stderr and "Traceback" not in ran.stderr

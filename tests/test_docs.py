@@ -52,7 +52,8 @@ class Example:
     @property
     def complete(self) -> bool:
         """Whether it is a whole document and no fragment."""
-        return self.language == "xml" and 'xmlns="urn:prima:' in self.text
+        namespaces = ('xmlns="urn:prima:', 'xmlns="http://www.w3.org/2001/vxml"')
+        return self.language == "xml" and any(one in self.text for one in namespaces)
 
     def __str__(self) -> str:
         return f"{self.page.name}:{self.line}"

@@ -292,8 +292,18 @@ class Engine:
         return [self._call(self._help["item"], array, index) for index in range(int(length))]
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
-        """Evaluate an expression and give its value to a variable of a scope."""
-        self._call(self._help["set"], scope, name, self.raw(code, scopes))
+        """Evaluate an expression and give its value to a variable of a scope.
+
+        The value stays in the engine: undefined is not what Python would give back.
+        """
+        key = f"give\n{code}"
+        function = self._compiled.get(key)
+        if function is None:
+            check_expression(self._context, code)
+            body = f"{{$s[$n] = (\n{code}\n)}}"
+            wrapped = f"(function({self._names},$s,$n){{{self._withs}{body}}})"
+            function = self._compiled[key] = self._call(self._context.eval, wrapped)
+        self._call(function, *scopes, scope, name)
 
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).

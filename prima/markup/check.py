@@ -40,7 +40,7 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
             raise DocumentError([Problem(root.place, "error", "wrong-root", message)])
     own = DOCUMENTS.get(root.namespace)
     if own:
-        wanted = one_of(DOCUMENTS[namespace] for _, namespace in expected)
+        wanted = one_of(DOCUMENTS.get(name, "a VoiceXML document") for _, name in expected)
         message = f"This is {own}; {wanted} is needed here."
         remedy = REMEDIES.get((own, wanted), "")
         raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])

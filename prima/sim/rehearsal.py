@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from prima.errors import DocumentError, Problem, did_you_mean
-from prima.interpreter.elements import Document
 from prima.messages import Inbound, Loaded, Record, Unloaded
 from prima.scheduler.selection import Policy
-from prima.session import Session
+from prima.session import AnyDocument, Session
 from prima.sim.person import Person
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
@@ -30,7 +29,7 @@ class Cast:
     """All that a run needs, read and checked."""
 
     scenario: Scenario
-    documents: list[Document]
+    documents: list[AnyDocument]
     """Those of the scenario's applications, then those that areas of the world offer."""
     world: Map
     robot: Profile

@@ -305,6 +305,16 @@ SCENARIO = Vocabulary(
             (
                 attribute("src", "path", "its document", "required"),
                 attribute("start", "duration", "when it is loaded", default="0s"),
+                attribute(
+                    "id", "id", "its name, for a VoiceXML document; by default that of its file"
+                ),
+                attribute(
+                    "kind",
+                    "text",
+                    "what a VoiceXML document is",
+                    default="ea",
+                    choices=("fa", "ea"),
+                ),
             ),
         ),
         Element(

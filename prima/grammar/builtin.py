@@ -1,0 +1,230 @@
+"""The built-in types of VoiceXML 2.0 (Appendix P), for voice and for keys.
+
+Their values are those that the appendix gives: ``true``, ``19990204``, ``USD10.50``, ``0530p``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from urllib.parse import unquote
+
+from prima.grammar import moments
+from prima.grammar.model import BuiltIn
+from prima.grammar.numbers import cardinal, digits, number
+from prima.grammar.text import fold
+from prima.messages import Json
+
+YES = {
+    "en": "yes|yeah|yep|yup|yes please|yes i do|yes it is|sure|of course|ok|okay|correct|right",
+    "ja": "はい|ええ|うん|そうです|お願いします|はいお願いします|もちろん",
+    "fr": "oui|ouais|daccord|bien sûr",
+    "de": "ja|jawohl|genau|natürlich|richtig",
+    "es": "sí|si|claro|por supuesto",
+    "it": "sì|si|certo",
+}
+NO = {
+    "en": "no|nope|nah|no thanks|no thank you|no i dont|no it isnt|not now|wrong|incorrect",
+    "ja": "いいえ|いや|ううん|違います|結構です|いいえ結構です",
+    "fr": "non|non merci",
+    "de": "nein|nein danke|nee|falsch",
+    "es": "no|no gracias",
+    "it": "no|no grazie",
+}
+CURRENCIES = {
+    "$": "USD", "dollar": "USD", "dollars": "USD", "usd": "USD", "€": "EUR", "euro": "EUR",
+    "euros": "EUR", "eur": "EUR", "£": "GBP", "pound": "GBP", "pounds": "GBP", "gbp": "GBP",
+    "¥": "JPY", "yen": "JPY", "円": "JPY", "jpy": "JPY", "ドル": "USD", "ユーロ": "EUR",
+}  # fmt: skip
+PARTS = {"cent", "cents", "penny", "pence", "p", "セント"}
+TYPES = ("boolean", "currency", "date", "digits", "number", "phone", "time")
+LENGTHS = ("length", "minlength", "maxlength")
+_URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?", re.DOTALL)
+_EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|\bx(?=\d|\b)|内線) ?")
+_MONEY = re.compile(r"([$€£¥]|[A-Za-z]{3})?\s*([0-9][0-9,]*)(?:\.([0-9]{1,2}))?\s*([A-Za-z]{3})?")
+
+Reader = Callable[[dict[str, str], str, str, str], Json]
+"""Parameters, language, text and mode to value; None where it does not match."""
+
+
+def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
+    """The built-in type that a URI names.
+
+    Raises:
+        ValueError: there is none of that name, or not with such parameters.
+    """
+    match = _URI.fullmatch(uri)
+    name = match[1] if match else ""
+    if match is None or name not in TYPES:
+        raise ValueError(f'There is no built-in type "{uri[:80]}".')
+    given = _parameters(name, match[2] or "")
+    read = partial(_READERS[name], given, lang.split("-")[0].lower())
+    return BuiltIn(name, read, partial(_open, name, given))
+
+
+def _parameters(name: str, text: str) -> dict[str, str]:
+    given: dict[str, str] = {}
+    for piece in filter(None, re.split("[;&]", text)):
+        key, _, value = unquote(piece).partition("=")
+        given[key.strip()] = value.strip()
+    known = {"digits": LENGTHS, "boolean": ("y", "n")}.get(name, ())
+    for key, value in given.items():
+        if key not in known:
+            raise ValueError(f'The built-in type {name} has no parameter "{key[:40]}".')
+        if name == "digits" and re.fullmatch("[0-9]{1,4}", value) is None:
+            raise ValueError(f'{key} is a number of digits, not "{value[:40]}".')
+        if name == "boolean" and re.fullmatch("[0-9*#A-D]", value) is None:
+            raise ValueError(f'{key} is one key, not "{value[:40]}".')
+    if name == "digits":
+        _check_lengths(given)
+    elif name == "boolean" and given.get("y", "1") == given.get("n", "2"):
+        raise ValueError("y and n are one key.")
+    return given
+
+
+def _check_lengths(given: dict[str, str]) -> None:
+    low, high = _lengths(given)
+    if "length" in given and len(given) > 1:
+        raise ValueError("length excludes minlength and maxlength.")
+    if low > high:
+        raise ValueError("minlength is more than maxlength.")
+
+
+def _lengths(given: dict[str, str]) -> tuple[int, int]:
+    if "length" in given:
+        return int(given["length"]), int(given["length"])
+    return int(given.get("minlength", "1")), int(given.get("maxlength", "9999"))
+
+
+def _open(name: str, given: dict[str, str], text: str, mode: str) -> bool:
+    """Whether more may follow."""
+    if mode != "dtmf":
+        return True
+    most = {"boolean": 1, "date": 8, "time": 4}.get(name)
+    if name == "digits":
+        most = _lengths(given)[1]
+    only = "0123456789*" if name in ("number", "currency", "phone") else "0123456789"
+    if name == "boolean":
+        return not text
+    return set(text) <= set(only) and (most is None or len(text) < most)
+
+
+# Types
+
+
+def _boolean(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf":
+        pressed = {given.get("y", "1"): True, given.get("n", "2"): False}
+        return pressed.get(text.strip())
+    said = fold(text)
+    for words, value in ((YES, True), (NO, False)):
+        spoken = words.get(lang, "") + "|" + words["en"]
+        if said and said in map(fold, spoken.split("|")):
+            return value
+    return None
+
+
+def _digits(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    found = _keys(text) if mode == "dtmf" else digits(fold(text))
+    low, high = _lengths(given)
+    return found if found and found.isdigit() and low <= len(found) <= high else None
+
+
+def _keys(text: str) -> str:
+    return text.replace(" ", "")
+
+
+def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf":
+        match = re.fullmatch(r"([0-9]*)(?:\*([0-9]*))?", _keys(text))
+        if match is None or not (match[1] or match[2]):
+            return None
+        return f"{int(match[1] or '0')}{'.' + match[2] if match[2] else ''}"
+    plain = text.strip().replace("\u2212", "-")
+    sign = plain[0] if plain[:1] in ("-", "+") else ""
+    return number(f"{sign}{fold(plain)}")
+
+
+def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf":
+        match = re.fullmatch(r"([0-9]+)(?:\*([0-9]{1,2}))?", _keys(text))
+        return f"{int(match[1])}.{(match[2] or ''):0<2}" if match else None
+    if match := _MONEY.fullmatch(text.strip(" !?")):
+        unit = (match[1] or match[4] or "").lower()
+        code = CURRENCIES.get(unit)
+        if unit and code is None:
+            return None
+        whole = int(match[2].replace(",", "")[:40])
+        return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
+    return _spoken_money(fold(text))
+
+
+def _spoken_money(said: str) -> str | None:
+    """``twelve dollars and fifty cents``, ``500円``."""
+    unit = next((word for word in CURRENCIES if word and _holds(said, word)), None)
+    if unit is None:
+        cents = _before(said, PARTS)
+        return None if cents is None or cents > 99 else f"0.{cents:02d}"
+    head, _, tail = said.partition(unit)
+    whole = number(head.strip())
+    if whole is None or whole[0] in "+-":
+        return None
+    main, _, part = whole.partition(".")
+    tail = tail.strip().removeprefix("and ").strip()
+    cents = int(f"{part:0<2}"[:2]) if part else 0
+    if tail:
+        found = _before(tail, PARTS)
+        found = cardinal(tail) if found is None else found
+        if found is None or found > 99 or part:
+            return None
+        cents = found
+    return f"{CURRENCIES[unit]}{main}.{cents:02d}"
+
+
+def _holds(said: str, word: str) -> bool:
+    return word in said.split() or (not word.isascii() and word in said)
+
+
+def _before(said: str, words: set[str]) -> int | None:
+    """The number before one of the words, which ends the text."""
+    for word in words:
+        if said.endswith(word):
+            return cardinal(said.removesuffix(word).strip())
+    return None
+
+
+def _phone(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf":
+        match = re.fullmatch(r"[0-9]+(?:\*[0-9]+)?", _keys(text))
+        return match[0].replace("*", "x") if match else None
+    parts = _EXTENSION.split(fold(text))
+    read = [digits(part.strip()) for part in parts]
+    if len(parts) > 2 or any(one is None for one in read):
+        return None
+    return "x".join(one for one in read if one)
+
+
+def _date(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf" and re.fullmatch("[0-9]{8}", _keys(text)) is None:
+        return None
+    return moments.date(_keys(text) if mode == "dtmf" else text, fold(text))
+
+
+def _time(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
+    if mode == "dtmf":
+        pressed = _keys(text)
+        found = re.fullmatch("[0-9]{4}", pressed)
+        return moments.time(f"{pressed[:2]}:{pressed[2:]}") if found else None
+    return moments.time(fold(text))
+
+
+_READERS: dict[str, Reader] = {
+    "boolean": _boolean,
+    "currency": _currency,
+    "date": _date,
+    "digits": _digits,
+    "number": _number,
+    "phone": _phone,
+    "time": _time,
+}

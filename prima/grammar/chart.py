@@ -1,0 +1,273 @@
+"""Matching: which expansions match which stretches of an utterance, each found once.
+
+A chart in the manner of generalised parsing with memory: every expansion is tried once at
+every place, whoever asks for it, and everyone who asks hears of every end. So left recursion,
+rules that refer to each other and ambiguity need no more than polynomial work; nothing recurses.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from prima.grammar.model import (
+    BuiltIn,
+    Choice,
+    Part,
+    Reference,
+    Repeat,
+    Sequence,
+    Special,
+    Tag,
+    Words,
+)
+from prima.grammar.text import Utterance
+from prima.messages import Json
+
+MAX_STEPS = 300_000
+"""How many steps one utterance may take; one that needs more matches nothing."""
+MOST_READ = 300
+"""How many characters a built-in type reads inside an utterance."""
+GARBAGE_COST = 10.0
+"""The cost of a word that GARBAGE takes: anything else is better."""
+
+
+class Way(NamedTuple):
+    """One way to match a stretch: what comes before, and what comes last."""
+
+    rank: int
+    """Which alternative it is; lower ones are written first."""
+    cost: float
+    left: Cell | None
+    right: Cell | None
+
+
+class Cell:
+    """An expansion matched from one place to another, in all ways."""
+
+    __slots__ = ("end", "number", "part", "start", "value", "ways")
+
+    def __init__(self, part: Part | None, start: int, end: int, number: int) -> None:
+        self.part = part
+        """None for a beginning of a sequence or of repeats."""
+        self.start = start
+        self.end = end
+        self.number = number
+        self.ways: list[Way] = []
+        self.value: Json = None
+        """What a built-in type read."""
+
+
+class Spot:
+    """An expansion begun at one place."""
+
+    __slots__ = ("begun", "ends", "part", "start", "waiting")
+
+    def __init__(self, part: Part, start: int) -> None:
+        self.part = part
+        self.start = start
+        self.ends: dict[int, Cell] = {}
+        self.begun: dict[tuple[int, int], Cell] = {}
+        """How far a sequence or repeats have come: parts done and end to cell."""
+        self.waiting: list[Waiting] = []
+
+
+class Waiting(NamedTuple):
+    """Who asked for an expansion: a spot, how many parts it had, and what they had matched."""
+
+    spot: Spot
+    done: int
+    before: Cell | None
+
+
+class Chart:
+    """All matches of one utterance."""
+
+    def __init__(self, said: Utterance, root: Reference, most_steps: int = MAX_STEPS) -> None:
+        self.utterance = said
+        self.said = said.said
+        self.steps_left = most_steps
+        self.open = False
+        """Whether something that begins with this utterance may match."""
+        self._spots: dict[tuple[int, int], Spot] = {}
+        self._cells = 0
+        self._todo: list[tuple[Waiting | None, Spot | Cell]] = []
+        self._top = Spot(root, 0)
+        self._todo.append((None, self._top))
+
+    def run(self, prefixes: bool = False) -> Cell | None:
+        """Find all matches; give that of the whole utterance, if there is one."""
+        self._prefixes = prefixes
+        todo = self._todo
+        while todo:
+            self.steps_left -= 1
+            if self.steps_left < 0:
+                return None
+            waiting, item = todo.pop()
+            if isinstance(item, Spot):
+                self._begin(item)
+            elif waiting is not None:
+                self._resume(waiting, item)
+        return self._top.ends.get(len(self.said))
+
+    def _call(self, part: Part, start: int, waiting: Waiting) -> None:
+        """Ask for an expansion at a place."""
+        key = (id(part), start)
+        spot = self._spots.get(key)
+        if spot is None:
+            spot = self._spots[key] = Spot(part, start)
+            self._todo.append((None, spot))
+        spot.waiting.append(waiting)
+        for cell in spot.ends.values():
+            self._todo.append((waiting, cell))
+
+    def _cell(self, part: Part | None, start: int, end: int) -> Cell:
+        self._cells += 1
+        return Cell(part, start, end, self._cells)
+
+    def _finish(self, spot: Spot, end: int, way: Way) -> Cell:
+        """An expansion matches up to a place, in one more way."""
+        cell = spot.ends.get(end)
+        if cell is None:
+            cell = spot.ends[end] = self._cell(spot.part, spot.start, end)
+            self._todo.extend((waiting, cell) for waiting in spot.waiting)
+        cell.ways.append(way)
+        return cell
+
+    def _begin(self, spot: Spot) -> None:
+        part, start = spot.part, spot.start
+        match part:
+            case Words(folded):
+                self._words(spot, folded)
+            case Choice():
+                self._choice(spot, part)
+            case Sequence():
+                self._go_on(spot, 0, start, _NO_WAY)
+            case Repeat():
+                self._again(spot, 0, start, _NO_WAY)
+            case Reference():
+                if part.rule is not None:
+                    self._call(part.rule.body, start, Waiting(spot, 0, None))
+            case Tag():
+                self._finish(spot, start, _NO_WAY)
+            case Special():
+                self._special(spot, part.name)
+            case BuiltIn():
+                self._built_in(spot, part)
+
+    def _resume(self, waiting: Waiting, cell: Cell) -> None:
+        """What somebody asked for has matched."""
+        spot = waiting.spot
+        match spot.part:
+            case Choice(costs=costs):
+                way = Way(waiting.done, costs[waiting.done], None, cell)
+                self._finish(spot, cell.end, way)
+            case Sequence():
+                self._go_on(spot, waiting.done + 1, cell.end, Way(0, 0.0, waiting.before, cell))
+            case Repeat():
+                self._repeated(spot, waiting, cell)
+            case _:
+                self._finish(spot, cell.end, Way(0, 0.0, None, cell))
+
+    # Kinds of expansions
+
+    def _words(self, spot: Spot, folded: str) -> None:
+        start = spot.start
+        if self.said.startswith(folded, start):
+            end = start + len(folded)
+            if end == len(self.said):
+                self.open |= end > start
+            if self.utterance.edges[end]:
+                self._finish(spot, self.utterance.after(end), _NO_WAY)
+        self._opens(folded, start)
+
+    def _opens(self, folded: str, start: int) -> None:
+        """Whether the rest of the utterance is a beginning of some words."""
+        if self._prefixes and len(folded) > len(self.said) - start:
+            self.open |= folded.startswith(self.said[start:])
+
+    def _choice(self, spot: Spot, part: Choice) -> None:
+        start, said = spot.start, self.said
+        index = part.index
+        left = len(said) - start
+        for length in index.lengths:
+            if length > left:
+                if self._prefixes:
+                    self.open |= any(words.startswith(said[start:]) for words in index.by_lead)
+                break
+            found = index.by_lead.get(said[start : start + length])
+            if found is not None and self.utterance.edges[start + length]:
+                for number in found:
+                    self._call(part.parts[number], start, Waiting(spot, number, None))
+        for number in index.others:
+            self._call(part.parts[number], start, Waiting(spot, number, None))
+        self.steps_left -= len(index.lengths) + len(index.others)
+
+    def _go_on(self, spot: Spot, done: int, end: int, way: Way) -> None:
+        """So many parts of a sequence have matched."""
+        part = spot.part
+        assert isinstance(part, Sequence)
+        if done == len(part.parts):
+            self._finish(spot, end, way)
+            return
+        cell = spot.begun.get((done, end))
+        if cell is None:
+            cell = spot.begun[done, end] = self._cell(None, spot.start, end)
+            self._call(part.parts[done], end, Waiting(spot, done, cell))
+        cell.ways.append(way)
+
+    def _repeated(self, spot: Spot, waiting: Waiting, cell: Cell) -> None:
+        """One more time of a repeated expansion."""
+        part, done = spot.part, waiting.done
+        assert isinstance(part, Repeat)
+        cost = part.more if done >= part.low else 0.0
+        if cell.end == cell.start:
+            if done >= part.low:
+                return  # more of nothing is no more
+            done = part.low  # the times that are still needed may be of nothing as well
+        else:
+            done += 1
+            if part.high is None or part.high > len(self.said):
+                done = min(done, part.low)  # how many more does not matter
+        self._again(spot, done, cell.end, Way(0, cost, waiting.before, cell))
+
+    def _again(self, spot: Spot, done: int, end: int, way: Way) -> None:
+        """A repeated expansion has matched so many times."""
+        part = spot.part
+        assert isinstance(part, Repeat)
+        cell = spot.begun.get((done, end))
+        if cell is None:
+            cell = spot.begun[done, end] = self._cell(None, spot.start, end)
+            full = done == part.high
+            if done >= part.low:
+                self._finish(spot, end, Way(-done, 0.0 if full else part.stop, cell, None))
+            if not full:
+                self._call(part.part, end, Waiting(spot, done, cell))
+        cell.ways.append(way)
+
+    def _special(self, spot: Spot, name: str) -> None:
+        if name == "VOID":
+            return
+        self._finish(spot, spot.start, _NO_WAY)
+        if name == "GARBAGE":
+            self.open = True
+            ends = self.utterance.words_from(spot.start)
+            self.steps_left -= len(ends)
+            for words, end in enumerate(ends, 1):
+                way = Way(0, GARBAGE_COST * words, None, None)
+                self._finish(spot, self.utterance.after(end), way)
+
+    def _built_in(self, spot: Spot, part: BuiltIn) -> None:
+        start, mode = spot.start, self.utterance.mode
+        rest = self.said[start:]
+        self.open = self.open or (self._prefixes and part.open(rest, mode))
+        for end in self.utterance.words_from(start):
+            whole = start == 0 and end == len(self.said)
+            if end - start > MOST_READ and not whole:
+                continue
+            value = part.read(self.utterance.text if whole else self.said[start:end], mode)
+            self.steps_left -= 20
+            if value is not None:
+                self._finish(spot, self.utterance.after(end), _NO_WAY).value = value
+
+
+_NO_WAY = Way(0, 0.0, None, None)

@@ -1,0 +1,71 @@
+"""What can be wrong with a grammar, divided by what a caller does about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from prima.errors import DocumentError, Place, Problem
+
+MOST_PROBLEMS = 100
+"""How many problems of one grammar are told."""
+
+
+class GrammarError(DocumentError):
+    """A grammar is no legal one; ``problems`` says all of it, with places and remedies."""
+
+
+class UnsupportedFormat(GrammarError):
+    """What the grammar is written in is not SRGS, or its tags are of an unknown format."""
+
+
+class UnsupportedLanguage(GrammarError):
+    """The grammar is in a language that the caller does not take."""
+
+
+class UnsupportedBuiltIn(GrammarError):
+    """There is no such built-in grammar, or not with such parameters."""
+
+
+Where = Callable[[], Place]
+"""Gives a place when somebody asks for it."""
+
+
+class Problems:
+    """Collects what is wrong while a grammar is read."""
+
+    def __init__(self) -> None:
+        self.found: list[Problem] = []
+        self.kind: type[GrammarError] = GrammarError
+
+    def note(self, where: Where, code: str, message: str, remedy: str = "") -> None:
+        """Note one thing; after many, no more are looked at."""
+        if len(self.found) < MOST_PROBLEMS:
+            self.found.append(Problem(where(), "error", code, message, remedy))
+
+    def unsupported(
+        self, kind: type[GrammarError], where: Where, code: str, message: str, remedy: str = ""
+    ) -> None:
+        """Note what is legal but not supported; it decides the error unless more is wrong."""
+        if not self.found:
+            self.kind = kind
+        self.note(where, code, message, remedy)
+
+    def extend(self, problems: Iterable[Problem]) -> None:
+        """Take over what another document has."""
+        self.found.extend(list(problems)[: MOST_PROBLEMS - len(self.found)])
+
+    def check(self) -> None:
+        """End the reading if anything was noted.
+
+        Raises:
+            GrammarError: with all problems.
+        """
+        if self.found:
+            raise self.kind(self.found)
+
+
+def refuse(
+    kind: type[GrammarError], place: Place, code: str, message: str, remedy: str = ""
+) -> GrammarError:
+    """An error of one problem."""
+    return kind([Problem(place, "error", code, message, remedy)])

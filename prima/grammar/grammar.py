@@ -1,0 +1,165 @@
+"""A grammar that was loaded: what it takes, and what that means."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from prima.grammar.chart import GARBAGE_COST, Chart
+from prima.grammar.errors import GrammarError, Where, refuse
+from prima.grammar.model import Document, Mode, Reference
+from prima.grammar.ranking import best, frames
+from prima.grammar.semantics import Failure, Interpreter, SemanticError
+from prima.grammar.text import utterance
+from prima.messages import Json
+
+MOST_ANALYSES = 64
+"""How many analyses of an utterance are looked at for different meanings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """One way in which a grammar takes an utterance."""
+
+    utterance: str
+    """What was said, as it was given."""
+    text: str
+    """The grammar's tokens that were matched; of keys, the keys."""
+    tokens: tuple[str, ...]
+    interpretation: Json
+    """What it means; the text where the grammar does not say."""
+    confidence: float
+    """1, or less where GARBAGE took a part of it."""
+    weight: float
+    """How likely the grammar's weights make it, 1 where it has none."""
+    mode: str
+    error: SemanticError | None = None
+    """Why it has no interpretation, if a tag failed."""
+
+    @property
+    def slots(self) -> dict[str, Json] | None:
+        """The interpretation's properties, if it is an object."""
+        return self.interpretation if isinstance(self.interpretation, dict) else None
+
+
+class Grammar:
+    """Rules that take utterances; made by :func:`prima.grammar.load`."""
+
+    def __init__(self, document: Document, rule: str, where: Where) -> None:
+        self._document = document
+        self._where = where
+        self.root = rule or document.root
+        """The rule that is matched; empty if the document names none."""
+
+    @property
+    def mode(self) -> Mode:
+        """``voice`` or ``dtmf``; empty for a built-in type that takes both."""
+        return self._document.mode
+
+    @property
+    def lang(self) -> str:
+        """The language of the grammar."""
+        return self._document.lang
+
+    @property
+    def uri(self) -> str:
+        """Where the grammar is from, as far as that was told."""
+        return self._document.uri
+
+    @property
+    def tag_format(self) -> str:
+        """The tag format that the grammar declares."""
+        return self._document.tag_format
+
+    @property
+    def rules(self) -> dict[str, bool]:
+        """The rules by name, and whether each is public."""
+        return {rule.name: rule.public for rule in self._document.rules.values()}
+
+    @property
+    def meta(self) -> dict[str, str]:
+        """The meta data of the header (SRGS 4.11)."""
+        return dict(self._document.meta)
+
+    def rule(self, name: str) -> Grammar:
+        """The grammar with another of its rules as root."""
+        if name not in self._document.rules:
+            message = f'There is no rule "{name}".'
+            raise refuse(GrammarError, self._where(), "no-such-rule", message)
+        return Grammar(self._document, name, self._where)
+
+    def match(self, text: str, *, mode: str = "voice", most: int = 1) -> list[Match]:
+        """What an utterance may mean, best first; nothing if the grammar does not take it.
+
+        Raises:
+            GrammarError: the grammar has no root rule.
+        """
+        root = self._root()
+        said = utterance(text, mode) if self._takes(mode) else None
+        if said is None or most < 1:
+            return []
+        top = Chart(said, root).run()
+        if top is None:
+            return []
+        found: list[Match] = []
+        looked_at = 1 if most == 1 else min(most * 4, MOST_ANALYSES)
+        for analysis in best(top, looked_at):
+            frame, lost = frames(analysis, said)
+            reader = Interpreter(mode)
+            value: Json = None
+            error = None
+            try:
+                value = reader.interpret(frame)
+            except Failure as failure:
+                error = failure.error
+            if not any(_same(one, value, error) for one in found):
+                one = Match(
+                    text,
+                    reader.text(),
+                    tuple(reader.tokens),
+                    value,
+                    round(1 - lost / max(len(said.ends), 1), 3),
+                    round(math.exp(GARBAGE_COST * lost - analysis.cost), 9),
+                    mode,
+                    error,
+                )
+                found.append(one)
+            if len(found) == most:
+                break
+        return found
+
+    def accepts_prefix(self, text: str, *, mode: str = "voice") -> bool:
+        """Whether more may follow: whether some longer utterance that begins so is taken.
+
+        It answers yes where it cannot tell for certain.
+        """
+        said = utterance(text, mode) if self._takes(mode) else None
+        if said is None:
+            return False
+        chart = Chart(said, self._root())
+        chart.run(prefixes=True)
+        return chart.open
+
+    def _takes(self, mode: str) -> bool:
+        return mode == self.mode or (not self.mode and mode in ("voice", "dtmf"))
+
+    def _root(self) -> Reference:
+        rule = self._document.rules.get(self.root)
+        if rule is None:
+            message = "This grammar names no root rule, so it takes nothing by itself."
+            remedy = 'Write root="...", or name a rule: grammar.rule("...").'
+            raise refuse(GrammarError, self._where(), "no-root", message, remedy)
+        return Reference(f"#{self.root}", self._where, rule=rule)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document.rules)
+
+    def __repr__(self) -> str:
+        return f"<Grammar {self.uri or 'inline'} root={self.root!r} mode={self.mode!r}>"
+
+
+def _same(one: Match, value: Json, error: SemanticError | None) -> bool:
+    if one.error is not None or error is not None:
+        return one.error == error
+    return type(one.interpretation) is type(value) and bool(one.interpretation == value)

@@ -1,0 +1,168 @@
+"""Resolving rule references, inside a document and to others (SRGS 2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from urllib.parse import unquote, urldefrag, urljoin
+
+from prima.errors import PrimaError, did_you_mean
+from prima.grammar.builtin import built_in
+from prima.grammar.errors import (
+    GrammarError,
+    Problems,
+    UnsupportedBuiltIn,
+    UnsupportedFormat,
+    Where,
+)
+from prima.grammar.legacy import FORMATS, settle
+from prima.grammar.model import Document, Reference, Rule
+
+MOST_DOCUMENTS = 64
+MOST_BYTES = 20_000_000
+"""How many documents one grammar may be made of, and how large they may be together."""
+
+Fetch = Callable[[str], bytes]
+Read = Callable[["Library", str, bytes, str], Document]
+"""Reads the bytes of a URI, of a media type if it is told, into a document."""
+FAILURES = (OSError, LookupError, ValueError, PrimaError)
+"""What fetching may raise for a document that cannot be had."""
+
+
+class Library:
+    """The documents that one grammar is made of, each read once."""
+
+    def __init__(self, fetch: Fetch | None, read: Read) -> None:
+        self.problems = Problems()
+        self.documents: dict[str, Document | None] = {}
+        self._fetch = fetch
+        self._read = read
+        self._bytes = 0
+        self._unlinked: list[Document] = []
+
+    def add(self, document: Document) -> None:
+        """Add a document whose references are to be resolved."""
+        if document.uri:
+            self.documents.setdefault(document.uri, document)
+        self._unlinked.append(document)
+
+    def link(self) -> None:
+        """Resolve all references, and those of the documents that they lead to."""
+        while self._unlinked:
+            document = self._unlinked.pop(0)
+            self._format(document)
+            for reference in document.references:
+                reference.rule = self._resolve(document, reference)
+
+    def fetch(self, uri: str, media: str, where: Where) -> Document | None:
+        """The document of a URI, fetched the first time; what is wrong is noted."""
+        if uri in self.documents:
+            return self.documents[uri]
+        self.documents[uri] = None
+        if self._fetch is None:
+            message = f'Nothing fetches the grammar "{uri[:200]}" here.'
+            self.problems.note(where, "not-fetched", message, "Give load() a function fetch.")
+            return None
+        if len(self.documents) > MOST_DOCUMENTS:
+            message = f"This grammar is made of more than {MOST_DOCUMENTS} documents."
+            self.problems.note(where, "too-large", message)
+            return None
+        try:
+            data = self._fetch(uri)
+        except FAILURES as error:
+            message = f'The grammar "{uri[:200]}" cannot be had: {error}.'
+            self.problems.note(where, "no-such-file", message)
+            return None
+        self._bytes += len(data)
+        if self._bytes > MOST_BYTES:
+            message = f"The documents of this grammar have more than {MOST_BYTES:,} bytes."
+            self.problems.note(where, "too-large", message)
+            return None
+        return self._take(uri, data, media)
+
+    def _take(self, uri: str, data: bytes, media: str) -> Document | None:
+        try:
+            document = self._read(self, uri, data, media)
+        except GrammarError as error:
+            if not self.problems.found:
+                self.problems.kind = type(error)
+            self.problems.extend(error.problems)
+            return None
+        self.documents[uri] = document
+        self._unlinked.append(document)
+        return document
+
+    def _format(self, document: Document) -> None:
+        """Check the tag format (SRGS 4.8)."""
+        if document.tag_format in FORMATS:
+            settle(document)
+        elif document.tags or document.globals:
+            message = f'The tag format "{document.tag_format[:80]}" is not known.'
+            known = "Known are semantics/1.0 and semantics/1.0-literals."
+            where = document.where
+            self.problems.unsupported(UnsupportedFormat, where, "tag-format", message, known)
+
+    # References
+
+    def _resolve(self, document: Document, reference: Reference) -> Rule | None:
+        uri = reference.uri
+        if uri.startswith("#"):
+            return self._local(document, reference, unquote(uri[1:]))
+        if uri.startswith("builtin:"):
+            return self._built_in(document, reference)
+        if not uri:
+            self.problems.note(reference.where, "bad-value", "The reference names no rule.")
+            return None
+        where, name = urldefrag(urljoin(base_of(document), uri))
+        name = unquote(name)
+        if where == document.uri:
+            found: Document | None = document
+        else:
+            found = self.fetch(where, reference.media, reference.where)
+        if found is None:
+            return None
+        return self._external(document, found, reference, name)
+
+    def _local(self, document: Document, reference: Reference, name: str) -> Rule | None:
+        rule = document.rules.get(name)
+        if rule is None:
+            hint = did_you_mean(name, document.rules)
+            message = f'There is no rule "{name[:80]}".'
+            self.problems.note(reference.where, "no-such-rule", message, hint)
+        return rule
+
+    def _external(
+        self, document: Document, found: Document, reference: Reference, name: str
+    ) -> Rule | None:
+        """A rule of another document: its root, or one that is public."""
+        note = self.problems.note
+        if found.mode != document.mode:
+            message = f"A grammar for {document.mode} refers to one for {found.mode}."
+            note(reference.where, "mode", message)
+            return None
+        name, named = name or found.root, bool(name)
+        rule = found.rules.get(name)
+        if not name:
+            message = f'The grammar "{found.uri}" names no root rule.'
+            note(reference.where, "no-root", message, f"Name a rule: {found.uri}#name.")
+        elif rule is None:
+            hint = did_you_mean(name, found.rules)
+            note(reference.where, "no-such-rule", f'There is no rule "{name[:80]}" there.', hint)
+        elif named and not rule.public and name != found.root and found is not document:
+            message = f'The rule "{name}" is private to its grammar.'
+            note(reference.where, "private-rule", message, 'Write scope="public" there.')
+            return None
+        return rule
+
+    def _built_in(self, document: Document, reference: Reference) -> Rule | None:
+        try:
+            found = built_in(reference.uri, document.mode, document.lang)
+        except ValueError as error:
+            kind = UnsupportedBuiltIn
+            self.problems.unsupported(kind, reference.where, "no-such-name", str(error))
+            return None
+        return Rule(found.name, found, Document("", reference.where, dialect="literals"))
+
+
+def base_of(document: Document) -> str:
+    """What relative URIs of a document are relative to (SRGS 4.9)."""
+    return urljoin(document.uri, document.base) if document.base else document.uri

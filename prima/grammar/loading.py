@@ -1,0 +1,231 @@
+"""Loading a grammar: from an element, a file's text or bytes, or the name of a built-in type."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from urllib.parse import urldefrag, urljoin
+
+from prima.errors import DocumentError, Place
+from prima.grammar.builtin import TYPES, built_in
+from prima.grammar.errors import (
+    GrammarError,
+    UnsupportedBuiltIn,
+    UnsupportedFormat,
+    UnsupportedLanguage,
+    refuse,
+)
+from prima.grammar.grammar import Grammar
+from prima.grammar.linking import Fetch, Library
+from prima.grammar.model import Document, Mode, Rule
+from prima.grammar.xmlform import read_xml
+from prima.markup.reader import MAX_BYTES, parse, too_large
+from prima.markup.tree import Node, Source
+
+XML_TYPES = frozenset(["application/srgs+xml", "application/grammar+xml"])
+ABNF_TYPES = frozenset(["application/srgs", "application/grammar"])
+OPEN_TYPES = frozenset(
+    ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
+)
+"""Types that say nothing of the form; the content does."""
+OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
+"""How formats that are not SRGS begin."""
+_NAMED = re.compile(rf"(?:builtin:.*|(?:{'|'.join(TYPES)})(?:\?.*)?)", re.DOTALL)
+_DECLARED = re.compile(r"""(<\?xml[^>]*?)\s+encoding\s*=\s*(?:"[^"]*"|'[^']*')""")
+
+Languages = Callable[[str], bool]
+
+
+def load(
+    source: Node | bytes | str,
+    *,
+    base: str = "",
+    lang: str = "en",
+    mode: Mode | None = None,
+    fetch: Fetch | None = None,
+    type: str = "",
+    rule: str = "",
+    languages: Languages | None = None,
+) -> Grammar:
+    """Load a grammar.
+
+    Args:
+        source: a ``<grammar>`` element inside a document, the text or bytes of a whole file in
+            either form of SRGS 1.0, a ``builtin:`` URI, or the name of a built-in type.
+        base: where the file is from, or the document that holds the element.
+        lang: the language of an element or a built-in type that does not tell its own.
+        mode: the mode of an element or a built-in type that does not tell its own.
+        fetch: gives the bytes of a grammar that is referred to; without it there are none.
+        type: the media type, where it is known.
+        rule: the rule to match in place of the root.
+        languages: whether a language is taken; without it every one is.
+
+    Raises:
+        UnsupportedFormat: the media type, or the format of the tags, is not known.
+        UnsupportedLanguage: ``languages`` does not take the grammar's language.
+        UnsupportedBuiltIn: there is no such built-in type.
+        GrammarError: the grammar is no legal one.
+    """
+    library = Library(fetch, partial(_document, lang))
+    if isinstance(source, str) and _NAMED.fullmatch(source.strip()):
+        return _named(source.strip(), mode, lang)
+    if isinstance(source, Node):
+        document, rule = _element(library, source, base, lang, mode, type, rule)
+    else:
+        data = source.encode() if isinstance(source, str) else source
+        if isinstance(source, str) and "encoding" in source[:200]:
+            data = _DECLARED.sub(r"\1", source, count=1).encode()
+        document = _document(lang, library, base, data, type)
+        library.add(document)
+    _language(library, document, languages)
+    library.link()
+    library.problems.check()
+    if rule and rule not in document.rules:
+        message = f'There is no rule "{rule}".'
+        raise refuse(GrammarError, document.where(), "no-such-rule", message)
+    return Grammar(document, rule, document.where)
+
+
+def _language(library: Library, document: Document, languages: Languages | None) -> None:
+    if languages is not None and document.mode == "voice" and not languages(document.lang):
+        message = f'Grammars in "{document.lang}" are not taken.'
+        problems = library.problems
+        problems.unsupported(UnsupportedLanguage, document.where, "language", message)
+
+
+# Built-in types
+
+
+def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
+    """The grammar of a built-in type (VoiceXML 2.0 Appendix P)."""
+    kind, _, _ = uri.removeprefix("builtin:").partition("/")
+    if uri.startswith("builtin:") and kind in ("grammar", "voice", "dtmf"):
+        mode = "dtmf" if kind == "dtmf" else "voice"
+    where = partial(Place, uri)
+    try:
+        found = built_in(uri, mode or "", lang)
+    except ValueError as error:
+        raise refuse(UnsupportedBuiltIn, where(), "no-such-name", str(error)) from None
+    document = Document(uri, where, mode or "", lang, found.name, dialect="literals")
+    document.rules[found.name] = Rule(found.name, found, document, True)
+    return Grammar(document, "", where)
+
+
+# Elements
+
+
+def _element(
+    library: Library,
+    node: Node,
+    base: str,
+    lang: str,
+    mode: Mode | None,
+    type: str,
+    rule: str,
+) -> tuple[Document, str]:
+    """A <grammar> element inside a document: rules, text in ABNF, or a reference by src."""
+    media = _media(node.get("type") or type)
+    base = urljoin(base, node.get("xml:base")) if node.get("xml:base") else base
+    if "src" in node.attributes:
+        return _external(library, node, base, media, rule)
+    where = partial(_place, node)
+    document = Document(base, where, mode or "voice", node.get("xml:lang", lang))
+    _known_type(media, where(), node.own_text)
+    if media in ABNF_TYPES or (not node.nodes and node.own_text.lstrip().startswith("#ABNF")):
+        from prima.grammar.abnf import read_abnf
+
+        source = Source(node.source.file, node.own_text.strip() + "\n")
+        read_abnf(source, document, library.problems, where)
+    else:
+        read_xml(node, document, library.problems, inline=True)
+        document.base = ""  # it is in the URI already
+        _root(document)
+    library.add(document)
+    return document, rule
+
+
+def _root(document: Document) -> None:
+    """An element without root: its only rule, or its only public one, is meant."""
+    if not document.root:
+        public = [rule.name for rule in document.rules.values() if rule.public]
+        names = public if len(public) == 1 else list(document.rules)
+        document.root = names[0] if len(names) == 1 else ""
+
+
+def _external(
+    library: Library, node: Node, base: str, media: str, rule: str
+) -> tuple[Document, str]:
+    where = partial(node.attribute_place, "src")
+    uri, fragment = urldefrag(urljoin(base, node.get("src").strip()))
+    _known_type(media, where(), "")
+    document = library.fetch(uri, media, where)
+    library.problems.check()
+    assert document is not None
+    name = rule or fragment
+    if name and name in document.rules and name != document.root:
+        if not document.rules[name].public:
+            message = f'The rule "{name}" is private to its grammar.'
+            raise refuse(GrammarError, where(), "private-rule", message)
+    elif not name and not document.root:
+        message = f'The grammar "{uri}" names no root rule.'
+        raise refuse(GrammarError, where(), "no-root", message, "Name a rule: #name.")
+    return document, name
+
+
+# Files
+
+
+def _document(lang: str, library: Library, uri: str, data: bytes, type: str) -> Document:
+    """The bytes of a whole file as a document; its language is its own."""
+    media = _media(type)
+    uri, file = urldefrag(uri)[0], uri or "grammar"
+    if len(data) > MAX_BYTES:
+        raise GrammarError(too_large(file, len(data)).problems)
+    begin = _beginning(data)
+    _known_type(media, Place(file), begin)
+    document = Document(uri, partial(Place, file))
+    if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
+        from prima.grammar.abnf import decode_abnf, read_abnf
+
+        source = Source(file, decode_abnf(file, data))
+        read_abnf(source, document, library.problems, document.where)
+        return document
+    try:
+        node = parse(file, data)
+    except DocumentError as error:
+        raise GrammarError(error.problems) from None
+    document.where = partial(_place, node)
+    read_xml(node, document, library.problems, inline=False)
+    return document
+
+
+def _beginning(data: bytes) -> str:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data[:200].decode("utf-16", errors="replace").lstrip()
+    return data[:200].decode("utf-8-sig", errors="replace").lstrip()
+
+
+def _media(type: str) -> str:
+    return type.split(";")[0].strip().lower()
+
+
+def _known_type(media: str, place: Place, begin: str) -> None:
+    """Refuse what is not SRGS."""
+    remedy = "Write it in SRGS: application/srgs+xml or application/srgs."
+    for start, name in OTHERS.items():
+        if begin.lstrip().startswith(start):
+            message = f"This grammar is in {name}, which is not supported."
+            raise refuse(UnsupportedFormat, place, "format", message, remedy)
+    if media not in XML_TYPES | ABNF_TYPES | OPEN_TYPES:
+        message = f'Grammars of type "{media[:80]}" are not supported.'
+        raise refuse(UnsupportedFormat, place, "format", message, remedy)
+
+
+def supports(type: str) -> bool:
+    """Whether grammars of a media type can be loaded."""
+    return _media(type) in XML_TYPES | ABNF_TYPES
+
+
+def _place(node: Node) -> Place:
+    return node.place

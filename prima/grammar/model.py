@@ -1,0 +1,161 @@
+"""Grammars as data: rules and their expansions (SRGS 1.0 sections 2 and 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from prima.grammar.errors import Where
+from prima.messages import Json
+
+Mode = Literal["voice", "dtmf", ""]
+"""What input a grammar is for; the empty one takes both."""
+
+
+@dataclass(slots=True, eq=False)
+class Words:
+    """Tokens one after another (SRGS 2.1): folded, and as the grammar writes them."""
+
+    folded: str
+    tokens: tuple[str, ...]
+
+
+@dataclass(slots=True, eq=False)
+class Sequence:
+    """Expansions one after another (SRGS 2.3); none at all is matched by nothing said."""
+
+    parts: list[Part]
+
+
+@dataclass(slots=True, eq=False)
+class Choice:
+    """Alternatives with the cost of their weights (SRGS 2.4), best cost nought."""
+
+    parts: list[Part]
+    costs: list[float]
+    index: LeadIndex
+
+
+@dataclass(slots=True, eq=False)
+class Repeat:
+    """An expansion some times over (SRGS 2.5); ``high`` None is without end.
+
+    ``more`` and ``stop`` are the costs of one more time and of no more (repeat probability).
+    """
+
+    part: Part
+    low: int
+    high: int | None
+    more: float = 0.0
+    stop: float = 0.0
+
+
+@dataclass(slots=True, eq=False)
+class Reference:
+    """A rule by its URI (SRGS 2.2); ``rule`` is there once it was found."""
+
+    uri: str
+    where: Where
+    media: str = ""
+    rule: Rule | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Special:
+    """NULL, VOID or GARBAGE (SRGS 2.2.3)."""
+
+    name: str
+
+
+@dataclass(slots=True, eq=False)
+class Tag:
+    """What a tag holds (SRGS 2.6)."""
+
+    code: str
+    where: Where
+
+
+@dataclass(slots=True, eq=False)
+class BuiltIn:
+    """A built-in type (VoiceXML Appendix P), which reads a text or keys as a value."""
+
+    name: str
+    read: Callable[[str, str], Json]
+    """Text and mode to value; None where it does not match."""
+    open: Callable[[str, str], bool]
+    """Whether more may follow a text."""
+
+
+Part = Words | Sequence | Choice | Repeat | Reference | Special | Tag | BuiltIn
+
+
+@dataclass(slots=True)
+class LeadIndex:
+    """The alternatives of a choice by the words that they begin with."""
+
+    by_lead: dict[str, list[int]]
+    lengths: list[int]
+    others: list[int]
+    """Those that begin with something else."""
+
+
+@dataclass(slots=True, eq=False)
+class Rule:
+    """A rule definition (SRGS 3)."""
+
+    name: str
+    body: Part
+    document: Document
+    public: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Document:
+    """One grammar document: its header (SRGS 4) and its rules."""
+
+    uri: str
+    where: Where
+    mode: Mode = "voice"
+    lang: str = ""
+    root: str = ""
+    base: str = ""
+    tag_format: str = ""
+    rules: dict[str, Rule] = field(default_factory=dict)
+    globals: list[Tag] = field(default_factory=list)
+    """Tags of the header, run once before those of rules."""
+    tags: list[Tag] = field(default_factory=list)
+    references: list[Reference] = field(default_factory=list)
+    lexicons: list[str] = field(default_factory=list)
+    meta: dict[str, str] = field(default_factory=dict)
+    dialect: str = ""
+    """How tags are read: ``script``, ``literals`` or ``legacy``."""
+    merges: bool = False
+    """Whether slots that referenced rules fill are those of the rule that refers."""
+
+
+def lead(part: Part) -> str:
+    """The words that every match of an expansion begins with, as far as is plain."""
+    while True:
+        match part:
+            case Words(folded):
+                return folded
+            case Repeat(inner, low) if low >= 1:
+                part = inner
+            case Sequence(parts):
+                first = next((one for one in parts if not isinstance(one, Tag)), None)
+                if first is None:
+                    return ""
+                part = first
+            case _:
+                return ""
+
+
+def lead_index(parts: list[Part]) -> LeadIndex:
+    """The index of some alternatives."""
+    by_lead: dict[str, list[int]] = {}
+    others: list[int] = []
+    for number, part in enumerate(parts):
+        words = lead(part)
+        (by_lead.setdefault(words, []) if words else others).append(number)
+    return LeadIndex(by_lead, sorted({len(words) for words in by_lead}), others)

@@ -1,0 +1,175 @@
+"""Numbers as people say them: digits, English and Japanese words."""
+
+from __future__ import annotations
+
+import re
+
+ONES = {
+    word: value
+    for value, word in enumerate(
+        ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"]
+    )
+}  # fmt: skip
+TENS = {
+    word: 10 * value
+    for value, word in enumerate(
+        ["twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"], 2
+    )
+}
+SCALES = {"thousand": 10**3, "million": 10**6, "billion": 10**9, "trillion": 10**12}
+DIGITS = {word: str(value) for word, value in ONES.items() if value < 10} | {"oh": "0", "o": "0"}
+TIMES = {"double": 2, "triple": 3}
+KANJI = {letter: value for value, letter in enumerate("〇一二三四五六七八九")} | {"零": 0}
+_SMALL = {"十": 10, "百": 100, "千": 1000}
+_LARGE = {"万": 10**4, "億": 10**8, "兆": 10**12}
+_READINGS = {
+    "ゼロ": "0", "ぜろ": "0", "れい": "0", "まる": "0", "いち": "1", "に": "2", "さん": "3",
+    "よん": "4", "し": "4", "ご": "5", "ろく": "6", "なな": "7", "しち": "7", "はち": "8",
+    "きゅう": "9", "く": "9",
+}  # fmt: skip
+_ONE_DIGIT = re.compile(
+    "|".join(
+        [
+            *sorted(_READINGS, key=len, reverse=True),
+            r"[0-9]",
+            f"[{''.join(KANJI)}]",
+            *(rf"\b(?:{'|'.join(DIGITS)}|{'|'.join(TIMES)})\b",),
+        ]
+    )
+)
+_FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
+_JAPANESE = re.compile(f"[0-9{''.join([*KANJI, *_SMALL, *_LARGE])}]+")
+
+
+def digits(text: str) -> str | None:
+    """A folded text said digit by digit, or None."""
+    found: list[str] = []
+    times, at = 1, 0
+    while at < len(text):
+        if text[at] == " ":
+            at += 1
+            continue
+        match = _ONE_DIGIT.match(text, at)
+        if match is None:
+            return None
+        at = match.end()
+        if match[0] in TIMES:
+            times = TIMES[match[0]] if times == 1 else 0
+            continue
+        digit = DIGITS.get(match[0]) or _READINGS.get(match[0]) or str(KANJI.get(match[0], ""))
+        if times == 0:
+            return None
+        found.append((digit or match[0]) * times)
+        times = 1
+    return "".join(found) if found and times == 1 else None
+
+
+def cardinal(text: str) -> int | None:
+    """A whole number in a folded text: figures, English or Japanese words; or None."""
+    if _FIGURES.fullmatch(text):
+        return int(text.replace(",", "")[:40])
+    if _JAPANESE.fullmatch(text):
+        return _japanese(text)
+    return _english(text.split())
+
+
+def _english(words: list[str]) -> int | None:
+    """``two hundred and five``; or None."""
+    total, group, last = 0, 0, 0
+    scale = 10**15
+    state = "start"  # what was read last
+    for position, word in enumerate(words):
+        if word == "and" and state in ("hundred", "scale") and position + 1 < len(words):
+            state = "and"
+        elif word == "a" and state == "start" and words[position + 1 : position + 2] != []:
+            group, state = 1, "a"
+        elif word in ONES and state in ("start", "hundred", "scale", "and", "tens"):
+            value = ONES[word]
+            if state == "tens" and not 1 <= value <= 9:
+                return None
+            group, state = group + value, "ones"
+        elif word in TENS and state in ("start", "hundred", "scale", "and"):
+            group, state = group + TENS[word], "tens"
+        elif word == "hundred" and state in ("ones", "a", "tens") and 1 <= group < 100:
+            group, state = group * 100, "hundred"
+        elif word in SCALES and state in ("ones", "a", "tens", "hundred"):
+            last = SCALES[word]
+            if last >= scale or not group:
+                return None
+            total, group, scale, state = total + group * last, 0, last, "scale"
+        else:
+            return None
+    return total + group if state not in ("start", "a", "and") else None
+
+
+def _japanese(text: str) -> int | None:
+    """``二百三``, ``3千``; digits alone are read one by one."""
+    if not set(text) & (_SMALL.keys() | _LARGE.keys()):
+        return int("".join(str(KANJI.get(letter, letter)) for letter in text)[:40])
+    total, group, number = 0, 0, ""
+    for letter in text:
+        if letter in _SMALL:
+            group += (int(number) if number else 1) * _SMALL[letter]
+            number = ""
+        elif letter in _LARGE:
+            group += int(number) if number else 0
+            total += (group or 1) * _LARGE[letter]
+            group, number = 0, ""
+        else:
+            number += str(KANJI.get(letter, letter))
+            if len(number) > 15:
+                return None
+    return total + group + (int(number) if number else 0)
+
+
+def number(text: str) -> str | None:
+    """A number with sign and decimals as text without needless zeros, or None."""
+    sign, rest = _sign(text)
+    rest, fraction = _fraction(rest)
+    if fraction is None:
+        return None
+    whole = cardinal(rest)
+    if whole is None and rest in ("", "oh") and fraction:
+        whole = 0
+    if whole is None:
+        return None
+    return f"{sign}{whole}{'.' + fraction if fraction else ''}"
+
+
+def _sign(text: str) -> tuple[str, str]:
+    for word, sign in (("minus ", "-"), ("negative ", "-"), ("plus ", "+"), ("マイナス", "-"),
+                       ("プラス", "+"), ("-", "-"), ("+", "+")):  # fmt: skip
+        if text.startswith(word):
+            return sign, text[len(word) :].strip()
+    return "", text
+
+
+def _fraction(text: str) -> tuple[str, str | None]:
+    """What stands before and after the decimal point; None after it if that is no digits."""
+    match = re.fullmatch(r"((?:[0-9]{1,3}(?:,[0-9]{3})+|[0-9]*))\.([0-9]+)", text)
+    if match:
+        return match[1], match[2]
+    before, point, after = text.partition(" point ")
+    if not point and text.startswith("point "):
+        before, point, after = "", "point", text[6:]
+    if not point and "点" in text:
+        before, point, after = text.partition("点")
+    return before.strip(), (digits(after) if point else "")
+
+
+def ordinal(word: str) -> int | None:
+    """``first``, ``3rd``, ``twenty first``; or None."""
+    match = re.fullmatch(r"([0-9]{1,2})(?:st|nd|rd|th)?", word)
+    if match:
+        return int(match[1])
+    head, _, tail = word.rpartition(" ")
+    irregular = {"first": 1, "second": 2, "third": 3, "fifth": 5, "eighth": 8, "ninth": 9,
+                 "twelfth": 12, "twentieth": 20, "thirtieth": 30}  # fmt: skip
+    value = irregular.get(tail)
+    if value is None and tail.endswith("th"):
+        value = ONES.get(tail[:-2])
+    if value is None and tail in ONES | TENS:
+        value = (ONES | TENS)[tail]
+    if value is None or not head:
+        return value
+    return TENS[head] + value if head in TENS and 1 <= value <= 9 else None

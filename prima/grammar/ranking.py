@@ -1,0 +1,138 @@
+"""Which of the ways that a chart holds is best, and what it says in order.
+
+Lower costs come first; of equal ones that which takes the alternative written first, and of
+repeats that which takes more. Costs are those of weights, repeat probabilities and GARBAGE.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from prima.grammar.chart import Cell, Way
+from prima.grammar.model import BuiltIn, Reference, Rule, Special, Tag, Words
+from prima.grammar.text import Utterance
+from prima.messages import Json
+
+
+class Analysis(NamedTuple):
+    """One way through a cell: its cost, and the analyses of what it is made of."""
+
+    cost: float
+    cell: Cell
+    left: Analysis | None
+    right: Analysis | None
+
+
+@dataclass(slots=True)
+class Frame:
+    """A rule that was matched: what was said, tagged and referred to in it, in order."""
+
+    rule: Rule
+    name: str
+    events: list[Words | Tag | Frame | Value] = field(default_factory=list)
+
+
+class Value(NamedTuple):
+    """What a built-in type read, and from what."""
+
+    value: Json
+    text: str
+
+
+def best(top: Cell, most: int) -> list[Analysis]:
+    """The best analyses of a cell, at most so many."""
+    order, cyclic = _order(top, strict=False)
+    if cyclic:  # keep to ways made of what was there before: every cell has one
+        order, _ = _order(top, strict=True)
+    known: dict[int, list[Analysis]] = {}
+    for cell in order:
+        found: list[tuple[float, int, int, int, int, Analysis]] = []
+        for way in _ways(cell, cyclic):
+            for i, left in enumerate(_known(known, way.left)):
+                for j, right in enumerate(_known(known, way.right)):
+                    if (i + 1) * (j + 1) > most:
+                        break
+                    cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
+                    end = way.left.end if way.left else 0
+                    one = Analysis(cost, cell, left, right)
+                    found.append((round(cost, 9), way.rank, -end, i, j, one))
+        found.sort(key=lambda item: item[:5])
+        known[cell.number] = [item[5] for item in found[:most]]
+    return known[top.number]
+
+
+def _known(known: dict[int, list[Analysis]], cell: Cell | None) -> list[Analysis | None]:
+    return [None] if cell is None else list(known[cell.number])
+
+
+def _ways(cell: Cell, strict: bool) -> Iterator[Way]:
+    for way in cell.ways:
+        if strict and any(
+            part.number > cell.number
+            for part in (way.left, way.right)
+            if part is not None and (part.start, part.end) == (cell.start, cell.end)
+        ):
+            continue
+        yield way
+
+
+def _order(top: Cell, strict: bool) -> tuple[list[Cell], bool]:
+    """All cells that the top one is made of, parts first; and whether some are their own parts."""
+    order: list[Cell] = []
+    state: dict[int, bool] = {top.number: False}  # whether it is done
+    stack = [(top, _parts(top, strict))]
+    cyclic = False
+    while stack:
+        cell, parts = stack[-1]
+        part = next(parts, None)
+        if part is None:
+            stack.pop()
+            state[cell.number] = True
+            order.append(cell)
+        elif part.number not in state:
+            state[part.number] = False
+            stack.append((part, _parts(part, strict)))
+        elif not state[part.number]:
+            cyclic = True
+    return order, cyclic
+
+
+def _parts(cell: Cell, strict: bool) -> Iterator[Cell]:
+    for way in _ways(cell, strict):
+        if way.left is not None:
+            yield way.left
+        if way.right is not None:
+            yield way.right
+
+
+def frames(analysis: Analysis, said: Utterance) -> tuple[Frame, int]:
+    """What an analysis says, rule by rule, and how many words of it GARBAGE took."""
+    top: Frame | None = None
+    open_frames: list[Frame] = []
+    lost = 0
+    todo: list[Analysis | None] = [analysis]  # None ends a frame
+    while todo:
+        one = todo.pop()
+        if one is None:
+            open_frames.pop()
+            continue
+        part = one.cell.part
+        if isinstance(part, Reference) and part.rule is not None:
+            frame = Frame(part.rule, part.rule.name)
+            top = top or frame
+            if open_frames:
+                open_frames[-1].events.append(frame)
+            open_frames.append(frame)
+            todo.append(None)
+        elif isinstance(part, Words | Tag):
+            open_frames[-1].events.append(part)
+        elif isinstance(part, BuiltIn):
+            text = said.said[one.cell.start : one.cell.end].strip()
+            open_frames[-1].events.append(Value(one.cell.value, text))
+        elif isinstance(part, Special):
+            lost += said.words(one.cell.start, one.cell.end)
+        todo.extend(child for child in (one.right, one.left) if child is not None)
+    assert top is not None
+    return top, lost

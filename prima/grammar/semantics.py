@@ -1,0 +1,197 @@
+"""What an utterance means: the tags of the rules that matched (SISR 1.0).
+
+Every rule that matched gives a value, those that it refers to first. Without tags it is the
+value of the last rule that it refers to, or else the text of its tokens.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from prima.errors import Place
+from prima.grammar.legacy import translate
+from prima.grammar.model import Document, Tag, Words
+from prima.grammar.ranking import Frame, Value
+from prima.grammar.text import join
+from prima.messages import Json
+
+MOST_RULES = 20_000
+"""How many rules one utterance may pass through."""
+
+
+@dataclass(frozen=True, slots=True)
+class SemanticError:
+    """Why an utterance has no meaning: a tag failed (``error.semantic``)."""
+
+    message: str
+    place: Place
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.message}"
+
+
+class Failure(Exception):
+    """A tag failed."""
+
+    def __init__(self, error: SemanticError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+@dataclass(slots=True)
+class _Result:
+    """The value of one rule that matched."""
+
+    document: Document
+    first: int
+    """Its tokens, by number."""
+    last: int = 0
+    value: Json = None
+    box: Any = None
+    """The value inside its document's engine, if it is there."""
+
+
+class Interpreter:
+    """Interprets one analysis of an utterance."""
+
+    def __init__(self, mode: str) -> None:
+        self.mode = mode
+        self.tokens: list[str] = []
+        self._sandboxes: dict[int, Any] = {}
+        self._results: dict[int, _Result] = {}
+
+    def interpret(self, top: Frame) -> Json:
+        """The value of the root rule.
+
+        Raises:
+            Failure: a tag failed.
+        """
+        todo: list[tuple[Frame, int]] = [(top, 0)]
+        self._results[id(top)] = _Result(top.rule.document, 0)
+        while todo:
+            frame, at = todo.pop()
+            while at < len(frame.events):
+                event = frame.events[at]
+                at += 1
+                if isinstance(event, Frame):
+                    todo.append((frame, at))
+                    todo.append((event, 0))
+                    self._results[id(event)] = _Result(event.rule.document, len(self.tokens))
+                    break
+                self._token(event)
+            else:
+                result = self._results[id(frame)]
+                result.last = len(self.tokens)
+                self._value(frame, result)
+        return self._plain(self._results[id(top)])
+
+    def _token(self, event: Words | Tag | Value) -> None:
+        if isinstance(event, Words):
+            self.tokens += event.tokens
+        elif isinstance(event, Value):
+            self.tokens.append(event.text)
+
+    def text(self, result: _Result | None = None) -> str:
+        """The tokens of a rule, or all of them, as text."""
+        found = self.tokens[result.first : result.last] if result else self.tokens
+        return "".join(found) if self.mode == "dtmf" else join(found)
+
+    # Values
+
+    def _value(self, frame: Frame, result: _Result) -> None:
+        tags = [event for event in frame.events if isinstance(event, Tag)]
+        dialect = result.document.dialect
+        if not tags:
+            self._default(frame, result)
+        elif dialect == "literals":
+            result.value = tags[-1].code.strip()
+        else:
+            self._script(frame, result)
+
+    def _default(self, frame: Frame, result: _Result) -> None:
+        """The value of a rule without tags (SISR 1.0: default assignment)."""
+        values = [event for event in frame.events if isinstance(event, Frame | Value)]
+        if not values:
+            result.value = self.text(result)
+            return
+        if result.document.merges:
+            rules = [self._results[id(event)] for event in values if isinstance(event, Frame)]
+            slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
+            if slots:
+                result.value = {name: value for one in slots for name, value in one.items()}
+                return
+        last = values[-1]
+        if isinstance(last, Value):
+            result.value = last.value
+        else:
+            inner = self._results[id(last)]
+            result.value = inner.value
+            if inner.box is not None and inner.document is result.document:
+                result.box = inner.box
+            elif inner.box is not None:
+                result.value = self._plain(inner)
+
+    def _plain(self, result: _Result) -> Json:
+        from prima.grammar.sandbox import ScriptError
+
+        if result.box is None:
+            return result.value
+        try:
+            return self._sandbox(result.document).json(result.box)
+        except ScriptError as error:
+            place = result.document.where()
+            raise Failure(SemanticError(f"The value cannot be given: {error}.", place)) from None
+
+    def _script(self, frame: Frame, result: _Result) -> None:
+        """Run the tags of a rule with the values of the rules that it refers to."""
+        from prima.grammar.sandbox import ScriptError
+
+        sandbox = self._sandbox(result.document)
+        legacy = result.document.dialect == "legacy"
+        pieces: list[str] = []
+        code: list[tuple[Tag, str]] = []
+        try:
+            environment = sandbox.environment(self.text(result), result.document.merges)
+            for event in frame.events:
+                if isinstance(event, Tag):
+                    code.append((event, translate(event.code) if legacy else event.code))
+                    pieces.append(f"{code[-1][1]}\n;")
+                elif isinstance(event, Frame):
+                    inner = self._results[id(event)]
+                    sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
+                    pieces.append("$next(out);")
+                elif isinstance(event, Value):
+                    sandbox.add(environment, "builtin", sandbox.box(event.value), event.text)
+                    pieces.append("$next(out);")
+            result.box = sandbox.rule("\n".join(pieces), environment)
+        except ScriptError as error:
+            raise Failure(_failure(error, code, sandbox)) from None
+
+    def _box(self, inner: _Result, result: _Result) -> Any:
+        if inner.box is not None and inner.document is result.document:
+            return inner.box
+        return self._sandbox(result.document).box(self._plain(inner))
+
+    def _sandbox(self, document: Document) -> Any:
+        """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
+        found = self._sandboxes.get(id(document))
+        if found is None:
+            from prima.grammar.sandbox import Sandbox, ScriptError
+
+            found = self._sandboxes[id(document)] = Sandbox()
+            for tag in document.globals:
+                try:
+                    found.run(tag.code)
+                except ScriptError as error:
+                    raise Failure(_failure(error, [(tag, tag.code)], found)) from None
+        return found
+
+
+def _failure(error: Exception, tags: list[tuple[Tag, str]], sandbox: Any) -> SemanticError:
+    """The failure with the tag where it is, as far as that can be told."""
+    broken = [tag for tag, code in tags if not sandbox.checks(code)]
+    tag = (broken or [tag for tag, _ in tags])[0]
+    shown = json.dumps(" ".join(tag.code.split())[:60], ensure_ascii=False)
+    return SemanticError(f"The tag {shown} failed: {error}.", tag.where())

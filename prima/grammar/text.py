@@ -1,0 +1,116 @@
+"""What a person says, folded to what speech carries, and key presses.
+
+Grammars are matched on folded text: neither case, width nor punctuation is heard, and scripts
+that put no spaces between words are matched without them.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+UNSPACED = (
+    r"\u0e00-\u0eff\u0f00-\u0fff\u1000-\u109f\u1780-\u17ff"  # Thai, Lao, Tibetan, Burmese, Khmer
+    r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
+)
+"""Letters of scripts that are written without spaces, or (Korean) with loose ones."""
+_UNSPACED = re.compile(f"[{UNSPACED}]")
+_LOOSE = re.compile(f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])")
+_NUMBER = re.compile(r"(\d+(?:[.,:]\d+)+)")
+_APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
+_PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
+_TOKEN = re.compile(r'"([^"]*)"|([^\s"]+)')
+KEYS = frozenset("0123456789*#ABCD")
+"""The keys of a telephone (SRGS Appendix E)."""
+KEY_NAMES = {"star": "*", "pound": "#"}
+LONGEST = 10_000
+"""Characters that an utterance may have; a longer one matches nothing."""
+
+
+@lru_cache(maxsize=4096)
+def fold(text: str) -> str:
+    """Give text without what speech does not carry: case, width, punctuation, loose spaces."""
+    if _PLAIN.fullmatch(text):
+        return text
+    folded = _APOSTROPHE.sub("", unicodedata.normalize("NFKC", text).casefold())
+    pieces = _NUMBER.split(folded)  # separators inside numbers and times are kept
+    pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
+    return _LOOSE.sub("", " ".join("".join(pieces).split()))
+
+
+def _letter(letter: str) -> str:
+    return " " if unicodedata.category(letter)[0] in "PSZC" else letter
+
+
+def tokens(text: str) -> list[str] | None:
+    """The tokens of a text (SRGS 2.1), quoted ones as one; None if a quote is left open."""
+    if text.count('"') % 2:
+        return None
+    return [" ".join((match[1] or match[2] or "").split()) for match in _TOKEN.finditer(text)]
+
+
+def join(words: tuple[str, ...] | list[str]) -> str:
+    """Tokens as text: no space where the script has none."""
+    return _LOOSE.sub("", " ".join(words))
+
+
+def keys(text: str) -> str | None:
+    """Key presses, written with or without spaces; None if there is anything else."""
+    pressed: list[str] = []
+    for word in text.split():
+        pressed.append(KEY_NAMES.get(word.lower(), word.upper()))
+    joined = "".join(pressed)
+    return joined if KEYS.issuperset(joined) else None
+
+
+@dataclass(slots=True)
+class Utterance:
+    """One utterance as it is matched."""
+
+    text: str
+    """As it was given."""
+    said: str
+    """Folded, or the keys pressed."""
+    edges: list[bool]
+    """Whether a word may end at a place."""
+    mode: str
+    ends: list[int]
+    """Where words end."""
+
+    def after(self, end: int) -> int:
+        """Where the next word begins, after one that ended."""
+        return end + 1 if end < len(self.said) and self.said[end] == " " else end
+
+    def words_from(self, start: int) -> list[int]:
+        """Where a stretch of whole words that begins at a place may end."""
+        return self.ends[bisect_right(self.ends, start) :]
+
+    def words(self, start: int, end: int) -> int:
+        """How many words end in a stretch."""
+        return bisect_right(self.ends, end) - bisect_right(self.ends, start)
+
+
+def utterance(text: str, mode: str) -> Utterance | None:
+    """Prepare an utterance; None if it can match nothing."""
+    if len(text) > LONGEST:
+        return None
+    if mode == "dtmf":
+        pressed = keys(text)
+        if pressed is None:
+            return None
+        everywhere = [True] * (len(pressed) + 1)
+        return Utterance(text, pressed, everywhere, mode, list(range(1, len(pressed) + 1)))
+    said = fold(text)
+    edges = _edges(said)
+    ends = [end for end in range(1, len(edges)) if edges[end] and said[end - 1] != " "]
+    return Utterance(text, said, edges, mode, ends)
+
+
+def _edges(said: str) -> list[bool]:
+    loose = [letter == " " or _UNSPACED.match(letter) is not None for letter in said]
+    inner = [before or after for before, after in pairwise(loose)]
+    return [True, *inner, True] if said else [True]

@@ -1,0 +1,102 @@
+"""The values that both forms of SRGS write alike: repeats, weights, names, languages."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+from prima.grammar.model import Choice, Part, Sequence, lead_index
+
+LEAST = 1e-20
+"""A weight of nought counts as this: it comes after everything else."""
+MOST_TIMES = 10**9
+RESERVED = frozenset(["NULL", "VOID", "GARBAGE"])
+MODES = ("voice", "dtmf")
+_REPEAT = re.compile(r"([0-9]+)(?:(-)([0-9]+)?)?")
+_DECIMAL = re.compile(r"[0-9]+(?:\.[0-9]*)?|\.[0-9]+")
+_NAME = re.compile(r"[^\W\d]\w*")
+_LANGUAGE = re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*")
+
+
+class Bounds(NamedTuple):
+    """How often something is said; ``high`` None is without end."""
+
+    low: int
+    high: int | None
+
+
+def repeat(text: str) -> Bounds:
+    """Read ``n``, ``n-m`` or ``n-`` (SRGS 2.5).
+
+    Raises:
+        ValueError: it is of no such form, or its end is before its beginning.
+    """
+    match = _REPEAT.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(f'repeat "{text[:40]}" is not of the form 2, 0-1 or 1-.')
+    low = min(int(match[1][:12]), MOST_TIMES)
+    if not match[2]:
+        return Bounds(low, low)
+    high = None if match[3] is None else min(int(match[3][:12]), MOST_TIMES)
+    if high is not None and high < low:
+        raise ValueError(f'repeat "{text[:40]}" ends before it begins.')
+    return Bounds(low, high)
+
+
+def decimal(text: str, kind: str) -> float:
+    """Read a weight: a number of nought or more, without exponent (SRGS 2.4.1).
+
+    Raises:
+        ValueError: it is no such number.
+    """
+    if _DECIMAL.fullmatch(text.strip()) is None or len(text) > 40:
+        raise ValueError(f'{kind} "{text[:40]}" is not a number such as 0.5 or 3.')
+    return float(text)
+
+
+def probability(text: str) -> float:
+    """Read a repeat probability (SRGS 2.5.1).
+
+    Raises:
+        ValueError: it is no number from 0 to 1.
+    """
+    value = decimal(text, "repeat-prob")
+    if value > 1:
+        raise ValueError(f'repeat-prob "{text}" is more than 1.')
+    return value
+
+
+def cost(chance: float) -> float:
+    """The cost of something that has a chance."""
+    return -math.log(max(chance, LEAST))
+
+
+def choice(parts: list[Part], weights: list[float | None]) -> Part:
+    """Alternatives; weights count in relation to the greatest, one not given is 1."""
+    if len(parts) == 1:
+        return parts[0]
+    given = [1.0 if weight is None else weight for weight in weights]
+    greatest = max(given, default=1.0)
+    scale = greatest if greatest > 0 else 1.0
+    costs = [0.0 if weight == greatest else cost(weight / scale) for weight in given]
+    return Choice(parts, costs, lead_index(parts))
+
+
+def sequence(parts: list[Part]) -> Part:
+    """A sequence, or the one part that it has."""
+    return parts[0] if len(parts) == 1 else Sequence(parts)
+
+
+def name_problem(name: str) -> str:
+    """What is wrong with the name of a rule (SRGS 3.1), or nothing."""
+    if name in RESERVED:
+        return f'"{name}" is a special rule and cannot be defined.'
+    if _NAME.fullmatch(name) is None:
+        return f'"{name[:60]}" is no name of a rule: letters, digits and "_", a letter first.'
+    return ""
+
+
+def is_language(text: str) -> bool:
+    """Whether a text names a language (RFC 3066)."""
+    return _LANGUAGE.fullmatch(text) is not None

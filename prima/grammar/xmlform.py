@@ -1,0 +1,341 @@
+"""The XML form of SRGS 1.0, read into rules."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from prima.errors import Place, did_you_mean
+from prima.grammar.errors import Problems, Where
+from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
+from prima.grammar.text import fold, keys, tokens
+from prima.grammar.values import (
+    MODES,
+    RESERVED,
+    choice,
+    cost,
+    decimal,
+    is_language,
+    name_problem,
+    probability,
+    repeat,
+    sequence,
+)
+from prima.markup.tree import Node
+
+SRGS = "http://www.w3.org/2001/06/grammar"
+MAX_DEPTH = 100
+HEADER = {"meta", "metadata", "lexicon", "tag"}
+EXPANSION = {"token", "ruleref", "item", "one-of", "tag"}
+ATTRIBUTES: dict[str, set[str]] = {
+    "grammar": {"version", "mode", "root", "tag-format"},
+    "meta": {"name", "http-equiv", "content"},
+    "metadata": set(),
+    "lexicon": {"uri", "type"},
+    "rule": {"id", "scope"},
+    "example": set(),
+    "token": set(),
+    "item": {"repeat", "repeat-prob", "weight"},
+    "one-of": set(),
+    "ruleref": {"uri", "type", "special"},
+    "tag": set(),
+}
+"""The elements of SRGS and what they may say, beside ``xml:lang`` and the like."""
+VOICEXML = {"scope", "src", "srcexpr", "type", "weight", "fetchhint", "fetchtimeout", "maxage"}
+VOICEXML |= {"maxstale", "accept"}
+"""What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
+
+
+def read_xml(node: Node, document: Document, problems: Problems, inline: bool) -> None:
+    """Read a <grammar> element into a document; ``inline`` where it stands in another one."""
+    _Reader(document, problems, inline).grammar(node)
+
+
+class _Reader:
+    """Reads one grammar; notes what is wrong and goes on."""
+
+    def __init__(self, document: Document, problems: Problems, inline: bool) -> None:
+        self.document = document
+        self.problems = problems
+        self.inline = inline
+        self.space = SRGS
+
+    def note(
+        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+    ) -> None:
+        self.problems.note(_where(node, attribute), code, message, remedy)
+
+    # Header (section 4)
+
+    def grammar(self, node: Node) -> None:
+        if node.tag != "grammar" or (not self.inline and node.namespace != SRGS):
+            remedy = f'Begin with <grammar xmlns="{SRGS}" version="1.0" ...>.'
+            self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
+            return
+        self.space = node.namespace
+        self._attributes(node, VOICEXML if self.inline else set())
+        self._version(node)
+        self._mode(node)
+        self._language(node)
+        document = self.document
+        document.tag_format = node.get("tag-format").strip()
+        document.base = node.get("xml:base")
+        document.root = node.get("root").strip()
+        self._children(node)
+        if document.root and document.root not in document.rules:
+            hint = did_you_mean(document.root, document.rules)
+            message = f'The root rule "{document.root}" is not there.'
+            self.note(node, "no-such-rule", message, hint, "root")
+
+    def _version(self, node: Node) -> None:
+        version = node.get("version")
+        if "version" not in node.attributes and not self.inline:
+            self.note(node, "missing-attribute", "The version is missing.", 'Write version="1.0".')
+        elif version.strip() != "1.0" and "version" in node.attributes:
+            message = f'Version "{version}" of SRGS is not known.'
+            self.note(node, "bad-value", message, 'Write version="1.0".', "version")
+
+    def _mode(self, node: Node) -> None:
+        mode = node.get("mode", self.document.mode or "voice")
+        if mode not in MODES:
+            message = f'A grammar\'s mode is voice or dtmf, not "{mode}".'
+            self.note(node, "bad-value", message, "", "mode")
+        self.document.mode = "dtmf" if mode == "dtmf" else "voice"
+
+    def _language(self, node: Node) -> None:
+        lang = node.get("xml:lang", self.document.lang if self.inline else "")
+        if not lang and self.document.mode == "voice":
+            message = "A grammar for voice says its language."
+            self.note(node, "missing-attribute", message, 'Write xml:lang="en-US" or the like.')
+        elif lang:
+            self.document.lang = lang
+
+    def _children(self, node: Node) -> None:
+        self._no_text(node)
+        seen_rule = False
+        for child in node.nodes:
+            if not self._known(child, node):
+                continue
+            if child.tag == "rule":
+                seen_rule = True
+                self._rule(child)
+            elif child.tag not in HEADER:
+                message = f"<{child.tag}> cannot stand in <grammar>."
+                self.note(child, "misplaced-element", message, "Put it in a <rule>.")
+            else:
+                if seen_rule:
+                    message = f"<{child.tag}> stands after a rule."
+                    self.note(child, "misplaced-element", message, "Put it before all rules.")
+                self._header(child)
+
+    def _header(self, node: Node) -> None:
+        if node.tag == "tag":
+            tag = Tag(node.own_text, _where(node))
+            self.document.globals.append(tag)
+        elif node.tag == "lexicon":
+            if not node.get("uri"):
+                self.note(node, "missing-attribute", "<lexicon> needs a uri.")
+            self.document.lexicons.append(node.get("uri"))
+        elif node.tag == "meta":
+            given = [name for name in ("name", "http-equiv") if name in node.attributes]
+            if len(given) != 1 or "content" not in node.attributes:
+                message = "<meta> has content, and either a name or http-equiv."
+                self.note(node, "missing-attribute", message)
+            self.document.meta[node.get("name") or node.get("http-equiv")] = node.get("content")
+
+    # Rules (section 3)
+
+    def _rule(self, node: Node) -> None:
+        name = node.get("id").strip()
+        if not name:
+            self.note(node, "missing-attribute", "A rule needs an id.")
+        elif problem := name_problem(name):
+            self.note(node, "bad-value", problem, "", "id")
+        elif name in self.document.rules:
+            self.note(node, "duplicate-id", f'There are two rules "{name}".', "", "id")
+        scope = node.get("scope", "private")
+        if scope not in ("public", "private"):
+            message = f'The scope of a rule is public or private, not "{scope}".'
+            self.note(node, "bad-value", message, "", "scope")
+        parts = self._parts(node, 1)
+        if not parts:
+            message = f'The rule "{name}" holds nothing.'
+            remedy = 'Write <ruleref special="NULL"/> for one that is matched by nothing said.'
+            self.note(node, "empty", message, remedy)
+        rule = Rule(name, sequence(parts), self.document, scope == "public")
+        self.document.rules.setdefault(name, rule)
+
+    # Expansions (section 2)
+
+    def _parts(self, node: Node, depth: int) -> list[Part]:
+        """What a rule or an item holds."""
+        if depth > MAX_DEPTH:
+            self.note(node, "too-deep", f"Elements are nested more than {MAX_DEPTH} deep.")
+            return []
+        parts: list[Part] = []
+        for item in node.content:
+            if isinstance(item, str):
+                if item.strip() and (words := self._words(node, item)):
+                    parts.append(words)
+            elif self._known(item, node):
+                if item.tag in EXPANSION:
+                    parts += self._part(item, depth)
+                elif not (item.tag == "example" and node.tag == "rule"):
+                    message = f"<{item.tag}> cannot stand in <{node.tag}>."
+                    self.note(item, "misplaced-element", message)
+        return parts
+
+    def _part(self, node: Node, depth: int) -> list[Part]:
+        match node.tag:
+            case "token":
+                return self._token(node)
+            case "ruleref":
+                return self._ruleref(node)
+            case "one-of":
+                return self._one_of(node, depth)
+            case "tag":
+                self._no_elements(node)
+                tag = Tag(node.own_text, _where(node))
+                self.document.tags.append(tag)
+                return [tag]
+            case _:
+                return [self._item(node, depth)]
+
+    def _words(self, node: Node, text: str) -> Part | None:
+        """Text as tokens (section 2.1)."""
+        found = tokens(text)
+        if found is None:
+            self.note(node, "bad-token", "A quote is opened and not closed.", 'Write the other ".')
+            return None
+        return self._said(node, found)
+
+    def _token(self, node: Node) -> list[Part]:
+        self._no_elements(node)
+        text = node.text
+        if not text or '"' in text:
+            message = "<token> holds one token, without quotes."
+            self.note(node, "bad-token", message, "Write <token>New York</token>.")
+            return []
+        words = self._said(node, [text])
+        return [words] if words else []
+
+    def _said(self, node: Node, found: list[str]) -> Part | None:
+        if self.document.mode != "dtmf":
+            return Words(fold(" ".join(found)), tuple(found))
+        pressed = [keys(token) for token in found]
+        for token, key in zip(found, pressed, strict=True):
+            if key is None or len(key) != 1:
+                message = f'"{token[:40]}" is no key of a telephone.'
+                remedy = "Keys are 0 to 9, *, #, and A to D, with spaces between them."
+                self.note(node, "bad-token", message, remedy)
+                return None
+        shown = [key for key in pressed if key]
+        return Words("".join(shown), tuple(shown))
+
+    def _ruleref(self, node: Node) -> list[Part]:
+        if node.nodes or node.text:
+            self.note(node, "stray-text", "<ruleref> holds nothing.", "Write <ruleref .../>.")
+        special, uri = node.get("special"), node.get("uri").strip()
+        if ("special" in node.attributes) == ("uri" in node.attributes):
+            message = "<ruleref> has either a uri or special."
+            code = "exclusive" if "uri" in node.attributes else "missing-attribute"
+            self.note(node, code, message, 'Write uri="#name" or special="NULL".')
+            return []
+        if "special" in node.attributes:
+            if special not in RESERVED:
+                message = f'"{special}" is no special rule: NULL, VOID and GARBAGE are.'
+                self.note(node, "bad-value", message, "", "special")
+            return [Special(special)]
+        found = Reference(uri, _where(node, "uri"), node.get("type"))
+        self.document.references.append(found)
+        return [found]
+
+    def _one_of(self, node: Node, depth: int) -> list[Part]:
+        self._no_text(node)
+        parts: list[Part] = []
+        weights: list[float | None] = []
+        for child in node.nodes:
+            if not self._known(child, node):
+                continue
+            if child.tag != "item":
+                message = f"<{child.tag}> cannot stand in <one-of>."
+                self.note(child, "misplaced-element", message, "Put it in an <item>.")
+                continue
+            parts.append(self._item(child, depth + 1))
+            weights.append(self._number(child, "weight"))
+        if not parts:
+            self.note(node, "missing-element", "<one-of> has no <item>.", "Write at least one.")
+            return []
+        return [choice(parts, weights)]
+
+    def _item(self, node: Node, depth: int) -> Part:
+        inside = sequence(self._parts(node, depth + 1))
+        chance = self._number(node, "repeat-prob")
+        self._number(node, "weight")
+        if "repeat" not in node.attributes:
+            return inside
+        try:
+            low, high = repeat(node.get("repeat"))
+        except ValueError as error:
+            self.note(node, "bad-value", str(error), "", "repeat")
+            return inside
+        if chance is None:
+            return Repeat(inside, low, high)
+        return Repeat(inside, low, high, cost(chance), cost(1 - chance))
+
+    def _number(self, node: Node, name: str) -> float | None:
+        """A weight or a repeat probability, if there is one."""
+        text = node.attributes.get(name)
+        if text is None:
+            return None
+        try:
+            return probability(text) if name == "repeat-prob" else decimal(text, name)
+        except ValueError as error:
+            self.note(node, "bad-value", str(error), "", name)
+            return None
+
+    # What any element must keep to
+
+    def _known(self, node: Node, parent: Node) -> bool:
+        """Whether it is an element of SRGS; those of other languages are passed over."""
+        if node.namespace != self.space:
+            if node.namespace in ("", SRGS):
+                message = f"<{node.tag}> is in another namespace than <{parent.tag}>."
+                self.note(node, "wrong-namespace", message, f'Declare xmlns="{self.space}".')
+            return False
+        if node.tag not in ATTRIBUTES:
+            hint = did_you_mean(node.tag, ATTRIBUTES)
+            self.note(node, "unknown-element", f"SRGS has no element <{node.tag}>.", hint)
+            return False
+        self._attributes(node, set())
+        return True
+
+    def _attributes(self, node: Node, more: set[str]) -> None:
+        known = ATTRIBUTES[node.tag] | more
+        for name in node.attributes:
+            if name not in known and ":" not in name and not name.startswith("{"):
+                message = f"<{node.tag}> has no attribute {name}."
+                self.note(node, "unknown-attribute", message, did_you_mean(name, known), name)
+        lang = node.attributes.get("xml:lang")
+        if lang is not None and not is_language(lang):
+            message = f'"{lang[:40]}" names no language.'
+            self.note(node, "bad-value", message, 'Write one such as "en-US".', "xml:lang")
+
+    def _no_text(self, node: Node) -> None:
+        if node.text:
+            remedy = "Put it in a <rule>." if node.tag == "grammar" else "Put it in an <item>."
+            self.note(node, "stray-text", f"Text cannot stand in <{node.tag}>.", remedy)
+
+    def _no_elements(self, node: Node) -> None:
+        for child in node.nodes:
+            message = f"<{child.tag}> cannot stand in <{node.tag}>."
+            self.note(child, "misplaced-element", message)
+
+
+def _where(node: Node, attribute: str = "") -> Where:
+    if attribute in node.attributes:
+        return partial(node.attribute_place, attribute)
+    return partial(_place, node)
+
+
+def _place(node: Node) -> Place:
+    return node.place

@@ -1,0 +1,323 @@
+"""Loading: files and what they name, read and checked together.
+
+This module and :mod:`prima.api` alone open documents; everything below works on
+text and values.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import posixpath
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+from urllib.parse import unquote, urlsplit
+from xml.sax.saxutils import escape, quoteattr
+
+from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean, one_of
+from prima.interpreter.checks import check_commands
+from prima.interpreter.elements import Document
+from prima.interpreter.reader import read_document
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.markup.check import check_root
+from prima.markup.reader import MAX_BYTES, parse, too_large
+
+if TYPE_CHECKING:
+    from prima.markup.tree import Node
+    from prima.session import AnyDocument
+    from prima.sim.rehearsal import Cast
+    from prima.sim.scenario import Area, Map, Profile, Scenario
+
+# What one use needs and another does not is imported where it is used: most commands are short.
+
+
+def read_file(path: str | Path) -> bytes:
+    """Read a document's bytes, up to the limit.
+
+    Raises:
+        DocumentError: the file is larger than any document may be.
+        UsageError: it cannot be read.
+    """
+    try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise UsageError(f"{path}: cannot be read: it is not a file.")
+        with Path(path).open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+            if len(data) > MAX_BYTES:
+                size = Path(path).stat().st_size
+                raise too_large(str(path), max(size, len(data)))
+            return data
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    except ValueError:
+        raise UsageError(f"{path!r} is not a file's name.") from None
+
+
+def read_application(
+    path: str, data: bytes, name: str = "", kind: str = ""
+) -> tuple[AnyDocument, list[Problem]]:
+    """Read an application of either language; a VoiceXML document is named after its file.
+
+    Raises:
+        DocumentError: no document at all can be given.
+    """
+    if not is_voicexml(data):
+        return read_document(path, data)
+    from prima.voicexml.document import VoiceDocument, read_page
+
+    file = Path(path)
+    page = read_page(file.name, path, data)
+    own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
+    folder = file.parent
+    document = VoiceDocument(
+        own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
+    )
+    return document, page.problems
+
+
+def is_voicexml(data: bytes) -> bool:
+    """Whether a file's root element is VoiceXML's, as far as its beginning tells."""
+    return re.search(rb"<vxml[\s>/]", data[:8192]) is not None
+
+
+def _fetch(folder: Path, uri: str) -> bytes:
+    """A resource of a VoiceXML application: a file inside its folder, and nothing else."""
+    from prima.voicexml.document import FetchError
+
+    parts = urlsplit(uri)
+    if parts.scheme not in ("", "file"):
+        raise FetchError(f"{parts.scheme}: is not fetched: no network is used", "error.badfetch")
+    root = folder.resolve()
+    target = (root / unquote(parts.path).lstrip("/")).resolve()
+    if root != target and root not in target.parents:
+        raise FetchError("it is outside the application's folder")
+    try:
+        return read_file(target)
+    except UsageError as error:
+        raise FetchError(str(error).removeprefix(f"{target}: ")) from None
+    except DocumentError as error:
+        raise FetchError(error.problems[0].message) from None
+
+
+def load(path: str | Path) -> Document:
+    """Load an application.
+
+    Raises:
+        DocumentError: with all problems, if any is an error.
+        UsageError: the file cannot be read.
+    """
+    document, problems = read_document(str(path), read_file(path))
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return document
+
+
+@dataclass(slots=True)
+class Loaded:
+    """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
+
+    cast: Cast
+    files: dict[str, str]
+    problems: list[Problem] = field(default_factory=list)
+
+
+def validate(paths: Iterable[str | Path]) -> list[Problem]:
+    """Give all problems of documents of any kind; a scenario's also those of what it names.
+
+    Raises:
+        UsageError: a file cannot be read.
+    """
+    problems: list[Problem] = []
+    for path in paths:
+        problems += _validate_one(str(path))
+    return sorted(set(problems))
+
+
+def _validate_one(path: str) -> list[Problem]:
+    try:
+        data = read_file(path)
+        if is_voicexml(data):
+            from prima.voicexml.document import read_page
+
+            page = read_page(Path(path).name, path, data)
+            return [*page.problems, *page.warnings()]
+        root = parse(path, data)
+        if root.namespace == DIALOGUE.namespace:
+            return read_document(path, data)[1]
+        from prima.sim.scenario import read_robot, read_world
+        from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+
+        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
+        if vocabulary is WORLD:
+            read_world(path, data)
+        elif vocabulary is ROBOT:
+            read_robot(path, data)
+        else:
+            return load_scenario(path).problems
+    except DocumentError as error:
+        return error.problems
+    return []
+
+
+def load_scenario(path: str | Path) -> Loaded:
+    """Load a scenario with its world, robot and applications.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+        UsageError: the scenario's file cannot be read.
+    """
+    return _load(Path(path), read_file(path))
+
+
+def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> Loaded:
+    """Put applications on a robot in an empty room, with a user in front of it.
+
+    Args:
+        fas: paths of the robot's own applications.
+        eas: paths of the place's.
+        says: what the user says to the questions, one after the other.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+    """
+    demo = documents_folder()
+    applications = [
+        f'<application src={quoteattr(path)} kind="{kind}"/>'
+        for kind, paths in (("fa", fas), ("ea", eas))
+        for path in paths
+    ]
+    answers = [
+        f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
+        for number, text in enumerate(says, 1)
+    ]
+    text = (
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
+        f" world={quoteattr(str(demo / 'worlds' / 'room.xml'))}"
+        f" robot={quoteattr(str(demo / 'robots' / 'papero.xml'))}>"
+        f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
+    )
+    return _load(Path("stage.xml"), text.encode())
+
+
+def _load(path: Path, data: bytes) -> Loaded:
+    from prima.sim.rehearsal import Cast, check_cast
+    from prima.sim.scenario import read_robot, read_scenario, read_world
+
+    scenario = read_scenario(str(path), data)
+    reading = _Reading(path, {path.name: _digest(data)})
+    root = scenario.node
+    for src, _, node in scenario.applications:
+        reading.application(src, node.attribute_place("src"), node)
+    world = reading.read(scenario.world, root.attribute_place("world"), read_world)
+    robot = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
+    offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
+    if robot is not None:
+        reading.check_commands(robot)
+    reading.check_policy(scenario)
+    complete = len(reading.documents) == len(scenario.applications) + len(offers)
+    if world is None or robot is None or not complete:
+        raise DocumentError(reading.problems)
+    cast = Cast(scenario, reading.documents, world, robot, offers)
+    problems = sorted({*reading.problems, *check_cast(cast, str(path))})
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return Loaded(cast, reading.files, problems)
+
+
+Made = TypeVar("Made")
+
+
+@dataclass(slots=True)
+class _Reading:
+    """What has been read of a scenario, and all that is wrong with it."""
+
+    path: Path
+    files: dict[str, str]
+    problems: list[Problem] = field(default_factory=list)
+    documents: list[AnyDocument] = field(default_factory=list)
+
+    def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
+        """A document that the scenario names, or None where it cannot be had."""
+        target = self.path.parent / name
+        try:
+            content = read_file(target)
+            self.files[name] = _digest(content)
+            return made_of(str(target), content)
+        except UsageError as error:
+            message = str(error).removeprefix(f"{target}: ")
+            self.problems.append(Problem(place, "error", "no-such-file", f'"{name}" {message}'))
+        except DocumentError as error:
+            self.problems += error.problems
+        return None
+
+    def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
+        """An application, with its problems."""
+        own = (node.get("id"), node.get("kind")) if node is not None else ("", "")
+        read = self.read(src, place, lambda path, data: read_application(path, data, *own))
+        if read is None:
+            return None
+        document, problems = read
+        self.problems += problems
+        self.documents.append(document)
+        return document
+
+    def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
+        """The applications that a world's areas offer, but those that the scenario runs itself."""
+        if not world.areas:
+            place = scenario.node.attribute_place("entrances")
+            message = f'The world "{world.id}" has no <area> that offers an application.'
+            self.problems.append(Problem(place, "error", "no-such-name", message))
+        beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
+        made = []
+        for area in world.areas:
+            folder = posixpath.dirname(scenario.world)
+            name = posixpath.normpath(posixpath.join(folder, area.src))
+            if name not in beside:
+                document = self.application(name, area.node.attribute_place("application"))
+                if document is not None:
+                    made.append((area, document.id))
+        return made
+
+    def check_commands(self, robot: Profile) -> None:
+        """Commands that the robot cannot do."""
+        for document in self.documents:
+            if isinstance(document, Document):
+                self.problems += check_commands(document, robot.commands, robot.devices)
+
+    def check_policy(self, scenario: Scenario) -> None:
+        """A policy that is none, or prefers an application that is not there."""
+        from prima.scheduler.selection import policy_named
+
+        place = scenario.node.attribute_place("policy")
+        try:
+            policy_named(scenario.policy)
+        except UsageError as error:
+            self.problems.append(Problem(place, "error", "bad-value", f"{error} {FAVOURITE}"))
+        if problem := favourite_problem(scenario.policy, self.documents):
+            self.problems.append(Problem(place, "error", "no-such-name", *problem))
+
+
+FAVOURITE = "fixed:APP prefers the application APP."
+"""What to write for a policy that prefers one application."""
+
+
+def favourite_problem(policy: str, documents: list[AnyDocument]) -> tuple[str, str] | None:
+    """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
+    kind, _, first = policy.partition(":")
+    names = [document.id for document in documents]
+    if kind != "fixed" or not first or first in names:
+        return None
+    hint = did_you_mean(first, names) or f"Write {one_of(names)}."
+    return f'The policy "{policy}" names an application that is not in the scenario.', hint
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def documents_folder() -> Path:
+    """The folder of the demo documents that come with the package."""
+    inside = Path(__file__).parent / "documents"
+    return inside if inside.is_dir() else Path(__file__).parent.parent / "documents"

@@ -1,0 +1,221 @@
+"""A VoiceXML application as a state machine without I/O or clock, for a session to drive."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from itertools import count
+from typing import NoReturn
+
+from prima.interpreter.application import MAX_OUTPUT, MAX_SCRIPT_SECONDS, MAX_STEPS
+from prima.interpreter.content import source
+from prima.interpreter.expressions import Engine
+from prima.interpreter.selection import prefixes
+from prima.markup.tree import Node
+from prima.messages import (
+    Action,
+    Command,
+    Data,
+    Event,
+    Json,
+    LeaveState,
+    Notice,
+    Quit,
+    Request,
+    Say,
+    Step,
+)
+from prima.voicexml.document import VoiceDocument
+from prima.voicexml.machine import Machine
+from prima.voicexml.state import SCOPES, Flow, GoOut, Heard, Resume, Thrown
+
+
+class VoiceInterpreter:
+    """Runs one VoiceXML application; its interface is :class:`prima.interpreter.application`'s."""
+
+    def __init__(
+        self, document: VoiceDocument, arguments: Mapping[str, frozenset[str]] | None = None
+    ) -> None:
+        self.document = document
+        self.name = document.id
+        self.kind = document.kind
+        self.arguments = arguments or {}
+        self.engine = Engine(SCOPES)
+        self.actions: list[Action] = []
+        self.sensors: dict[str, Json] = {}
+        self.over = False
+        self.written = 0
+        self.heard: Heard | None = None
+        self.deadline: int | None = None
+        self._machine = Machine(self)
+        self._flow: Flow | None = None
+        self._runs = count(1)
+        self._run = 0
+        self._state = 0
+        self._cause: int | None = None
+        self._marked: str | None = None
+        self._instant = -1
+        self._steps = 0
+        self._output = 0
+
+    # What a session tells -----------------------------------------------------------
+
+    def start(self, now: int) -> None:
+        """Begin with the first dialog."""
+        self._tick(now)
+        self._flow = self._machine.start()
+        self._drive(None)
+
+    def event(self, now: int, event: Event) -> None:
+        """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
+        self._tick(now)
+        context = self._machine.context
+        if self.over or context is None or not self._run:
+            return
+        thrown = Thrown(event.name, str(event.data.get("message", "")))
+        hangs_up = event.name.startswith("connection.disconnect")
+        if not hangs_up and not self._takes(thrown):
+            return
+        self._cause = event.serial if event.reactive else None
+        self._tell(event)
+        self.actions.append(LeaveState(self._state))
+        self._drive(Resume(event=event))
+        self._cause = None
+
+    def _tell(self, event: Event) -> None:
+        """Give an event's data as ``session.event``: VoiceXML's own variables have none."""
+        context = self._machine.context
+        assert context is not None
+        self.engine.set(context.session, "event", {"name": event.name, "data": dict(event.data)})
+
+    def _takes(self, thrown: Thrown) -> bool:
+        """Whether a handler is there, counting the event as it would be."""
+        context = self._machine.context
+        assert context is not None
+        held = dict(context.counters)
+        where = context.item.index if context.item is not None else -1
+        for key in prefixes(thrown.name):
+            context.counters[where, key] = context.counters.get((where, key), 0) + 1
+        try:
+            return self._machine.find(context, thrown) is not None
+        except Thrown:
+            return True
+        finally:
+            context.counters = held
+
+    def notice(self, now: int, notice: Notice) -> None:
+        """The mediator tells the fate of Commands."""
+        self._tick(now)
+        if self.over or notice.run != self._run or notice.what in ("ended", "interrupted"):
+            return
+        if notice.what == "failed":
+            place = notice.command.source if notice.command else ""
+            data = {"message": f"{place}: {notice.message}" if place else notice.message}
+            self._drive(Resume(event=Event(notice.event, 0, data, reactive=False)))
+        elif notice.what == "done":
+            self._drive(Resume(notice.data))
+
+    def sensed(self, now: int, values: Data) -> list[str]:
+        """VoiceXML watches no sensors."""
+        self._tick(now)
+        self.sensors.update(values)
+        return []
+
+    def listens_to(self, text: str) -> None:
+        """VoiceXML listens where it waits, and nowhere else."""
+
+    def follow(self, now: int, link: object, event: Event) -> None:
+        """Nothing is followed, as nothing is listened to all the time."""
+
+    def answer(self, run: int, text: str) -> Json:
+        """What the active grammars make of what the user said, or None if they take it not."""
+        context = self._machine.context
+        if context is None or run != self._run or self.over:
+            return None
+        try:
+            self.heard = self._machine.inputs.hear(context, text)
+        except Thrown:
+            return None  # told when the question was asked
+        if self.heard is None and context.item is not None and context.item.tag == "record":
+            self.heard = Heard(text, text, context.item, context.page)
+        if self.heard is None:
+            return None
+        self.heard.mark = self._marked
+        found = self.heard.interpretation
+        return found if found is not None else self.heard.utterance
+
+    def expire(self, now: int) -> list[tuple[str, Data]]:
+        """VoiceXML has no delayed events."""
+        self._tick(now)
+        return []
+
+    def stop(self) -> None:
+        """The application is taken out of the robot."""
+        self._quit("unloaded")
+
+    # What the machine asks for --------------------------------------------------------
+
+    def wait(self, commands: list[Command]) -> Generator[None, Resume, Resume]:
+        """Ask for Commands, one after another, and wait for the end of the last."""
+        steps = [
+            Step(command, (index - 1,) if index else ()) for index, command in enumerate(commands)
+        ]
+        self._run = next(self._runs)
+        self._state += 1
+        cause, self._cause = self._cause, None
+        content = self._machine.content
+        self._marked, content.mark = content.mark, None
+        self.actions.append(Request(self._run, steps, self._state, cause))
+        resume = yield
+        self._run = 0
+        return resume
+
+    def count_step(self, node: Node) -> None:
+        """Bound what is done in one instant; a document may loop for ever."""
+        self._steps += 1
+        if self._steps > MAX_STEPS:
+            self._give_up(node, "it loops without ever waiting")
+        if self.engine.spent > MAX_SCRIPT_SECONDS:
+            self._give_up(node, "its scripts take too long without ever waiting")
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what comes out in one instant."""
+        self._output += characters
+        self.written += characters
+        if self._output > MAX_OUTPUT:
+            self._give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
+
+    def _give_up(self, node: Node, reason: str) -> NoReturn:
+        place = source(node)
+        raise GoOut(f"error.semantic: {place}: {reason}", True, place)
+
+    def _tick(self, now: int) -> None:
+        if now != self._instant:
+            self._instant = now
+            self._steps = self._output = 0
+            self.engine.spent = 0.0
+
+    def _drive(self, resume: Resume | None) -> None:
+        assert self._flow is not None
+        try:
+            if resume is None:
+                next(self._flow)
+            else:
+                self._flow.send(resume)
+        except StopIteration:
+            self._quit("exit")
+        except GoOut as out:
+            if out.failed:
+                self.actions.append(Say("error", out.reason, out.source))
+            self._quit(out.reason, out.failed, out.source)
+        except Thrown as thrown:  # when nothing is left that could handle it
+            self.actions.append(Say("error", f"{thrown.name}: {thrown.message}", thrown.source))
+            self._quit(f"{thrown.name}: {thrown.message}", True, thrown.source)
+        except RecursionError:
+            self._quit("error.semantic: its elements are nested too deep", failed=True)
+
+    def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
+        if self.over:
+            return
+        self.over = True
+        self.actions.append(LeaveState(self._state))
+        self.actions.append(Quit(reason, failed, place))

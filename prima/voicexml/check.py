@@ -1,0 +1,323 @@
+"""Everything wrong with a VoiceXML document, with its place: the Recommendation's schema and rules."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from prima.commands import TABLE_4_2
+from prima.errors import Problem, did_you_mean, one_of
+from prima.interpreter.expressions import (
+    ScriptError,
+    check_expression,
+    check_script,
+    plain_context,
+)
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Element
+from prima.values import read_value
+from prima.voicexml.vocabulary import (
+    ALTERNATIVES,
+    COMMANDS,
+    EXPRESSIONS,
+    NAMESPACE,
+    PRIMA_NAMESPACE,
+    SRGS,
+    VALUES,
+    VOICEXML,
+)
+
+VERSIONS = ("2.0", "2.1")
+INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
+FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
+SPEAKING = frozenset(
+    [
+        "prompt",
+        "audio",
+        "foreach",
+        "emphasis",
+        "prosody",
+        "voice",
+        "p",
+        "s",
+        "paragraph",
+        "sentence",
+    ]
+)
+"""Elements besides executable content in which a Command of the robot may stand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What the tables say of an element, ready for use."""
+
+    known: frozenset[str]
+    required: tuple[str, ...]
+    kinds: dict[str, str]
+    alternatives: tuple[tuple[str, ...], ...]
+    text: bool
+
+
+def _entry(element: Element) -> Entry:
+    names = [item.name for item in element.attributes]
+    kinds = {name: VALUES.get(f"{element.key} {name}") or VALUES.get(name, "") for name in names}
+    return Entry(
+        frozenset(names),
+        tuple(item.name for item in element.attributes if item.required),
+        {name: kind for name, kind in kinds.items() if kind},
+        tuple(tuple(line.split()) for line in ALTERNATIVES.get(element.key, ())),
+        element.text,
+    )
+
+
+ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
+
+
+def check_tree(root: Node) -> list[Problem]:
+    """Give every node its key, take out what is of foreign namespaces, and tell what is wrong."""
+    problems: list[Problem] = []
+    _check_version(root, problems)
+    root.key = "vxml"
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        entry = ENTRIES[node.key]
+        if node.attributes or entry.required or entry.alternatives:
+            _check_attributes(node, entry, problems)
+        check = RULES.get(node.key)
+        if check is not None:
+            check(node, problems)
+        if not entry.text and node.content and node.text:
+            message = f'<{node.tag}> holds text: "{node.text[:30]}".'
+            problems.append(Problem(node.place, "error", "stray-text", message))
+        if node.content and node.key not in ("grammar", "metadata"):
+            _check_children(node, stack, problems)
+    return problems
+
+
+def _check_version(root: Node, problems: list[Problem]) -> None:
+    if "version" in root.attributes and root.get("version") not in VERSIONS:
+        message = f'version "{root.get("version")}" is not a version of VoiceXML that is run here.'
+        place = root.attribute_place("version")
+        problems.append(Problem(place, "error", "bad-value", message, "Write 2.0 or 2.1."))
+
+
+def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:
+    """Find the children's keys; those that are to be looked at go onto the stack."""
+    foreign = False
+    for child in node.content:
+        if isinstance(child, str):
+            continue
+        if child.namespace == PRIMA_NAMESPACE:
+            _check_command(child, node, problems)
+        elif child.namespace == NAMESPACE or (child.tag, child.namespace) == ("grammar", SRGS):
+            key = VOICEXML.child(node.key, child.tag)
+            if key is None:
+                problems.append(_misplaced(child, node))
+            else:
+                child.key = key
+                stack.append(child)
+        else:
+            foreign = True
+            message = f'<{child.tag}> is of another namespace, "{child.namespace}".'
+            code = "wrong-namespace"
+            problems.append(Problem(child.place, "warning", code, message, "It is ignored."))
+    if foreign:
+        kept = (NAMESPACE, PRIMA_NAMESPACE, SRGS)
+        node.content = [
+            one for one in node.content if isinstance(one, str) or one.namespace in kept
+        ]
+
+
+def _misplaced(child: Node, node: Node) -> Problem:
+    if child.tag not in VOICEXML.tags:
+        message = f"There is no <{child.tag}> in VoiceXML."
+        hint = did_you_mean(child.tag, VOICEXML.tags)
+        return Problem(child.place, "error", "unknown-element", message, hint)
+    message = f"<{child.tag}> cannot stand in <{node.tag}>."
+    remedy = f"It may stand in {one_of(VOICEXML.parents(child.tag))}."
+    return Problem(child.place, "error", "misplaced-element", message, remedy)
+
+
+# Attributes -------------------------------------------------------------------------------
+
+
+def _check_attributes(node: Node, entry: Entry, problems: list[Problem]) -> None:
+    for name, text in node.attributes.items():
+        if name in entry.kinds:
+            if not _fits(entry.kinds[name], text):
+                problems.append(_bad_value(node, name, text, entry.kinds[name]))
+        elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
+            problems.append(_unknown(node, name))
+    for name in entry.required:
+        if name not in node.attributes:
+            message = f'<{node.tag}> needs the attribute "{name}".'
+            problems.append(Problem(node.place, "error", "missing-attribute", message))
+    for names in entry.alternatives:
+        _check_alternatives(node, names, problems)
+
+
+_REMEDIES = {
+    "time": 'Write a number with its unit: "500ms" or "2.5s".',
+    "integer": "Write a whole number from 1.",
+}
+
+
+def _fits(kind: str, text: str) -> bool:
+    if kind == "integer":
+        return text.isascii() and text.isdigit() and int(text) > 0
+    if kind == "time":
+        try:
+            return read_value("duration", text.strip()) >= 0  # type: ignore[operator]
+        except ValueError:
+            return False
+    return text in kind.split()
+
+
+def _bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
+    message = f'{name} "{text}" is not allowed here.'
+    remedy = _REMEDIES.get(kind) or f"Write {one_of(kind.split())}."
+    return Problem(node.attribute_place(name), "error", "bad-value", message, remedy)
+
+
+def _unknown(node: Node, name: str) -> Problem:
+    message = f'<{node.tag}> has no attribute "{name}".'
+    place = node.attribute_place(name, value=False)
+    hint = did_you_mean(name, ENTRIES[node.key].known)
+    return Problem(place, "error", "unknown-attribute", message, hint)
+
+
+def _check_alternatives(node: Node, names: tuple[str, ...], problems: list[Problem]) -> None:
+    needed = names[-1] == "!"
+    names = names[:-1] if needed else names
+    given = [name for name in names if name in node.attributes]
+    if "content" in names and (node.nodes or node.text):
+        given.append("content")
+    if len(given) > 1:
+        message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'
+        place = node.place if given[1] == "content" else node.attribute_place(given[1])
+        problems.append(Problem(place, "error", "exclusive", message, "Keep one of them."))
+    elif needed and not given:
+        message = f"<{node.tag}> needs one of {', '.join(names)}."
+        problems.append(Problem(node.place, "error", "missing-attribute", message))
+
+
+# Rules of single elements ---------------------------------------------------------------
+
+
+def _check_menu(menu: Node, problems: list[Problem]) -> None:
+    for choice in menu.all("choice") if menu.get("dtmf") == "true" else ():
+        if choice.get("dtmf") and choice.get("dtmf") not in ("*", "#", "0"):
+            message = "This menu numbers its choices itself: a choice may add *, # or 0 alone."
+            place = choice.attribute_place("dtmf")
+            problems.append(Problem(place, "error", "exclusive", message))
+
+
+def _check_item(item: Node, problems: list[Problem]) -> None:
+    for child in item.all("filled", "grammar"):
+        for name in ("mode", "namelist") if child.tag == "filled" else ("scope",):
+            if name in child.attributes:
+                message = f'<{child.tag}> in <{item.tag}> has no "{name}": it is of this item.'
+                place = child.attribute_place(name, value=False)
+                problems.append(Problem(place, "error", "unknown-attribute", message))
+
+
+def _check_form(form: Node, problems: list[Problem]) -> None:
+    items = [node for node in form.all(*FORM_ITEMS) if node.get("name")]
+    counts = Counter(node.get("name") for node in items)
+    for node in items:
+        if counts[node.get("name")] > 1:
+            counts[node.get("name")] = 0
+            message = f'Two items of the form have the name "{node.get("name")}".'
+            place = node.attribute_place("name")
+            problems.append(Problem(place, "error", "duplicate-name", message))
+    inputs = {node.get("name") for node in items if node.tag in INPUT_ITEMS}
+    for filled in form.all("filled"):
+        for name in filled.get("namelist").split():
+            if name not in inputs:
+                message = f'The form has no input item "{name}".'
+                hint = did_you_mean(name, inputs)
+                place = filled.attribute_place("namelist")
+                problems.append(Problem(place, "error", "no-such-item", message, hint))
+
+
+def _check_if(node: Node, problems: list[Problem]) -> None:
+    branches = node.all("else", "elseif")
+    for before, branch in pairwise(branches):
+        if before.tag == "else":
+            message = f"<{branch.tag}> stands after <else>."
+            problems.append(Problem(branch.place, "error", "after-else", message))
+
+
+RULES: dict[str, Callable[[Node, list[Problem]], None]] = {
+    "form": _check_form,
+    "menu": _check_menu,
+    "if": _check_if,
+    **dict.fromkeys(INPUT_ITEMS, _check_item),
+}
+"""What holds between an element and its children."""
+
+
+def _check_command(node: Node, parent: Node, problems: list[Problem]) -> None:
+    if node.tag not in COMMANDS:
+        message, hint = f"PRIMA has no Command <{node.tag}>.", did_you_mean(node.tag, COMMANDS)
+        problems.append(Problem(node.place, "error", "unknown-element", message, hint))
+        return
+    if parent.key not in SPEAKING and VOICEXML.child(parent.key, "assign") is None:
+        message = f"A Command cannot stand in <{parent.tag}>."
+        remedy = "It may stand in a prompt or among executable content."
+        problems.append(Problem(node.place, "error", "misplaced-element", message, remedy))
+    row = TABLE_4_2.get(node.tag)
+    known = set(row.arguments) if row is not None else {"type"}
+    for name in node.attributes:
+        if name.removesuffix("-expr") not in known and not name.startswith(("xml:", "{")):
+            message = f'<{node.tag}> has no attribute "{name}".'
+            place = node.attribute_place(name, value=False)
+            hint = did_you_mean(name, known)
+            problems.append(Problem(place, "error", "unknown-attribute", message, hint))
+
+
+# What is no error until it is reached -----------------------------------------------------
+
+
+def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
+    """Warnings for expressions that do not compile and for dialogs that are not there.
+
+    Only validation asks for them: a run is told of what it reaches, as an event.
+    """
+    problems: list[Problem] = []
+    context = plain_context()
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        stack.extend(node.nodes)
+        for name in node.attributes:
+            is_code = node.namespace == NAMESPACE and name in EXPRESSIONS
+            if is_code or (node.namespace == PRIMA_NAMESPACE and name.endswith("-expr")):
+                _compile(node, name, problems, context)
+        if node.key == "script" and node.own_text.strip():
+            _compile(node, "", problems, context)
+        for name in ("next", "src"):
+            target = node.get(name)
+            if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
+                message = f'There is no dialog "{target[1:]}" here: this will be error.badfetch.'
+                hint = did_you_mean(target[1:], dialogs)
+                place = node.attribute_place(name)
+                problems.append(Problem(place, "warning", "no-such-form", message, hint))
+    return problems
+
+
+def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> None:
+    try:
+        if name:
+            check_expression(context, node.get(name))
+        else:
+            check_script(context, node.own_text)
+    except ScriptError as error:
+        place = node.code_place(name, error.line, error.column)
+        code = " ".join((node.get(name) if name else node.own_text).split())[:60]
+        message = f'"{code}" is not ECMAScript: {error}. This will be error.semantic.'
+        problems.append(Problem(place, "warning", "bad-expression", message))

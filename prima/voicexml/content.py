@@ -1,0 +1,288 @@
+"""Executable content: what takes no time (VoiceXML 2.0, 5.3)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from itertools import count
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.interpreter.expressions import RESULT_LIMIT, Scope, ScriptError
+from prima.markup.tree import Node
+from prima.messages import Json, Say, Send
+from prima.values import read_value
+from prima.voicexml.dom import DATA, plain_tree
+from prima.voicexml.fetching import decoded, fetch, load_page
+from prima.voicexml.prompts import SPOKEN, Speaker, Speech
+from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, GoOut, Thrown
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+__all__ = ["ITEMS", "SPOKEN", "Content", "fetch", "load_page", "milliseconds"]
+ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
+SERVICE = "service:"
+"""How the URI of a scenario's service begins."""
+
+
+class Content(Speaker):
+    """Runs executable content for one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        super().__init__(owner)
+        self._sends = count(1)
+
+    def run(self, node: Node, context: Context, local: Scope) -> None:
+        """Run all that an element holds, in document order."""
+        self.run_all(node.content, context, local)
+
+    def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> None:
+        """Run pieces of content; text and what is said among it make one prompt (4.1.2)."""
+        speech = Speech(context.page.lang, "")
+        for item in content:
+            if isinstance(item, str) or item.tag in SPOKEN - {"prompt"}:
+                node = context.page.root if isinstance(item, str) else item
+                if not speech.place or not speech.parts:
+                    speech.place = source(node)
+                self.read(item, context, local, speech)
+                continue
+            self.flush(speech)
+            self.owner.count_step(item)
+            if item.namespace == PRIMA_NAMESPACE:
+                self.owner.queue.append(self.command(item, context, local))
+            elif item.tag == "prompt":
+                self.prompt(item, context, local)
+            else:
+                self.act(item, context, local)
+        self.flush(speech)
+
+    def act(self, node: Node, context: Context, local: Scope) -> None:
+        """One element that is not said."""
+        match node.tag:
+            case "var":
+                self.declare(node, local, context, local)
+            case "assign":
+                self.assign(node, context, local)
+            case "clear":
+                self.clear(node, context, local)
+            case "if":
+                self.branch(node, context, local)
+            case "foreach":
+                for element in self.elements(node, context, local):
+                    self.engine.put(local, node.get("item"), element)
+                    self.run(node, context, local)
+            case "script":
+                self.script(node, local, context, local)
+            case "log":
+                self.log(node, context, local)
+            case "reprompt":
+                self.owner.reprompted = True
+            case "data":
+                self.data(node, local, context, local)
+            case _:
+                self.leave(node, context, local)
+
+    def leave(self, node: Node, context: Context, local: Scope) -> None:
+        """Elements that control does not come back from."""
+        match node.tag:
+            case "throw":
+                name = self.word(node, "event", context, local)
+                message = self.word(node, "message", context, local)
+                raise Thrown(name, message, source(node))
+            case "goto":
+                self.go(node, context, local)
+            case "submit":
+                self.submit(node, context, local)
+            case "exit":
+                self.report(node, context, local)
+                raise GoOut()
+            case "disconnect":
+                self.report(node, context, local)
+                raise Thrown("connection.disconnect.hangup", "", source(node))
+            case "return":
+                self.give_back(node, context, local)
+
+    # Variables ------------------------------------------------------------------------
+
+    def declare(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+        """Declare a variable in a scope (5.3.1)."""
+        if "expr" not in node.attributes:
+            self.engine.unset(scope, node.get("name"))
+            return
+        self.put(scope, node.get("name"), node, "expr", context, local)
+
+    def put(
+        self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
+    ) -> None:
+        """Give a variable of a scope the value of an expression."""
+        try:
+            self.engine.assign(scope, name, node.get(attribute), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, attribute) from None
+
+    def assign(self, node: Node, context: Context, local: Scope) -> None:
+        """Give a declared variable a value (5.3.2)."""
+        try:
+            self.engine.assign_declared(node.get("name"), node.get("expr"), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, "expr") from None
+
+    def clear(self, node: Node, context: Context, local: Scope) -> None:
+        """Undefine variables, and reset what counts visits of form items (5.3.3)."""
+        items = self.owner.items(context)
+        names = node.get("namelist").split()
+        for item in items if not names else ():
+            context.visited.discard(item.index)
+            self.forget(item, context)
+        for name in names:
+            scope = next(
+                (one for one in reversed(context.scopes(local)) if self.engine.has(one, name)), None
+            )
+            if scope is None:
+                message = f'{source(node)}: the variable "{name}" is not declared'
+                raise Thrown("error.semantic", message, source(node))
+            self.engine.unset(scope, name)
+            for item in items:
+                if item.get("name") == name:
+                    self.forget(item, context)
+
+    def forget(self, item: Node, context: Context) -> None:
+        """Reset a form item: its variable, prompt counter and event counters."""
+        if item.get("name"):
+            self.engine.unset(context.dialog, item.get("name"))
+        context.prompts.pop(item.index, None)
+        context.counters = {
+            key: count for key, count in context.counters.items() if key[0] != item.index
+        }
+
+    def named(self, node: Node, context: Context, local: Scope) -> dict[str, Json]:
+        """The variables of a namelist as plain data."""
+        return self.values(node, node.get("namelist").split(), context, local)
+
+    def values(
+        self, node: Node, names: list[str], context: Context, local: Scope
+    ) -> dict[str, Json]:
+        """Variables as plain data."""
+        found: dict[str, Json] = {}
+        for name in names:
+            try:
+                found[name] = self.engine.value(name, context.scopes(local))
+            except ScriptError as error:
+                raise self.failure(error, node, "namelist") from None
+        return found
+
+    # Control ----------------------------------------------------------------------------
+
+    def branch(self, node: Node, context: Context, local: Scope) -> None:
+        """The first branch whose condition holds (5.3.4)."""
+        chosen: list[Node | str] = []
+        taken = self.holds(node, context, local)
+        for item in node.content:
+            if isinstance(item, Node) and item.tag in ("elseif", "else"):
+                if taken:
+                    break
+                taken = self.holds(item, context, local)
+            elif taken:
+                chosen.append(item)
+        self.run_all(chosen, context, local)
+
+    def go(self, node: Node, context: Context, local: Scope) -> None:
+        """Leave for an item, a dialog or a document (5.3.7)."""
+        item = self.word(node, "nextitem", context, local)
+        if item:
+            if all(one.get("name") != item for one in self.owner.items(context)):
+                message = f'{source(node)}: there is no form item "{item}"'
+                raise Thrown("error.badfetch", message, source(node))
+            raise GoItem(item)
+        self.owner.go(context, self.word(node, "next", context, local), node, False)
+
+    def submit(self, node: Node, context: Context, local: Scope) -> None:
+        """Leave for another document, or send values to a service and go on (5.3.8)."""
+        inputs = [one.get("name") for one in self.owner.items(context) if one.tag != "block"]
+        names = node.get("namelist").split() if "namelist" in node.attributes else inputs
+        values = self.values(node, [name for name in names if name], context, local)
+        uri = self.word(node, "next", context, local)
+        if not uri.startswith(SERVICE):
+            self.owner.go(context, uri, node, True)
+            return
+        service, _, dialog = uri.removeprefix(SERVICE).partition("#")
+        self.owner.count_output(len(str(values)), node)
+        self.owner.actions.append(Send(service, values, next(self._sends), source(node)))
+        if dialog:
+            if context.page.dialog(dialog) is None:
+                message = f'{source(node)}: there is no dialog "{dialog}"'
+                raise Thrown("error.badfetch", message, source(node))
+            raise GoDialog(None, dialog)
+
+    def give_back(self, node: Node, context: Context, local: Scope) -> None:
+        """Come back from a subdialog (5.3.10)."""
+        if not context.depth:
+            message = f"{source(node)}: there is no subdialog to return from"
+            raise Thrown("error.semantic", message, source(node))
+        values = self.named(node, context, local)
+        event = self.word(node, "event", context, local)
+        raise GoBack(values, event, self.word(node, "message", context, local))
+
+    # Scripts, data and the transcript -----------------------------------------------------
+
+    def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+        """Run a script; what it declares belongs to the scope it stands in (5.3.12)."""
+        code, attribute = node.own_text, ""
+        uri = self.word(node, "src", context, local)
+        if uri:
+            data = self.owner.fetch(context.page.resolve(uri, node), node)
+            code = decoded(data, node.get("charset"))
+            attribute = "src" if "src" in node.attributes else "srcexpr"
+        try:
+            self.engine.script(code, scope, context.scopes(local))
+        except ScriptError as error:
+            if uri:
+                error = ScriptError(f"line {error.line}: {error}")
+            raise self.failure(error, node, attribute) from None
+
+    def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+        """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
+        self.named(node, context, local)
+        uri = context.page.resolve(self.word(node, "src", context, local), node)
+        content = self.owner.fetch(uri, node)
+        if not node.get("name"):
+            return
+        held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
+        try:
+            scopes = (*context.scopes(local)[:-1], held)
+            self.engine.assign(scope, node.get("name"), f"({DATA})(tree)", scopes)
+        except ScriptError as error:
+            raise self.failure(error, node, "src") from None
+
+    def report(self, node: Node, context: Context, local: Scope) -> None:
+        """What exit and disconnect give to whoever runs the application: told in the transcript."""
+        found: Json = self.named(node, context, local) or None
+        if "expr" in node.attributes:
+            found = self.value(node, "expr", context, local)
+        if found is not None:
+            told = json.dumps(found, ensure_ascii=False)
+            self.write(f"{node.tag}: {told}", node)
+
+    def log(self, node: Node, context: Context, local: Scope) -> None:
+        """Something for the transcript (5.3.13)."""
+        label = f"{node.get('label')}: " if node.get("label") else ""
+        parts = [self.spoken(node, context, local)]
+        if "expr" in node.attributes:
+            parts.append(self.text(node, context, local))
+        self.write(label + " ".join(part for part in parts if part), node)
+
+    def write(self, text: str, node: Node) -> None:
+        """Write a line into the transcript."""
+        said = text[:RESULT_LIMIT]
+        self.owner.count_output(len(said), node)
+        self.owner.actions.append(Say("log", said, source(node)))
+
+
+def milliseconds(text: str, default: int) -> int:
+    """A time such as ``5s`` or ``500ms``, or the default."""
+    try:
+        return int(read_value("duration", text.strip())) if text.strip() else default
+    except ValueError:
+        return default

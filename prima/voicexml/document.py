@@ -1,0 +1,136 @@
+"""Loading: a VoiceXML document as nodes, checked by the table; its dialogs by name."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from urllib.parse import urldefrag, urljoin, urlsplit
+
+from prima.errors import DocumentError, Problem
+from prima.markup.check import check_root
+from prima.markup.reader import parse
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, VOICEXML
+
+__all__ = [
+    "PRIMA_NAMESPACE",
+    "Fetch",
+    "FetchError",
+    "Page",
+    "VoiceDocument",
+    "broken",
+    "join",
+    "read_page",
+]
+Fetch = Callable[[str], bytes]
+"""Gives the bytes of a resource by its URI, relative to the application's folder."""
+
+
+class FetchError(Exception):
+    """A resource cannot be had; ``event`` is what the application is told."""
+
+    def __init__(self, message: str, event: str = "error.badfetch") -> None:
+        super().__init__(message)
+        self.event = event
+
+
+@dataclass(slots=True)
+class Page:
+    """One VoiceXML document."""
+
+    uri: str
+    root: Node
+    dialogs: dict[str, Node] = field(default_factory=dict)
+    """Forms and menus by their id, in document order; those without one by a number."""
+    problems: list[Problem] = field(default_factory=list)
+
+    @property
+    def lang(self) -> str:
+        """The document's language."""
+        return self.root.get("xml:lang", "en")
+
+    @property
+    def application(self) -> str:
+        """The URI of the application root document, if it names one (1.5.2)."""
+        name = self.root.get("application")
+        return urldefrag(self.resolve(name))[0] if name else ""
+
+    def base(self, node: Node | None = None) -> str:
+        """What relative URIs are relative to, seen from the application's folder (1.5.1)."""
+        base = join(self.uri, self.root.get("xml:base"))
+        if node is not None and node is not self.root:
+            base = join(base, node.get("xml:base"))
+        return base
+
+    def resolve(self, uri: str, node: Node | None = None) -> str:
+        """A URI written in this document, seen from the application's folder (6.1.1)."""
+        return join(self.base(node), uri)
+
+    def dialog(self, name: str) -> Node | None:
+        """The dialog of that id, or the first one where there is no name."""
+        return self.dialogs.get(name) if name else next(iter(self.dialogs.values()), None)
+
+    def warnings(self) -> list[Problem]:
+        """What is no error until it is reached; found only for who asks."""
+        return check_code(self.root, set(self.dialogs))
+
+
+def join(base: str, uri: str) -> str:
+    """A URI seen from its base; one that leads out of the folder begins with ``..``."""
+    if not uri:
+        return base
+    if urlsplit(base).scheme or urlsplit(uri).scheme or uri.startswith(("#", "?", "/")):
+        return urljoin(base, uri)
+    path, mark, rest = uri.partition("#")
+    path, query, asked = path.partition("?")
+    folder = posixpath.dirname(base)
+    whole = posixpath.normpath(posixpath.join(folder, path))
+    end = "/" if path.endswith("/") else ""
+    return f"{whole}{end}{query}{asked}{mark}{rest}"
+
+
+def read_page(uri: str, file: str, data: bytes) -> Page:
+    """Read a VoiceXML document.
+
+    Raises:
+        DocumentError: it is not well-formed, or no VoiceXML at all.
+    """
+    root = parse(file, data)
+    check_root(root, (VOICEXML,))
+    page = Page(uri, root, problems=check_tree(root))
+    for node in root.all("form", "menu"):
+        name = node.get("id") or f"#{len(page.dialogs) + 1}"
+        if name in page.dialogs:
+            message = f'There are two dialogs "{name}".'
+            problem = Problem(node.attribute_place("id"), "error", "duplicate-id", message)
+            page.problems.append(problem)
+        page.dialogs.setdefault(name, node)
+    return page
+
+
+@dataclass(slots=True)
+class VoiceDocument:
+    """A VoiceXML application: its first document and how others are fetched."""
+
+    id: str
+    kind: str
+    file: str
+    page: Page
+    fetch: Fetch
+    node: Node
+    watches: list[Json] = field(default_factory=list)
+    forms: dict[str, Json] = field(default_factory=dict)
+
+    @property
+    def lang(self) -> str:
+        """The first document's language."""
+        return self.page.lang
+
+
+def broken(page: Page) -> DocumentError | None:
+    """The error that a document's problems amount to, if any is an error."""
+    errors = [problem for problem in page.problems if problem.severity == "error"]
+    return DocumentError(errors) if errors else None

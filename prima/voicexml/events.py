@@ -1,0 +1,136 @@
+"""Events: which handler takes one, and what the platform does itself (VoiceXML 2.0, 5.2)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.selection import prefixes, takes
+from prima.markup.tree import Node
+from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoItem, GoOut, HungUp, Thrown
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
+ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
+"""Events after which the platform's own handlers ask again (5.2.5)."""
+
+
+class Events:
+    """Handles the events of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self.engine = owner.engine
+
+    def handle(self, context: Context, thrown: Thrown, depth: int = 0) -> Flow:
+        """Find an event's handler and run it, or do what the platform does (5.2.4, 5.2.5)."""
+        self._count(context, thrown)
+        try:
+            if isinstance(thrown, HungUp) and not self.owner.gone:
+                yield from self._hang_up(context, thrown)
+            handler = self.find(context, thrown)
+            if handler is None:
+                yield from self._default(context, thrown)
+                return
+            self._run(context, handler, thrown)
+        except (Thrown, ScriptError) as error:
+            again = thrown_of(error)
+            self.owner.count_step(self.owner.document.node)
+            if depth > MAX_DEPTH:
+                message = f"error.semantic: {again.source}: its handlers throw without end"
+                raise GoOut(message, True) from None
+            yield from self.handle(context, again, depth + 1)
+
+    def find(self, context: Context, thrown: Thrown) -> Node | None:
+        """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
+        local = self._scope(thrown)
+        item = context.item if context.item is not context.form else None
+        root = context.root.root if context.root else None
+        fitting: list[tuple[int, Node]] = []
+        for node in (item, context.form, context.page.root, root):
+            for handler in node.all(*HANDLERS) if node is not None else ():
+                least = _number(handler)
+                if least <= self._seen(context, handler, thrown.name) and self.owner.content.holds(
+                    handler, context, local
+                ):
+                    fitting.append((least, handler))
+        highest = max((least for least, _ in fitting), default=0)
+        return next((handler for least, handler in fitting if least == highest), None)
+
+    def unhandled(self, context: Context, thrown: Thrown) -> Flow:
+        """Say what is queued, and end the application with an event that nothing takes."""
+        yield from self.owner.finish(context)
+        place, message = thrown.source, thrown.message
+        if place and not message.startswith(place):
+            message = f"{place}: {message}" if message else place
+        raise GoOut(f"{thrown.name}: {message}", True, place)
+
+    def _count(self, context: Context, thrown: Thrown) -> None:
+        """Count an event, under its name and all prefixes, where it was thrown (5.2.2)."""
+        where = _place(context)
+        for name in prefixes(thrown.name):
+            context.counters[where, name] = context.counters.get((where, name), 0) + 1
+
+    def _seen(self, context: Context, handler: Node, event: str) -> int:
+        """How often a handler's event has been counted; 0 where it does not take this one."""
+        names = [handler.tag]
+        if handler.tag == "catch":
+            names = [name.rstrip(".") for name in handler.get("event").split()] or [""]
+        where = _place(context)
+        counts = [context.counters.get((where, one), 0) for one in names if takes(one, event)]
+        return max(counts, default=0)
+
+    def _scope(self, thrown: Thrown) -> Scope:
+        """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
+        local = self.engine.scope(_event=thrown.name)
+        if thrown.message:
+            self.engine.set(local, "_message", thrown.message)
+        else:
+            self.engine.unset(local, "_message")
+        return local
+
+    def _run(self, context: Context, handler: Node, thrown: Thrown) -> None:
+        """Run a handler as if it stood where the event was thrown; what is next may be quiet."""
+        self.owner.reprompted = False
+        try:
+            self.owner.content.run(handler, context, self._scope(thrown))
+        except GoItem:
+            context.quiet = not self.owner.reprompted  # the dialog is still the same (5.3.6)
+            raise
+        context.quiet = not self.owner.reprompted
+
+    def _hang_up(self, context: Context, thrown: HungUp) -> Flow:
+        """Nobody is there any more: what is queued is said before, nothing after (5.3.11)."""
+        try:
+            if self.owner.queue and not thrown.outside:
+                yield from self.owner.play(context)
+        finally:
+            self.owner.gone = thrown.name
+
+    def _default(self, context: Context, thrown: Thrown) -> Flow:
+        """The platform's own handlers (5.2.5)."""
+        if any(takes(one, thrown.name) for one in ASKED_AGAIN):
+            context.quiet = False
+        elif takes("cancel", thrown.name):
+            context.quiet = True
+        elif takes("exit", thrown.name) or takes("connection.disconnect", thrown.name):
+            raise GoOut(thrown.name)
+        else:
+            yield from self.unhandled(context, thrown)
+
+
+def _place(context: Context) -> int:
+    """Where events are counted: at the item, or at the dialog itself."""
+    return context.item.index if context.item is not None else -1
+
+
+def _number(handler: Node) -> int:
+    count = handler.get("count", "1")
+    return max(int(count), 1) if count.isdecimal() else 1
+
+
+def thrown_of(error: Thrown | ScriptError) -> Thrown:
+    """An error of the engine itself is an event as well."""
+    return error if isinstance(error, Thrown) else Thrown("error.semantic", str(error))

@@ -1,0 +1,200 @@
+"""What the user may say where an application waits: active grammars and what they take (3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.markup.tree import Node
+from prima.messages import Json, Say
+from prima.voicexml.document import Page
+from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase
+from prima.voicexml.state import Context, Heard
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
+"""Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
+MOST_RESULTS = 100
+BUILT_IN = frozenset(["boolean", "currency", "date", "digits", "number", "phone", "time"])
+
+
+@dataclass(slots=True)
+class Active:
+    """A grammar that listens, and what it belongs to: an item, a form, a link or a choice."""
+
+    match: Matcher
+    owner: Node
+    page: Page
+    level: Node
+    """The element whose grammars are tried together; a link or choice is of its parent."""
+
+
+class Inputs:
+    """Finds and matches the grammars of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self._loaded: dict[tuple[str, int, str], Matcher] = {}
+
+    # Hearing ------------------------------------------------------------------------
+
+    def hear(self, context: Context, text: str) -> Heard | None:
+        """What the most specific grammars take of an utterance, or None (3.1.4)."""
+        wanted = self.owner.number(context, "maxnbest", 1)
+        most = int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
+        least = self.owner.number(context, "confidencelevel", 0.5)
+        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        first: Active | None = None
+        results: list[Found] = []
+        for active in self.active(context):
+            if first is not None and (active.level is not first.level or len(results) >= most):
+                break
+            for one in active.match(text, most):
+                fits = one.mode in modes and one.confidence >= least
+                if fits and all(one.means != other.means for other in results):
+                    results.append(one)
+                    first = first or active
+        if first is None:
+            return None
+        best, *others = results[:most]
+        further = [(one.utterance, one.interpretation, one.confidence) for one in others]
+        return Heard(
+            best.utterance,
+            best.interpretation,
+            first.owner,
+            first.page,
+            best.confidence,
+            best.mode,
+            further,
+        )
+
+    # Which grammars listen --------------------------------------------------------------
+
+    def active(self, context: Context) -> Iterator[Active]:
+        """All grammars that listen now, in the order of their precedence (3.1.4)."""
+        item, form, page = context.item, context.form, context.page
+        if item is not None:
+            yield from self._of(context, item, page)
+            if item.get("modal", str(item.tag in ("record", "transfer")).lower()) == "true":
+                return
+            yield from self._links(context, item, page)
+        if form is not None and form is not item:
+            yield from self._of(context, form, page)
+            yield from self._links(context, form, page)
+        for wider in (page, context.root):
+            if wider is not None:
+                yield from self._links(context, wider.root, wider)
+                for dialog in wider.dialogs.values():
+                    if dialog is not form:
+                        yield from self._shared(context, dialog, wider)
+        yield from self._universals(context)
+
+    def _shared(self, context: Context, dialog: Node, page: Page) -> Iterator[Active]:
+        """The grammars of another dialog that listen in the whole document (3.1.3)."""
+        if dialog.get("scope") == "document":
+            yield from self._of(context, dialog, page)
+        for grammar in dialog.all("grammar"):
+            if grammar.get("scope") == "document" and dialog.get("scope") != "document":
+                yield self._grammar(context, grammar, dialog, page, dialog)
+
+    def _universals(self, context: Context) -> Iterator[Active]:
+        names = self.owner.setting(context, "universals").split()
+        root = context.page.root
+        for name, event in UNIVERSALS.items():
+            if name in names or names == ["all"]:
+                link = Node("link", root.source, root.index, {"event": event}, key="link")
+                yield Active(phrase(name, name, False), link, context.page, root)
+
+    def _links(self, context: Context, node: Node, page: Page) -> Iterator[Active]:
+        for link in node.all("link"):
+            for grammar in link.all("grammar"):
+                yield self._grammar(context, grammar, link, page, node)
+            if link.get("dtmf"):
+                yield Active(keys(link.get("dtmf"), link.get("dtmf")), link, page, node)
+
+    def _of(self, context: Context, node: Node, page: Page) -> Iterator[Active]:
+        """The grammars that stand in an item or dialog, its options and choices."""
+        for grammar in node.all("grammar"):
+            if node is context.form or grammar.get("scope") != "dialog":
+                yield self._grammar(context, grammar, node, page, node)
+        if node.tag == "field" and node.get("type"):
+            yield Active(self._built_in(node, page), node, page, node)
+        if node.tag in ("field", "menu"):
+            numbers = numbered(node)
+            for option in node.all("option", "choice"):
+                yield from self._option(context, option, node, page, numbers[option.index])
+
+    def _option(
+        self, context: Context, option: Node, node: Node, page: Page, dtmf: str
+    ) -> Iterator[Active]:
+        target = option if option.tag == "choice" else node
+        words = words_of(option)
+        value: Json = option.get("value") or words or dtmf
+        approximate = (option.get("accept") or node.get("accept")) == "approximate"
+        grammars = option.all("grammar")
+        for grammar in grammars:
+            yield self._grammar(context, grammar, target, page, node)
+        if words and not grammars:
+            yield Active(phrase(words, value, approximate), target, page, node)
+        if dtmf:
+            yield Active(keys(dtmf, value), target, page, node)
+
+    # Loading ---------------------------------------------------------------------------
+
+    def _built_in(self, node: Node, page: Page) -> Matcher:
+        name = node.get("type")
+        known = name.partition("?")[0] in BUILT_IN or name.startswith("builtin:")
+        return self._load(node, page, name if known else f"builtin:grammar/{name}")
+
+    def _grammar(
+        self, context: Context, node: Node, owner: Node, page: Page, level: Node
+    ) -> Active:
+        uri = node.get("src")
+        if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
+            local = self.owner.local()
+            uri = self.owner.content.word(node, "src", context, local)
+        if uri and not uri.startswith("builtin:"):
+            uri = page.resolve(uri, node)
+        return Active(self._load(node, page, uri), owner, page, level)
+
+    def _load(self, node: Node, page: Page, uri: str) -> Matcher:
+        key = (page.uri, node.index, uri)
+        if key not in self._loaded:
+            self._loaded[key] = matcher(
+                node, page, uri, lambda name: self.owner.fetch(name, node), self._failed
+            )
+        return self._loaded[key]
+
+    def _failed(self, node: Node, message: str) -> None:
+        """A tag failed while the user was being understood: the grammar takes it not."""
+        self.owner.actions.append(Say("error", message, source(node)))
+
+
+def numbered(node: Node) -> dict[int, str]:
+    """The keys of a field's options or a menu's choices, by their index (2.2).
+
+    With ``dtmf="true"`` a menu numbers the first nine choices that have no keys of their own.
+    """
+    found: dict[int, str] = {}
+    number = 0
+    for one in node.all("option", "choice"):
+        found[one.index] = one.get("dtmf")
+        if not one.get("dtmf") and node.get("dtmf") == "true" and number < 9:
+            number += 1
+            found[one.index] = str(number)
+    return found
+
+
+def words_of(option: Node) -> str:
+    """What an option or choice says: its own text, that of its markup included."""
+    parts: list[str] = []
+    for item in option.content:
+        if isinstance(item, str):
+            parts.append(item)
+        elif item.tag not in ("grammar", "desc", "metadata"):
+            parts.append(words_of(item))
+    return " ".join("".join(parts).split())

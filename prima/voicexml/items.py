@@ -1,0 +1,195 @@
+"""What comes of a form item: values, filled elements, subdialogs (VoiceXML 2.0, 2.3 and 2.4)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from urllib.parse import urldefrag
+
+from prima.interpreter.content import source
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.voicexml.document import Page
+from prima.voicexml.results import RESULTS, shadow
+from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Heard, HungUp, Thrown
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
+"""Items that take input or a result; a block and an initial are control items (2.3)."""
+
+
+class Items:
+    """Fills the form items of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self.engine = owner.engine
+
+    # What the user said ---------------------------------------------------------------
+
+    def process(self, context: Context, heard: Heard) -> None:
+        """What the user said goes to the item, form, link or choice that has taken it."""
+        owner = heard.owner
+        self.remember(context, heard)
+        if owner.tag in ("link", "choice"):
+            self._follow(context, owner, heard)
+        if owner.tag in ("form", "menu") and owner is not context.form:
+            page = heard.page if heard.page is not context.page else None
+            raise GoDialog(page, _name(heard.page, owner), heard)
+        filled = self._fill(context, heard)
+        if not filled:
+            raise Thrown("nomatch", "", source(owner))
+        for item in self.owner.items(context):
+            if item.tag == "initial":
+                self.mark(context, item)
+        self.run_filled(context, filled)
+
+    def _follow(self, context: Context, node: Node, heard: Heard) -> None:
+        """A link's or choice's target: a dialog, or an event (2.2, 2.5)."""
+        content, local = self.owner.content, self.owner.local()
+        event = content.word(node, "event", context, local)
+        if event:
+            raise Thrown(event, content.word(node, "message", context, local), source(node))
+        uri = content.word(node, "next", context, local)
+        if heard.page is not context.page and not urldefrag(uri)[0]:
+            uri = heard.page.uri + uri
+        self.owner.go(context, uri, node, False)
+
+    def remember(self, context: Context, heard: Heard) -> None:
+        """Set ``application.lastresult$`` (5.1.5)."""
+        results = [shadow(heard)]
+        for utterance, interpretation, confidence in heard.others:
+            further = Heard(
+                utterance, interpretation, heard.owner, heard.page, confidence, heard.mode
+            )
+            results.append(shadow(further))
+        local = self.owner.local()
+        self.engine.set(local, "$results", results)
+        self.engine.assign(context.application, "lastresult$", RESULTS, context.scopes(local))
+
+    def _fill(self, context: Context, heard: Heard) -> list[Node]:
+        """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""
+        owner, found = heard.owner, heard.interpretation
+        if owner.tag not in ("form", "menu"):
+            value = slot_of(found, _slot(owner))
+            self._give(context, owner, found if value is None else value, heard)
+            return [owner]
+        filled = []
+        for item in self.owner.items(context):
+            value = slot_of(found, _slot(item)) if item.tag in INPUTS else None
+            if value is not None and item.get("name"):
+                self._give(context, item, value, heard)
+                filled.append(item)
+        return filled
+
+    def _give(self, context: Context, item: Node, value: Json, heard: Heard) -> None:
+        self.fill(context, item, value, shadow(heard))
+
+    def fill(
+        self, context: Context, item: Node, value: Json, shadow: dict[str, Json] | None = None
+    ) -> None:
+        """Give an item's variable its value, and its shadow variables."""
+        context.visited.add(item.index)
+        name = item.get("name")
+        if name:
+            self.engine.set(context.dialog, name, value)
+        if name and shadow is not None:
+            self.engine.set(context.dialog, f"{name}$", shadow)
+
+    def mark(self, context: Context, item: Node) -> None:
+        """Set the variable of a control item."""
+        self.fill(context, item, True)
+
+    def run_filled(self, context: Context, filled: list[Node]) -> None:
+        """Run the filled elements that what was just filled has satisfied (2.4)."""
+        assert context.form is not None
+        for node in context.form.nodes:
+            if node in filled:
+                context.item = node
+                for action in node.all("filled"):
+                    self.owner.content.run(action, context, self.owner.local())
+            elif node.tag == "filled":
+                context.item = None
+                if self._satisfied(context, node, filled):
+                    self.owner.content.run(node, context, self.owner.local())
+
+    def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
+        """Whether a form's filled is to run: for any, or all, of its items (2.4)."""
+        items = [item for item in self.owner.items(context) if item.tag in INPUTS]
+        names = node.get("namelist").split()
+        if names:
+            items = [item for item in items if item.get("name") in names]
+        if not any(item in filled for item in items):
+            return False
+        return node.get("mode") == "any" or all(self.owner.guarded(context, item) for item in items)
+
+    # Items with results of their own --------------------------------------------------
+
+    def call(self, context: Context, item: Node) -> Flow:
+        """A subdialog, in a context of its own (2.3.4)."""
+        if context.depth >= MAX_DEPTH:
+            message = f"{source(item)}: more than {MAX_DEPTH} subdialogs inside each other"
+            raise Thrown("error.semantic", message, source(item))
+        params = self._params(context, item)
+        uri = self.owner.content.word(item, "src", context, self.owner.local())
+        fetched, dialog = self.owner.documents.find(context, uri, item)
+        page = fetched or context.page
+        blank = self.engine.scope()
+        inner = Context(context.session, page, blank, blank, self.engine.dialog())
+        inner.params, inner.depth = params, context.depth + 1
+        self.owner.context = inner
+        try:
+            yield from self.owner.execute(inner, page, dialog)
+        except GoBack as back:
+            result = back
+        finally:
+            self.owner.context = context
+        if result.event:
+            raise Thrown(result.event, result.message, source(item))
+        values = {name: value for name, value in result.values.items() if value is not None}
+        self.fill(context, item, values)
+        self.run_filled(context, [item])
+
+    def _params(self, context: Context, item: Node) -> dict[str, Json]:
+        """What a subdialog is given, by value (6.4)."""
+        local = self.owner.local()
+        return {
+            param.get("name"): self.owner.content.value(param, "expr", context, local)
+            if "expr" in param.attributes
+            else param.get("value")
+            for param in item.all("param")
+        }
+
+    def recorded(self, context: Context, item: Node, heard: Heard) -> None:
+        """A recording: in simulation, the words that were said (2.3.6)."""
+        size = len(heard.utterance.encode())
+        data: dict[str, Json] = {"duration": 100 * len(heard.utterance), "size": size}
+        self.fill(context, item, heard.utterance, {**data, "maxtime": False})
+        self.run_filled(context, [item])
+
+    def transfer(self, context: Context, item: Node) -> Flow:
+        """A call to somebody else: this robot has no telephone (2.3.7)."""
+        if self.owner.queue:
+            yield from self.owner.play(context)
+        if item.get("bridge") != "true" and item.get("type") != "bridge":
+            raise HungUp("connection.disconnect.transfer", "", source(item))
+        self.fill(context, item, "noanswer", {"duration": 0})
+        self.run_filled(context, [item])
+
+
+def _name(page: Page, dialog: Node) -> str:
+    return next((name for name, node in page.dialogs.items() if node is dialog), "")
+
+
+def _slot(item: Node) -> str:
+    return item.get("slot") or item.get("name")
+
+
+def slot_of(found: Json, path: str) -> Json:
+    """A slot's value in an interpretation; a path may have dots (3.1.6)."""
+    for part in path.split("."):
+        if not isinstance(found, dict):
+            return None
+        found = found.get(part)
+    return found

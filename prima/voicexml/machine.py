@@ -1,0 +1,406 @@
+"""The Form Interpretation Algorithm of VoiceXML as one coroutine (2.0, 2.1.6 and appendix C)."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.interpreter.expressions import Scope, ScriptError
+from prima.markup.tree import Node
+from prima.messages import Command, Json
+from prima.voicexml.content import ITEMS, Content, milliseconds
+from prima.voicexml.document import Page
+from prima.voicexml.events import Events, thrown_of
+from prima.voicexml.fetching import fetch
+from prima.voicexml.inputs import Inputs, numbered, words_of
+from prima.voicexml.items import Items
+from prima.voicexml.scopes import Documents
+from prima.voicexml.state import (
+    Context,
+    Flow,
+    GoBack,
+    GoDialog,
+    GoItem,
+    GoOut,
+    Heard,
+    HungUp,
+    Resume,
+    Thrown,
+)
+
+if TYPE_CHECKING:
+    from prima.voicexml.application import VoiceInterpreter
+
+DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1"}
+
+
+class Machine:
+    """Runs one application's dialogs; everything it does itself takes no time."""
+
+    def __init__(self, owner: VoiceInterpreter) -> None:
+        self.owner = owner
+        self.engine = owner.engine
+        self.document = owner.document
+        self.pages: dict[str, Page] = {owner.document.page.uri: owner.document.page}
+        self.queue: list[Command] = []
+        """Prompts and Commands that are played on reaching a wait (4.1.8)."""
+        self.asking: Node | None = None
+        """The last prompt queued: its timeout and bargein count."""
+        self.reprompted = False
+        self.gone = ""
+        """The event by which the user has gone: nothing is waited for any more (1.5.4)."""
+        self.content = Content(self)
+        self.inputs = Inputs(self)
+        self.documents = Documents(self)
+        self.items_of = Items(self)
+        self.events = Events(self)
+        self.context: Context | None = None
+
+    # What content needs -------------------------------------------------------------
+
+    @property
+    def actions(self) -> list[object]:
+        """What the application wants."""
+        return self.owner.actions  # type: ignore[return-value]
+
+    def count_step(self, node: Node) -> None:
+        """Bound what is done in one instant."""
+        self.owner.count_step(node)
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what comes out in one instant."""
+        self.owner.count_output(characters, node)
+
+    def fetch(self, uri: str, node: Node) -> bytes:
+        """A resource's bytes, or ``error.badfetch``."""
+        return fetch(self, uri, node)
+
+    def go(self, context: Context, uri: str, node: Node, submits: bool) -> None:
+        """Follow a URI to a dialog (5.3.7)."""
+        self.documents.go(context, uri, node, submits)
+
+    def find(self, context: Context, thrown: Thrown) -> Node | None:
+        """The handler of an event that has been counted (5.2.4)."""
+        return self.events.find(context, thrown)
+
+    def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
+        """Queue something to be said."""
+        if prompt is not None or text:
+            self.asking = prompt
+        if text:
+            self.owner.count_output(len(text), self.document.node)
+            self.queue.append(Command("speak", text=text, lang=lang, source=place))
+
+    def items(self, context: Context) -> list[Node]:
+        """The form items of the active dialog."""
+        form = context.form
+        if form is None:
+            return []
+        return [form] if form.tag == "menu" else [one for one in form.nodes if one.tag in ITEMS]
+
+    def local(self) -> Scope:
+        """A new anonymous scope."""
+        return self.engine.scope()
+
+    def setting(self, context: Context, name: str) -> str:
+        """A property's value, innermost first (6.3)."""
+        page_roots = [context.page.root, context.root.root if context.root else None]
+        for node in (context.item, context.form, *page_roots):
+            for child in reversed(node.all("property") if node is not None else []):
+                if child.get("name") == name:
+                    return child.get("value")
+        return DEFAULTS.get(name, "")
+
+    def number(self, context: Context, name: str, default: float) -> float:
+        """A property as a number."""
+        try:
+            return float(self.setting(context, name))
+        except ValueError:
+            return default
+
+    def enumeration(self, node: Node, context: Context, local: Scope) -> str:
+        """What enumerate says: each choice, in its own words (2.2.4)."""
+        owner = context.item if context.item is not None else context.form
+        if owner is None:
+            return ""
+        choices, keys = owner.all("choice", "option"), numbered(owner)
+        if not node.content:
+            return "; ".join(filter(None, map(words_of, choices)))
+        said = []
+        for choice in choices:
+            self.engine.set(local, "_prompt", words_of(choice))
+            self.engine.set(local, "_dtmf", keys[choice.index])
+            said.append(self.content.inner(node, context, local))
+        return " ".join(said)
+
+    # Documents -----------------------------------------------------------------------
+
+    def start(self) -> Flow:
+        """Run the application from its first dialog to its end (1.5.1)."""
+        page, blank = self.document.page, self.engine.scope()
+        context = Context(self.documents.session(), page, blank, blank, self.engine.dialog())
+        self.context = context
+        reason = GoOut()
+        try:
+            yield from self.execute(context, page, "")
+        except GoOut as out:
+            reason = out
+        except GoBack:
+            pass
+        if not reason.failed:
+            yield from self.finish(context)
+        raise reason
+
+    def finish(self, context: Context) -> Flow:
+        """Say what is queued at an application's end (4.1.8): nothing is handled any more."""
+        self.context = None
+        if self.queue and not self.gone:
+            try:
+                yield from self.play(context)
+            except Thrown as thrown:
+                yield from self.events.unhandled(context, thrown)
+
+    def execute(
+        self, context: Context, page: Page, dialog: str, heard: Heard | None = None
+    ) -> Flow:
+        """Run documents and dialogs of one context until it is left."""
+        fetched: Page | None = page
+        while True:
+            try:
+                if fetched is not None:
+                    page, fetched = fetched, None
+                    yield from self._enter(context, page)
+                node = page.dialog(dialog)
+                if node is None:
+                    message = f'there is no dialog "{dialog}" in {page.uri}'
+                    raise Thrown("error.badfetch", message)
+                yield from self.dialog(context, node, heard)
+                raise GoOut
+            except GoDialog as go:
+                fetched, dialog, heard = go.page, go.dialog, go.heard
+            except Thrown as thrown:
+                yield from self.events.unhandled(context, thrown)
+
+    def _enter(self, context: Context, page: Page) -> Flow:
+        """Set up a document's scopes; what fails is an event in it."""
+        try:
+            self.documents.enter(context, page)
+        except (Thrown, ScriptError) as error:
+            context.form = context.item = None
+            yield from self.events.handle(context, thrown_of(error))
+
+    # Dialogs --------------------------------------------------------------------------
+
+    def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
+        """One form or menu: initialise, then select, collect, process (appendix C)."""
+        context.form, context.item = form, None
+        context.counters, context.prompts, context.visited = {}, {}, set()
+        context.quiet = False
+        wanted = ""
+        try:
+            self._initialise(context, form)
+        except (Thrown, ScriptError) as error:
+            wanted = yield from self._handled(context, error)
+        while True:
+            self.count_step(form)
+            context.item = None
+            try:
+                if heard is not None:
+                    taken, heard = heard, None
+                    self.items_of.process(context, taken)
+                    continue
+                item = self.select(context, wanted)
+                wanted = ""
+                if item is None:
+                    raise GoOut
+                context.item = item
+                yield from self.visit(context, item)
+            except GoItem as go:
+                wanted = go.name
+            except (Thrown, ScriptError) as error:
+                wanted = yield from self._handled(context, error)
+
+    def _handled(
+        self, context: Context, error: Thrown | ScriptError
+    ) -> Generator[None, Resume, str]:
+        """Handle an event; gives the item that its handler goes to, if any."""
+        try:
+            yield from self.events.handle(context, thrown_of(error))
+        except GoItem as go:
+            return go.name
+        return ""
+
+    def _initialise(self, context: Context, form: Node) -> None:
+        """Make a form's variables and those of its items, in document order (2.1.6.1)."""
+        context.dialog = self.engine.dialog()
+        params, context.params = context.params or {}, None
+        for node in form.nodes if form.tag == "form" else ():
+            if node.tag == "var" and node.get("name") in params:
+                self._set(context, node.get("name"), params.pop(node.get("name")))
+            elif node.tag in ("var", "script", "data"):
+                self.documents.declare(node, context.dialog, context)
+            elif node.tag in ITEMS:
+                self._declare_item(context, node)
+        for name in params:
+            message = f'{source(form)}: no variable of the form is the parameter "{name}"'
+            raise Thrown("error.semantic", message, source(form))
+
+    def _set(self, context: Context, name: str, value: Json) -> None:
+        """Give a variable of the dialog a value, which may be undefined."""
+        if value is None:
+            self.engine.unset(context.dialog, name)
+        else:
+            self.engine.set(context.dialog, name, value)
+
+    def _declare_item(self, context: Context, item: Node) -> None:
+        """Give an item's variable its first value; one without a name is but visited or not."""
+        if item.get("name"):
+            self.documents.declare(item, context.dialog, context)
+            return
+        expr = "expr" if "expr" in item.attributes else ""
+        if expr and self.content.value(item, expr, context, self.local()) is not None:
+            context.visited.add(item.index)
+
+    def select(self, context: Context, wanted: str) -> Node | None:
+        """The item that a goto names, else the first unfilled one whose condition holds."""
+        items = self.items(context)
+        if wanted:
+            return next((item for item in items if item.get("name") == wanted), None)
+        for item in items:
+            if item.tag == "menu":
+                return item
+            if not self.guarded(context, item) and self.content.holds(item, context, self.local()):
+                return item
+        return None
+
+    def guarded(self, context: Context, item: Node) -> bool:
+        """Whether an item's variable is defined, so that it is not visited."""
+        name = item.get("name")
+        if name:
+            return self.engine.defined(context.dialog, name)
+        return item.index in context.visited
+
+    def visit(self, context: Context, item: Node) -> Flow:
+        """Collect: prompts, then what the item waits for."""
+        quiet, context.quiet = context.quiet, False
+        if item.tag == "block":
+            self.items_of.mark(context, item)
+            self.content.run(item, context, self.local())
+            return
+        if not quiet:
+            self._prompt(context, item)
+        match item.tag:
+            case "subdialog":
+                yield from self.items_of.call(context, item)
+            case "object":
+                name = item.get("classid") or "object"
+                message = f"{source(item)}: {name}"
+                raise Thrown("error.unsupported.objectname", message, source(item))
+            case "transfer":
+                yield from self.items_of.transfer(context, item)
+            case _:
+                yield from self._listen(context, item)
+
+    # Prompts --------------------------------------------------------------------------
+
+    def _prompt(self, context: Context, item: Node) -> None:
+        """Queue the prompts of an item that its counter has reached (4.1.6)."""
+        count = context.prompts[item.index] = context.prompts.get(item.index, 0) + 1
+        pieces = [
+            (_least(piece), piece)
+            for piece in item.content
+            if _is_spoken(piece) and _least(piece) <= count and self._holds(context, piece)
+        ]
+        highest = max((least for least, _ in pieces), default=0)
+        bare: list[Node | str] = []
+        for least, piece in pieces:
+            if least != highest:
+                continue
+            if isinstance(piece, str) or piece.tag != "prompt":
+                bare.append(piece)
+                continue
+            self.content.run_all(bare, context, self.local())
+            bare = []
+            said = self.content.spoken(piece, context, self.local())
+            self.say(said, self.content.lang(piece, context), source(piece), piece)
+        self.content.run_all(bare, context, self.local())
+
+    def _holds(self, context: Context, piece: Node | str) -> bool:
+        return isinstance(piece, str) or self.content.holds(piece, context, self.local())
+
+    # Waiting --------------------------------------------------------------------------
+
+    def play(self, context: Context) -> Flow:
+        """Play what is queued and wait until it has been said."""
+        del context
+        resume = yield from self._wait(self.queue)
+        if resume.event is not None:
+            raise _outside(resume)
+
+    def _wait(self, commands: list[Command]) -> Generator[None, Resume, Resume]:
+        """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
+        self.queue = []
+        if self.gone:
+            raise GoOut(self.gone)
+        return (yield from self.owner.wait(commands))
+
+    def _listen(self, context: Context, item: Node) -> Flow:
+        """Play what is queued, then wait for the user (C4)."""
+        for _ in self.inputs.active(context):
+            pass  # a grammar that cannot be used is told before anything is said
+        asked = self.queue.pop() if self.queue and self.queue[-1].type == "speak" else None
+        question = self._question(context, item, asked)
+        self.owner.heard = None
+        resume = yield from self._wait([*self.queue, question])
+        self._answered(context, item, resume)
+
+    def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
+        """The question that an item's last prompt is (4.1.5, 4.1.7)."""
+        prompt, self.asking = self.asking, None
+        timeout = prompt.get("timeout") if prompt is not None else ""
+        bargein = prompt.get("bargein") if prompt is not None else ""
+        args: dict[str, Json] = {
+            "timeout": f"{milliseconds(timeout or self.setting(context, 'timeout'), 5000)}ms",
+            "bargein": (bargein or self.setting(context, "bargein")) != "false",
+        }
+        lang = item.get("xml:lang") if item.tag != "menu" else ""
+        lang = lang or context.page.lang
+        text = asked.text if asked else None
+        return Command("q-and-a", args, text, lang=lang, source=source(item))
+
+    def _answered(self, context: Context, item: Node, resume: Resume) -> None:
+        """Process what has ended the wait."""
+        if resume.event is not None:
+            raise _outside(resume)
+        outcome = str(resume.data.get("outcome", "noinput"))
+        heard = self.owner.heard
+        if outcome == "filled" and heard is not None:
+            if heard.owner is item and item.tag == "record":
+                self.items_of.recorded(context, item, heard)
+            else:
+                self.items_of.process(context, heard)
+            return
+        if outcome == "nomatch":
+            utterance = str(resume.data.get("utterance", ""))
+            self.items_of.remember(context, Heard(utterance, utterance, item, context.page))
+        raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
+
+
+def _is_spoken(piece: Node | str) -> bool:
+    return isinstance(piece, str) or piece.tag in ("prompt", "audio", "value", "enumerate")
+
+
+def _least(piece: Node | str) -> int:
+    """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
+    count = "1" if isinstance(piece, str) else piece.get("count", "1")
+    return int(count) if count.isdecimal() else 1
+
+
+def _outside(resume: Resume) -> Thrown:
+    """The event that has ended a wait."""
+    assert resume.event is not None
+    name, message = resume.event.name, str(resume.event.data.get("message", ""))
+    if name.startswith("connection.disconnect"):
+        return HungUp(name, message, outside=True)
+    return Thrown(name, message)

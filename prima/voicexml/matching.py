@@ -1,0 +1,165 @@
+"""Grammars of a VoiceXML document as functions of what was said (3.1 and 2.2.5)."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, cast
+from urllib.parse import urldefrag
+
+from prima.grammar import (
+    Grammar,
+    GrammarError,
+    UnsupportedBuiltIn,
+    UnsupportedFormat,
+    UnsupportedLanguage,
+    load,
+)
+from prima.interpreter.content import source
+from prima.interpreter.grammar import fold
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.voicexml.document import Page
+from prima.voicexml.state import Thrown
+
+KEYS = frozenset("0123456789*# ")
+"""What may be typed on a telephone's keys: such an utterance is tried as DTMF first."""
+LANGUAGE = re.compile(r"[A-Za-z]{2,3}(-[A-Za-z0-9]{2,8})*")
+"""Languages of grammars; recognition compares words, so that it takes any real one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """One way in which a grammar takes an utterance."""
+
+    utterance: str
+    interpretation: Json
+    confidence: float = 1.0
+    mode: str = "voice"
+
+    @property
+    def means(self) -> str:
+        """What tells it from other results."""
+        return json.dumps(self.interpretation, sort_keys=True, default=str)
+
+
+Matcher = Callable[[str, int], list[Found]]
+Fetch = Callable[[str], bytes]
+Tell = Callable[[Node, str], None]
+
+
+def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Matcher:
+    """The grammar of an element, or of the URI that it names.
+
+    Raises:
+        Thrown: ``error.badfetch``, ``error.grammar``, ``error.unsupported.format``,
+            ``error.unsupported.language`` or ``error.unsupported.builtin``.
+    """
+    grammar = _loaded(node, page, uri, fetch)
+
+    def match(text: str, most: int) -> list[Found]:
+        found: list[Found] = []
+        for said, mode in _ways(text):
+            for one in grammar.match(said, mode=mode, most=most):
+                if one.error is not None:
+                    tell(node, f"{source(node)}: {one.error}")
+                    continue
+                found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
+            if found:
+                break
+        return found[:most]
+
+    return match
+
+
+def _ways(text: str) -> list[tuple[str, str]]:
+    """An utterance as keys, with and without the key that ends it, and as speech."""
+    if not text.strip() or not set(text) <= KEYS:
+        return [(text, "voice")]
+    typed = text.replace(" ", "")
+    ways = [(typed, "dtmf"), (text, "voice")]
+    if typed.endswith("#") and len(typed) > 1:
+        ways.insert(1, (typed[:-1], "dtmf"))
+    return ways
+
+
+def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
+    failures: list[Thrown] = []
+
+    def fetched(name: str) -> bytes:
+        try:
+            return fetch(name)
+        except Thrown as thrown:
+            failures.append(thrown)
+            raise LookupError(thrown.message) from None
+
+    grammar = node.tag == "grammar"
+    given = node.get("mode") if grammar and node.get("mode") in ("dtmf", "voice") else ""
+    mode = cast(Literal["dtmf", "voice"], given) if given else None
+    lang = node.get("xml:lang") or page.lang
+    kind, place = node.get("type") if grammar else "", source(node)
+    try:
+        what: Node | str | bytes = node
+        rule = ""
+        if uri and (not grammar or uri.startswith("builtin:")):
+            what = uri
+        elif uri:
+            name, rule = urldefrag(uri)
+            what = fetch(name)
+        base = urldefrag(uri)[0] or page.base()
+        made = load(
+            what,
+            base=base,
+            lang=lang,
+            mode=mode,
+            fetch=fetched,
+            type=kind,
+            rule=rule,
+            languages=lambda tag: LANGUAGE.fullmatch(tag) is not None,
+        )
+        if not made.root:
+            raise Thrown("error.grammar", f"{place}: the grammar names no root rule", place)
+    except GrammarError as error:
+        if failures:
+            raise failures[0] from None
+        raise Thrown(_event(error), f"{place}: {error}", place) from None
+    return made
+
+
+def _event(error: GrammarError) -> str:
+    """What an application is told of a grammar that cannot be used (5.2.6)."""
+    for kind, name in (
+        (UnsupportedFormat, "error.unsupported.format"),
+        (UnsupportedLanguage, "error.unsupported.language"),
+        (UnsupportedBuiltIn, "error.unsupported.builtin"),
+    ):
+        if isinstance(error, kind):
+            return name
+    return "error.grammar"
+
+
+def phrase(text: str, value: Json, approximate: bool) -> Matcher:
+    """A matcher of one phrase; approximately, of some of its words in their order (2.2.5)."""
+    wanted = fold(text).split()
+
+    def match(said: str, _most: int) -> list[Found]:
+        words = fold(said).split()
+        rest = iter(wanted)
+        near = approximate and bool(words) and all(word in rest for word in words)
+        return [Found(said, value)] if words == wanted or near else []
+
+    return match
+
+
+def keys(dtmf: str, value: Json) -> Matcher:
+    """A matcher of a sequence of keys."""
+    wanted = dtmf.replace(" ", "")
+
+    def match(said: str, _most: int) -> list[Found]:
+        typed = said.replace(" ", "")
+        ends = typed == wanted or (typed.endswith("#") and typed[:-1] == wanted)
+        return [Found(wanted, value, 1.0, "dtmf")] if ends else []
+
+    return match

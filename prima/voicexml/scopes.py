@@ -1,0 +1,130 @@
+"""Documents and their scopes: entering one, and going to another (VoiceXML 2.0, 1.5.2 and 5.1)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from urllib.parse import urldefrag
+
+from prima.interpreter.content import source
+from prima.interpreter.expressions import Scope
+from prima.markup.tree import Node
+from prima.voicexml.document import Page
+from prima.voicexml.fetching import load_page
+from prima.voicexml.state import Context, GoDialog, Thrown
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+CONNECTION = """Object.defineProperty(session, 'connection', (function (held) {
+  return {
+    enumerable: true,
+    get: function () { return held; },
+    set: function () { throw new TypeError('session variables are read only'); },
+  };
+})({ local: {}, remote: {}, protocol: {} }))"""
+"""A robot has no telephone: what there is of ``session.connection`` is undefined (5.1.4)."""
+
+
+class Documents:
+    """Enters the documents of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self.engine = owner.engine
+
+    def session(self) -> Scope:
+        """The scope of the whole session (5.1.4)."""
+        session = self.engine.scope()
+        self.engine.put(session, "session", session)
+        blank = self.engine.scope()
+        self.engine.raw(CONNECTION, (session, blank, blank, blank, blank))
+        return session
+
+    def enter(self, context: Context, page: Page) -> None:
+        """Make a document the active one, with what it keeps of its application (1.5.2)."""
+        root = self.root(page)
+        if root is None and context.root is not None and context.root.uri == page.uri:
+            context.document = context.application
+            context.page, context.root = page, None
+            return
+        try:
+            if root is not None:
+                self._enter_root(context, root)
+        finally:
+            context.page, context.root = page, root
+            context.document = self.engine.scope()
+            if root is None:
+                context.application = context.document
+        self._declare(context, page)
+
+    def root(self, page: Page) -> Page | None:
+        """The application root of a leaf.
+
+        Raises:
+            Thrown: ``error.badfetch`` or ``error.semantic``.
+        """
+        uri = page.application
+        return load_page(self.owner, uri, page.root) if uri and uri != page.uri else None
+
+    def _enter_root(self, context: Context, root: Page) -> None:
+        """The application of a leaf: the one there is, or a new one."""
+        if context.root is not None and context.root.uri == root.uri:
+            return
+        if context.root is None and context.page.uri == root.uri:
+            context.application = context.document
+            return
+        context.page, context.root = root, None
+        context.application = context.document = self.engine.scope()
+        self._declare(context, root)
+
+    def _declare(self, context: Context, page: Page) -> None:
+        """Make the variables of the active document, in document order (5.1.2)."""
+        scope = context.document
+        self.engine.put(scope, "document", scope)
+        if context.application is scope:
+            self.engine.put(scope, "application", scope)
+        context.dialog = self.engine.dialog()
+        for node in page.root.all("var", "script", "data"):
+            self.declare(node, scope, context)
+
+    def declare(self, node: Node, scope: Scope, context: Context) -> None:
+        """What a document or form declares: a variable, a script's variables, or data."""
+        content, local = self.owner.content, self.owner.local()
+        match node.tag:
+            case "script":
+                content.script(node, scope, context, local)
+            case "data":
+                content.data(node, scope, context, local)
+            case _:
+                content.declare(node, scope, context, local)
+
+    def go(self, context: Context, uri: str, node: Node, submits: bool) -> None:
+        """Follow a URI to a dialog (5.3.7).
+
+        Raises:
+            GoDialog: with the page, or without where it is this one.
+            Thrown: ``error.badfetch``.
+        """
+        page, dialog = self.find(context, uri, node, submits)
+        raise GoDialog(page, dialog)
+
+    def find(
+        self, context: Context, uri: str, node: Node, submits: bool = False
+    ) -> tuple[Page | None, str]:
+        """The dialog that a URI names, and its document where that is fetched.
+
+        Raises:
+            Thrown: ``error.badfetch``.
+        """
+        if not uri:
+            raise Thrown("error.badfetch", f"{source(node)}: there is no URI", source(node))
+        target, fragment = urldefrag(uri)
+        page = None
+        if target or submits:
+            page = load_page(self.owner, urldefrag(context.page.resolve(uri, node))[0], node)
+            self.root(page)  # a document without its root is none
+        if (page or context.page).dialog(fragment) is None:
+            where = f" in {page.uri}" if page else ""
+            message = f'{source(node)}: there is no dialog "{fragment}"{where}'
+            raise Thrown("error.badfetch", message, source(node))
+        return page, fragment

@@ -1,0 +1,131 @@
+"""What is remembered while a VoiceXML application runs, and how control leaves content."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+
+from prima.interpreter.expressions import Scope
+from prima.markup.tree import Node
+from prima.messages import Data, Event, Json
+from prima.voicexml.document import Page
+
+SCOPES = ("session", "application", "document", "dialog", "anonymous")
+"""Outermost first (5.1.2)."""
+MAX_DEPTH = 32
+"""Subdialogs inside each other, and events thrown while one is handled."""
+
+
+@dataclass(slots=True)
+class Resume:
+    """What ended a wait: the run's data, or an event from outside."""
+
+    data: Data = field(default_factory=dict)
+    event: Event | None = None
+
+
+Flow = Generator[None, Resume, None]
+
+
+@dataclass(slots=True)
+class Heard:
+    """An utterance that an active grammar has taken (5.1.5)."""
+
+    utterance: str
+    interpretation: Json
+    owner: Node
+    page: Page
+    confidence: float = 1.0
+    mode: str = "voice"
+    others: list[tuple[str, Json, float]] = field(default_factory=list)
+    """Further results, best first, as utterance, interpretation and confidence."""
+    mark: str | None = None
+    """The last mark of the prompts before it (VoiceXML 2.1, 3)."""
+
+
+@dataclass(slots=True, eq=False)
+class Context:
+    """One execution context: the application's own, or a subdialog's (2.3.4)."""
+
+    session: Scope
+    page: Page
+    application: Scope
+    document: Scope
+    dialog: Scope
+    root: Page | None = None
+    form: Node | None = None
+    item: Node | None = None
+    counters: dict[tuple[int, str], int] = field(default_factory=dict)
+    prompts: dict[int, int] = field(default_factory=dict)
+    visited: set[int] = field(default_factory=set)
+    """Items without a name that have been visited: their guards are set."""
+    params: dict[str, Json] | None = None
+    depth: int = 0
+    quiet: bool = False
+    """Whether the next item is visited without its prompts (5.3.6)."""
+
+    def scopes(self, local: Scope) -> tuple[Scope, ...]:
+        """All scopes of content, outermost first."""
+        return (self.session, self.application, self.document, self.dialog, local)
+
+
+class Thrown(Exception):
+    """An event (5.2.1)."""
+
+    def __init__(self, name: str, message: str = "", source: str = "") -> None:
+        super().__init__(name)
+        self.name = name
+        self.message = message
+        self.source = source
+
+
+class HungUp(Thrown):
+    """The user is no longer there, or is about to go: a hangup, a disconnect, a transfer (1.5.4)."""
+
+    def __init__(
+        self, name: str, message: str = "", source: str = "", outside: bool = False
+    ) -> None:
+        super().__init__(name, message, source)
+        self.outside = outside
+
+
+class Leave(Exception):
+    """Control leaves what runs."""
+
+
+class GoDialog(Leave):
+    """A goto or submit, or an utterance that another dialog's grammar has taken."""
+
+    def __init__(self, page: Page | None, dialog: str, heard: Heard | None = None) -> None:
+        super().__init__(dialog)
+        self.page = page
+        self.dialog = dialog
+        self.heard = heard
+
+
+class GoItem(Leave):
+    """A goto nextitem."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.name = name
+
+
+class GoBack(Leave):
+    """A return: values, or an event."""
+
+    def __init__(self, values: dict[str, Json], event: str = "", message: str = "") -> None:
+        super().__init__(event)
+        self.values = values
+        self.event = event
+        self.message = message
+
+
+class GoOut(Leave):
+    """The end of the application."""
+
+    def __init__(self, reason: str = "exit", failed: bool = False, source: str = "") -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.failed = failed
+        self.source = source

@@ -1,0 +1,123 @@
+"""VoiceXML documents as applications: small cases written after the Recommendation's sections."""
+
+from __future__ import annotations
+
+from tests.voice import Call
+
+
+def test_prompts_queue_until_the_application_waits() -> None:
+    call = Call(
+        """<form><block>Hello. <prompt>Welcome.</prompt><log>queued</log></block>
+        <field name="city"><prompt>Where?</prompt><option>Kyoto</option></field></form>"""
+    )
+    assert call.logs() == ["queued"]
+    assert call.play() == ["Hello.", "Welcome.", "Where?"]
+    call.answer("kyoto")
+    assert call.ended == "exit"
+
+
+def test_nomatch_and_noinput_count_and_prompts_taper() -> None:
+    call = Call(
+        """<form><field name="city"><prompt>Where?</prompt><prompt count="2">Which city?</prompt>
+        <option>Kyoto</option>
+        <nomatch>No. <reprompt/></nomatch><noinput count="2"><exit/></noinput></field></form>"""
+    )
+    call.answer("Nara")
+    call.silent()
+    assert call.said() == ["Where?", "No.", "Which city?", "Which city?"]
+    call.silent()
+    assert call.ended == "exit"
+
+
+def test_a_menu_goes_where_its_choice_leads() -> None:
+    call = Call(
+        """<menu dtmf="true"><prompt>Choose: <enumerate/></prompt>
+          <choice next="#a">Sports</choice><choice next="#b">Weather</choice></menu>
+        <form id="a"><block>Goal!</block></form><form id="b"><block>Sunny.</block></form>"""
+    )
+    assert call.play() == ["Choose: Sports; Weather"]
+    call.answer("weather")
+    assert call.said()[-1] == "Sunny."
+
+
+def test_a_subdialog_has_a_context_of_its_own() -> None:
+    call = Call(
+        """<var name="n" expr="1"/>
+        <form id="a"><subdialog name="r" src="#s"><param name="p" expr="n + 1"/>
+          <filled><log><value expr="r.q"/> <value expr="n"/></log></filled></subdialog></form>
+        <form id="s"><var name="p"/><var name="q"/>
+          <block><assign name="n" expr="99"/><assign name="q" expr="p * 10"/>
+          <return namelist="q"/></block></form>"""
+    )
+    assert call.logs() == ["20 1"]
+
+
+def test_a_leaf_sees_its_root() -> None:
+    call = Call(
+        """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" application="root.vxml">
+        <form><block><log><value expr="application.greeting"/></log>
+          <assign name="greeting" expr="'bye'"/><goto next="other.vxml"/></block></form></vxml>""",
+        root="""<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">
+        <var name="greeting" expr="'hi'"/><catch event="odd"><log>caught</log></catch></vxml>""",
+        other="""<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" application="root.vxml">
+        <form><block><log><value expr="greeting"/></log><throw event="odd.thing"/></block></form>
+        </vxml>""",
+    )
+    assert call.logs() == ["hi", "bye", "caught"]
+
+
+def test_a_document_that_is_not_there_is_an_event() -> None:
+    call = Call(
+        """<catch event="error.badfetch"><log>none</log><exit/></catch>
+        <form><block><goto next="nowhere.vxml"/></block></form>"""
+    )
+    assert (call.logs(), call.ended) == (["none"], "exit")
+
+
+def test_an_event_from_outside_that_a_handler_takes_ends_the_wait() -> None:
+    call = Call(
+        """<catch event="touch"><prompt>You touched me.</prompt></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.listens()
+    call.event("touch.head")
+    call.play()
+    assert call.said() == ["Well?", "You touched me."]
+
+
+def test_mixed_initiative_fills_many_fields() -> None:
+    call = Call(
+        """<form>
+        <grammar version="1.0" root="trip" xmlns="http://www.w3.org/2001/06/grammar"
+            tag-format="semantics/1.0">
+          <rule id="trip">from <ruleref uri="#city"/><tag>out.start = rules.latest();</tag>
+            to <ruleref uri="#city"/><tag>out.end = rules.latest();</tag></rule>
+          <rule id="city"><one-of><item>Kyoto</item><item>Nara</item></one-of></rule>
+        </grammar>
+        <initial><prompt>Your trip?</prompt></initial>
+        <field name="start"><prompt>From?</prompt></field>
+        <field name="end"><prompt>To?</prompt></field>
+        <filled><log><value expr="start"/> <value expr="end"/></log></filled></form>"""
+    )
+    call.answer("from Kyoto to Nara")
+    assert call.logs() == ["Kyoto Nara"]
+
+
+def test_commands_of_the_robot_stand_among_prompts() -> None:
+    call = Call(
+        """<form xmlns:p="urn:prima:dialogue:1"><block>Look. <p:point-by-hand angle="30"/> There.
+        </block></form>"""
+    )
+    call.play()
+    assert [r["command"] for r in call.phases("start")] == ["speak", "point-by-hand", "speak"]
+
+
+def test_data_is_a_read_only_dom() -> None:
+    call = Call(
+        """<form><block><data name="d" src="news.xml"/>
+        <log><value expr="d.documentElement.getElementsByTagName('item').item(1).textContent"/></log>
+        </block></form>""",
+        **{"news.xml": "<news><item>one</item><item>two</item></news>"},
+    )
+    assert call.logs() == ["two"]
