@@ -1314,7 +1314,6 @@ case(
     """<form><catch event="error.semantic"><log>semantic</log></catch>
     <block><var name="document.x" expr="1"/><log expr="document.x"/></block></form>""",
     logs=["semantic"],
-    fails="content.declare makes a variable whose name has a dot",
 )
 case(
     "session variables are read only",
@@ -1983,7 +1982,6 @@ case(
     logs=["hangup", "on"],
     said=[],
     ended="connection.disconnect.hangup",
-    fails="content.act throws a Thrown for disconnect that cannot be told from a throw's",
 )
 case(
     "a thrown connection.disconnect is an event like others",

@@ -876,7 +876,6 @@ def test_a_link_of_the_root_with_a_fragment_leads_to_the_root() -> None:  # 1.5.
     assert call.logs() == ["root x"]
 
 
-@pytest.mark.xfail(strict=True, reason="a link's URI is resolved in the document that waits")
 def test_a_link_of_the_root_is_relative_to_the_root() -> None:  # 1.5.1
     call = Call(
         leaf(ask("<option>yes</option>"), root="sub/root.vxml"),
@@ -947,9 +946,9 @@ def test_a_grammar_file_may_be_abnf() -> None:  # 3.1.1.3
     assert call.logs() == ["tea"]
 
 
-def test_a_grammar_file_may_refer_to_another_beside_it() -> None:  # 3.1.1.3
+def test_a_grammar_file_may_refer_to_another_beside_it() -> None:  # 3.1.1.3; SISR 5
     call = Call(
-        ask('<grammar src="g/a.grxml"/>'),
+        ask('<grammar src="g/a.grxml"/><nomatch><log>no</log></nomatch>'),
         **{
             "g/a.grxml": f'<grammar {GRAMMAR} xml:lang="en" root="r"><rule id="r">big'
             ' <ruleref uri="b.grxml"/></rule></grammar>',
@@ -957,7 +956,7 @@ def test_a_grammar_file_may_refer_to_another_beside_it() -> None:  # 3.1.1.3
         },
     )
     call.answer("big tea")
-    assert call.logs() == ["big tea"]
+    assert call.logs() == ["tea"]
 
 
 def test_a_grammars_weight_is_accepted() -> None:  # 3.1.1.4
@@ -1227,7 +1226,6 @@ def test_a_part_of_a_prompt_may_be_of_another_language() -> None:  # 4.1.1
     assert languages(call) == [("Say", "en"), ("bonjour", "fr"), ("now.", "en")]
 
 
-@pytest.mark.xfail(strict=True, reason="a question is asked in the language of its item")
 def test_a_questions_language_is_its_prompts() -> None:  # 4.1
     call = Call(
         '<form><field name="f"><prompt xml:lang="ja">どこ？</prompt><option>a</option></field></form>'
@@ -1290,11 +1288,12 @@ def test_foreach_may_stand_in_foreach() -> None:  # 2.1, 6
 
 def test_what_is_said_at_once_is_bounded() -> None:
     call = Call(
-        block("""<var name="a" expr="'x'"/><script>for (var i = 0; i &lt; 16; i++) a += a;</script>
-        <foreach item="i" array="[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20]"><value expr="a"/>
-        </foreach>""")
+        block(
+            """<script>var a = 'x'.repeat(5000); var n = []; for (var i = 0; i &lt; 300; i++) n.push(i);
+            </script><foreach item="i" array="n"><value expr="a"/></foreach>"""
+        )
     )
-    assert call.ended == "exit" or "characters" in call.ended
+    assert "characters come out at once" in call.ended
 
 
 def test_a_log_has_a_label_content_and_an_expression() -> None:  # 5.3.13

@@ -23,7 +23,7 @@ from prima.grammar.model import (
 from prima.grammar.text import Utterance
 from prima.messages import Json
 
-MAX_STEPS = 300_000
+MAX_STEPS = 200_000
 """How many steps one utterance may take; one that needs more matches nothing."""
 MOST_READ = 300
 """How many characters a built-in type reads inside an utterance."""

@@ -15,6 +15,9 @@ from prima.grammar.model import BuiltIn, Reference, Rule, Special, Tag, Words
 from prima.grammar.text import Utterance
 from prima.messages import Json
 
+MOST_CELLS = 200_000
+"""How large an analysis may be; a few short rules can make one of any size out of nothing."""
+
 
 class Analysis(NamedTuple):
     """One way through a cell: its cost, and the analyses of what it is made of."""
@@ -23,6 +26,8 @@ class Analysis(NamedTuple):
     cell: Cell
     left: Analysis | None
     right: Analysis | None
+    size: int
+    """How many cells it passes through, those that it passes several times included."""
 
 
 @dataclass(slots=True)
@@ -54,9 +59,12 @@ def best(top: Cell, most: int) -> list[Analysis]:
                 for j, right in enumerate(_known(known, way.right)):
                     if (i + 1) * (j + 1) > most:
                         break
+                    size = 1 + (left.size if left else 0) + (right.size if right else 0)
+                    if size > MOST_CELLS:
+                        continue
                     cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
                     end = way.left.end if way.left else 0
-                    one = Analysis(cost, cell, left, right)
+                    one = Analysis(cost, cell, left, right, size)
                     found.append((round(cost, 9), way.rank, -end, i, j, one))
         found.sort(key=lambda item: item[:5])
         known[cell.number] = [item[5] for item in found[:most]]

@@ -151,13 +151,13 @@ class Interpreter:
         sandbox = self._sandbox(result.document)
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
-        code: list[tuple[Tag, str]] = []
+        tags = [event for event in frame.events if isinstance(event, Tag)]
+        code = {id(tag): translate(tag.code) if legacy else tag.code for tag in tags}
         try:
             environment = sandbox.environment(self.text(result), result.document.merges)
             for event in frame.events:
                 if isinstance(event, Tag):
-                    code.append((event, translate(event.code) if legacy else event.code))
-                    pieces.append(f"{code[-1][1]}\n;")
+                    pieces.append(f"{code[id(event)]}\n;")
                 elif isinstance(event, Frame):
                     inner = self._results[id(event)]
                     sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
@@ -167,7 +167,8 @@ class Interpreter:
                     pieces.append("$next(out);")
             result.box = sandbox.rule("\n".join(pieces), environment)
         except ScriptError as error:
-            raise Failure(_failure(error, code, sandbox)) from None
+            told = [(tag, code[id(tag)]) for tag in tags]
+            raise Failure(_failure(error, told, sandbox)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
         if inner.box is not None and inner.document is result.document:

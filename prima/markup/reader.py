@@ -217,21 +217,22 @@ def _too_deep(place: Place) -> DocumentError:
     )
 
 
+def _prefixed(name: str) -> str:
+    """The name of an attribute of another namespace, as documents write it."""
+    return name.replace(f"{{{XML_NS}}}", "xml:").replace(f"{{{XSI_NS}}}", "xsi:")
+
+
 def _convert(root: etree._Element, source: Source) -> Node:
     """lxml's tree as nodes, with the limits on depth, elements and attributes."""
     nodes: list[Node] = []
 
     def node_of(element: etree._Element) -> Node:
-        qname = etree.QName(element)
-        attributes: dict[str, str] = {}
-        for key, value in element.attrib.items():
-            name = str(key)
-            if name.startswith("{"):
-                name = name.replace(f"{{{XML_NS}}}", "xml:").replace(f"{{{XSI_NS}}}", "xsi:")
-            attributes[name] = str(value)
-        node = Node(
-            qname.localname, source, len(nodes), attributes, namespace=qname.namespace or ""
-        )
+        namespace, _, name = str(element.tag).rpartition("}")
+        attributes = {
+            str(key) if key[0] != "{" else _prefixed(str(key)): str(value)
+            for key, value in element.items()
+        }
+        node = Node(name, source, len(nodes), attributes, namespace=namespace[1:])
         nodes.append(node)
         if len(attributes) > MAX_ATTRIBUTES:
             message = f"<{node.tag}> has more than {MAX_ATTRIBUTES} attributes."

@@ -15,7 +15,7 @@ from prima.values import read_value
 from prima.voicexml.dom import DATA, plain_tree
 from prima.voicexml.fetching import decoded, fetch, load_page
 from prima.voicexml.prompts import SPOKEN, Speaker, Speech
-from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, GoOut, Thrown
+from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, GoOut, HungUp, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class Content(Speaker):
                 raise GoOut()
             case "disconnect":
                 self.report(node, context, local)
-                raise Thrown("connection.disconnect.hangup", "", source(node))
+                raise HungUp("connection.disconnect.hangup", "", source(node))
             case "return":
                 self.give_back(node, context, local)
 
@@ -108,6 +108,9 @@ class Content(Speaker):
 
     def declare(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
         """Declare a variable in a scope (5.3.1)."""
+        if "." in node.get("name"):
+            message = f'{source(node)}: "{node.get("name")}" names a scope; declare it there'
+            raise Thrown("error.semantic", message, source(node))
         if "expr" not in node.attributes:
             self.engine.unset(scope, node.get("name"))
             return

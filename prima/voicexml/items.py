@@ -52,9 +52,10 @@ class Items:
         if event:
             raise Thrown(event, content.word(node, "message", context, local), source(node))
         uri = content.word(node, "next", context, local)
-        if heard.page is not context.page and not urldefrag(uri)[0]:
-            uri = heard.page.uri + uri
-        self.owner.go(context, uri, node, False)
+        base = heard.page if urldefrag(uri)[0] else None
+        if heard.page is not context.page and base is None:
+            uri, base = heard.page.uri.rpartition("/")[2] + uri, heard.page
+        self.owner.go(context, uri, node, False, base)
 
     def remember(self, context: Context, heard: Heard) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""

@@ -76,9 +76,11 @@ class Machine:
         """A resource's bytes, or ``error.badfetch``."""
         return fetch(self, uri, node)
 
-    def go(self, context: Context, uri: str, node: Node, submits: bool) -> None:
+    def go(
+        self, context: Context, uri: str, node: Node, submits: bool, base: Page | None = None
+    ) -> None:
         """Follow a URI to a dialog (5.3.7)."""
-        self.documents.go(context, uri, node, submits)
+        self.documents.go(context, uri, node, submits, base)
 
     def find(self, context: Context, thrown: Thrown) -> Node | None:
         """The handler of an event that has been counted (5.2.4)."""
@@ -364,8 +366,8 @@ class Machine:
             "timeout": f"{milliseconds(timeout or self.setting(context, 'timeout'), 5000)}ms",
             "bargein": (bargein or self.setting(context, "bargein")) != "false",
         }
-        lang = item.get("xml:lang") if item.tag != "menu" else ""
-        lang = lang or context.page.lang
+        own = item.get("xml:lang") if item.tag != "menu" else ""
+        lang = asked.lang if asked and asked.lang else own or context.page.lang
         text = asked.text if asked else None
         return Command("q-and-a", args, text, lang=lang, source=source(item))
 

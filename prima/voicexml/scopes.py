@@ -98,18 +98,25 @@ class Documents:
             case _:
                 content.declare(node, scope, context, local)
 
-    def go(self, context: Context, uri: str, node: Node, submits: bool) -> None:
-        """Follow a URI to a dialog (5.3.7).
+    def go(
+        self, context: Context, uri: str, node: Node, submits: bool, base: Page | None = None
+    ) -> None:
+        """Follow a URI, written in ``base`` or in this document, to a dialog (5.3.7).
 
         Raises:
             GoDialog: with the page, or without where it is this one.
             Thrown: ``error.badfetch``.
         """
-        page, dialog = self.find(context, uri, node, submits)
+        page, dialog = self.find(context, uri, node, submits, base)
         raise GoDialog(page, dialog)
 
     def find(
-        self, context: Context, uri: str, node: Node, submits: bool = False
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        submits: bool = False,
+        base: Page | None = None,
     ) -> tuple[Page | None, str]:
         """The dialog that a URI names, and its document where that is fetched.
 
@@ -121,7 +128,9 @@ class Documents:
         target, fragment = urldefrag(uri)
         page = None
         if target or submits:
-            page = load_page(self.owner, urldefrag(context.page.resolve(uri, node))[0], node)
+            page = load_page(
+                self.owner, urldefrag((base or context.page).resolve(uri, node))[0], node
+            )
             self.root(page)  # a document without its root is none
         if (page or context.page).dialog(fragment) is None:
             where = f" in {page.uri}" if page else ""
