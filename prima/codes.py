@@ -67,6 +67,16 @@ CODES: dict[str, str] = {
     " into pieces at semantic breakpoints (thesis 4.5).",
     "shared-device": "Branches of a par that need one device cannot run at once: they run one after"
     " the other, in document order (rule U3).",
+    "bad-token": "A word of a grammar cannot be said or typed: a quote that is not closed, or a key that"
+    " no telephone has.",
+    "format": "The grammar is of a format that is not read: JSGF, GSL or another. SRGS is, as XML or ABNF.",
+    "language": "A grammar for voice says its language with xml:lang; the tag has to be well-formed.",
+    "mode": "A grammar is for voice or for dtmf, and what it refers to is of the same mode.",
+    "no-root": "The grammar names no rule to begin with, and has more than one: write root on <grammar>.",
+    "not-abnf": "The text is no grammar in the ABNF form of SRGS; the place is where reading stopped.",
+    "not-fetched": "A grammar refers to another file, which cannot be had or is outside the folder.",
+    "private-rule": "A grammar refers to a rule of another grammar that is private there. Make it public.",
+    "tag-format": "tag-format names a language that is not read: semantics/1.0 and semantics/1.0-literals are.",
     "hold-price": "A stream hint (rule X3) keeps other applications out while this one waits for an event:"
     " all but their reactions wait for as long as hold-for says, after each last Command of the"
     " state. The note tells this price; it counts only in a run with the extension x3.",

@@ -11,10 +11,10 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, urlsplit
-from xml.sax.saxutils import escape, quoteattr
 
 from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean, one_of
 from prima.interpreter.checks import check_commands
@@ -184,7 +184,7 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
     """
     demo = documents_folder()
     applications = [
-        f'<application src={quoteattr(path)} kind="{kind}"/>'
+        f'<application src="{escape(path)}" kind="{kind}"/>'
         for kind, paths in (("fa", fas), ("ea", eas))
         for path in paths
     ]
@@ -194,8 +194,8 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
     ]
     text = (
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
-        f" world={quoteattr(str(demo / 'worlds' / 'room.xml'))}"
-        f" robot={quoteattr(str(demo / 'robots' / 'papero.xml'))}>"
+        f' world="{escape(str(demo / "worlds" / "room.xml"))}"'
+        f' robot="{escape(str(demo / "robots" / "papero.xml"))}">'
         f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
     )
     return _load(Path("stage.xml"), text.encode())

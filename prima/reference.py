@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import prima
+from prima import prelude
 from prima.codes import CODES
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import UsageError
@@ -199,12 +200,12 @@ def limits() -> str:
         ),
         (
             "memory of an application's ECMAScript",
-            f"{expressions.MEMORY_LIMIT // mib} MiB",
+            f"{prelude.MEMORY_LIMIT // mib} MiB",
             "`error.semantic`",
         ),
         (
             "stack of an application's ECMAScript",
-            f"{expressions.STACK_LIMIT // 1024} KiB",
+            f"{prelude.STACK_LIMIT // 1024} KiB",
             "`error.semantic`",
         ),
         (

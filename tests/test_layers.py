@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "prima"
 LAYERS = [
     {"errors"},
     {"values"},
-    {"commands"},
+    {"commands", "prelude"},
     {"messages"},
     {"markup", "transcript", "codes"},
     {"grammar"},
@@ -43,6 +43,16 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [{"vocabulary", "tree"}, {"check", "schema"}, {"reader"}, {"__init__"}],
+    "grammar": [
+        {"errors", "text", "numbers", "sandbox"},
+        {"model", "moments"},
+        {"values", "builtin", "legacy", "chart"},
+        {"xmlform", "abnf", "ranking"},
+        {"semantics"},
+        {"grammar", "linking"},
+        {"loading"},
+        {"__init__"},
+    ],
     "interpreter": [
         {"vocabulary", "names", "grammar"},
         {"expressions"},
@@ -78,6 +88,7 @@ ALONE = {
 
 OUTSIDE = {"time", "threading", "random", "datetime", "asyncio", "socket", "subprocess", "os"}
 CORE = (
+    "grammar",
     "interpreter",
     "scheduler",
     "session",
@@ -156,7 +167,7 @@ def test_the_core_has_no_clock_thread_chance_or_socket() -> None:
     for name, tree in MODULES.items():
         if name.split(".")[0] in CORE:
             used = {target.split(".")[0] for target in imported(tree)}
-            if name == "interpreter.expressions":
+            if name in ("interpreter.expressions", "grammar.sandbox"):
                 used -= {"time"}  # it measures scripts, to end those that take too long
             assert not used & OUTSIDE, name
 
@@ -165,7 +176,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
     code = (
         "import sys\nfrom prima.cli import cli\n"
         "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
+        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'lark', 'asyncio'} & set(sys.modules)\n"
         "assert not heavy, heavy"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

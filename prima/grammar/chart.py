@@ -174,8 +174,6 @@ class Chart:
         start = spot.start
         if self.said.startswith(folded, start):
             end = start + len(folded)
-            if end == len(self.said):
-                self.open |= end > start
             if self.utterance.edges[end]:
                 self._finish(spot, self.utterance.after(end), _NO_WAY)
         self._opens(folded, start)
@@ -192,7 +190,8 @@ class Chart:
         for length in index.lengths:
             if length > left:
                 if self._prefixes:
-                    self.open |= any(words.startswith(said[start:]) for words in index.by_lead)
+                    for words in index.by_lead:
+                        self._opens(words, start)
                 break
             found = index.by_lead.get(said[start : start + length])
             if found is not None and self.utterance.edges[start + length]:

@@ -139,7 +139,7 @@ class Grammar:
             return False
         chart = Chart(said, self._root())
         chart.run(prefixes=True)
-        return chart.open
+        return chart.open or chart.steps_left < 0
 
     def _takes(self, mode: str) -> bool:
         return mode == self.mode or (not self.mode and mode in ("voice", "dtmf"))

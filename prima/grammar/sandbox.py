@@ -13,73 +13,12 @@ from typing import Any
 import _quickjs as quickjs
 
 from prima.messages import Json
+from prima.prelude import MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that the tags of one match may take."""
-MEMORY_LIMIT = 16 * 1024 * 1024
-STACK_LIMIT = 256 * 1024
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves the engine."""
-
-PRELUDE = r"""
-(function () {
-  'use strict';
-  const LONGEST = 1000000, WORK = 100000000;
-  const apply = Reflect.apply, isArray = Array.isArray;
-  const define = (object, name, value) => Object.defineProperty(
-    object, name, { value: value, writable: true, configurable: true, enumerable: false });
-  for (const name of ['Date', 'Proxy', 'BigInt', 'ArrayBuffer', 'SharedArrayBuffer', 'DataView',
-      'Atomics', 'Uint8Array', 'Int8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array',
-      'Int32Array', 'Uint32Array', 'BigInt64Array', 'BigUint64Array', 'Float16Array',
-      'Float32Array', 'Float64Array', 'WeakRef', 'FinalizationRegistry', 'performance',
-      'queueMicrotask', 'navigator', 'gc', 'std', 'os', 'bjson', 'DOMException'])
-    delete globalThis[name];
-  for (const name of Object.getOwnPropertyNames(Array.prototype)) {
-    const native = Array.prototype[name];
-    if (typeof native !== 'function' || name === 'constructor' || name === 'push' || name === 'pop')
-      continue;
-    define(Array.prototype, name, function (...given) {
-      if (!isArray(this)) throw new TypeError(name + ' is for arrays alone');
-      if (this.length > LONGEST) throw new RangeError('the array is too long');
-      return apply(native, this, given);
-    });
-  }
-  define(Array.prototype, Symbol.iterator, Array.prototype.values);
-  define(Array, 'from', function (source, map) {
-    const made = [];
-    if (source != null && source[Symbol.iterator] !== undefined)
-      for (const item of source) made.push(map ? map(item, made.length) : item);
-    else {
-      const length = source == null ? 0 : Math.min(Number(source.length) || 0, 2 ** 32);
-      for (let i = 0; i < length; i++) made.push(map ? map(source[i], i) : source[i]);
-    }
-    return made;
-  });
-  for (const name of ['indexOf', 'lastIndexOf', 'includes', 'split', 'replace', 'replaceAll',
-      'matchAll', 'match', 'search', 'repeat', 'padStart', 'padEnd', 'localeCompare',
-      'normalize', 'isWellFormed', 'toWellFormed']) {
-    const native = String.prototype[name];
-    if (typeof native !== 'function') continue;
-    define(String.prototype, name, function (...given) {
-      const own = String(this), first = given.length && typeof given[0] === 'string' ? given[0] : '';
-      if (own.length * (first.length + 1) > WORK) throw new RangeError('the text is too long');
-      return apply(native, own, given);
-    });
-  }
-  define(String, 'raw', function (strings, ...given) {
-    const raw = strings.raw, length = Number(raw.length) || 0;
-    if (length > LONGEST) throw new RangeError('the text is too long');
-    let made = '';
-    for (let i = 0; i < length; i++) made += raw[i] + (i + 1 < length && i < given.length ? given[i] : '');
-    return made;
-  });
-  let seed = 88172645;
-  define(Math, 'random', function () {
-    seed ^= seed << 13; seed ^= seed >>> 17; seed ^= seed << 5;
-    return (seed >>> 0) / 4294967296;
-  });
-})();
-"""
 
 HELPERS = r"""
 (function () {
@@ -169,6 +108,14 @@ class Sandbox:
         given = [self._member(environment, name) for name in ("rules", "meta", "next")]
         return self._call(function, *given, self._call(self._context.eval, "({})"))
 
+    def reached(self, environment: Any) -> int:
+        """Which of a rule's tags was begun last."""
+        try:
+            at = self._context.eval("((e) => e.next.at | 0)")(environment)
+        except (quickjs.JSException, quickjs.StackOverflow):
+            return 0
+        return max(int(at), 0)
+
     def checks(self, code: str) -> bool:
         """Whether a script is well-formed by itself."""
         try:
@@ -184,7 +131,10 @@ class Sandbox:
             return None
         if len(text) > RESULT_LIMIT:
             raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
-        return json.loads(text)
+        try:
+            return json.loads(text)
+        except RecursionError:
+            raise ScriptError("its value is nested too deep") from None
 
     def _helper(self, name: str) -> Any:
         return self._member(self._helpers, name)

@@ -134,10 +134,10 @@ class Interpreter:
                 result.value = self._plain(inner)
 
     def _plain(self, result: _Result) -> Json:
-        from prima.grammar.sandbox import ScriptError
-
         if result.box is None:
             return result.value
+        from prima.grammar.sandbox import ScriptError
+
         try:
             return self._sandbox(result.document).json(result.box)
         except ScriptError as error:
@@ -153,11 +153,12 @@ class Interpreter:
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
         code = {id(tag): translate(tag.code) if legacy else tag.code for tag in tags}
+        environment: Any = None
         try:
             environment = sandbox.environment(self.text(result), result.document.merges)
             for event in frame.events:
                 if isinstance(event, Tag):
-                    pieces.append(f"{code[id(event)]}\n;")
+                    pieces.append(f"$next.at = {tags.index(event)};\n{code[id(event)]}\n;")
                 elif isinstance(event, Frame):
                     inner = self._results[id(event)]
                     sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
@@ -168,7 +169,8 @@ class Interpreter:
             result.box = sandbox.rule("\n".join(pieces), environment)
         except ScriptError as error:
             told = [(tag, code[id(tag)]) for tag in tags]
-            raise Failure(_failure(error, told, sandbox)) from None
+            reached = sandbox.reached(environment) if environment is not None else 0
+            raise Failure(_failure(error, told, sandbox, reached)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
         if inner.box is not None and inner.document is result.document:
@@ -190,9 +192,11 @@ class Interpreter:
         return found
 
 
-def _failure(error: Exception, tags: list[tuple[Tag, str]], sandbox: Any) -> SemanticError:
-    """The failure with the tag where it is, as far as that can be told."""
+def _failure(
+    error: Exception, tags: list[tuple[Tag, str]], sandbox: Any, reached: int = 0
+) -> SemanticError:
+    """The failure with the tag where it is: one that is no script, or the last one begun."""
     broken = [tag for tag, code in tags if not sandbox.checks(code)]
-    tag = (broken or [tag for tag, _ in tags])[0]
+    tag = broken[0] if broken else tags[min(reached, len(tags) - 1)][0]
     shown = json.dumps(" ".join(tag.code.split())[:60], ensure_ascii=False)
     return SemanticError(f"The tag {shown} failed: {error}.", tag.where())

@@ -156,8 +156,9 @@ class _Reader:
         if scope not in ("public", "private"):
             message = f'The scope of a rule is public or private, not "{scope}".'
             self.note(node, "bad-value", message, "", "scope")
+        told = len(self.problems.found)
         parts = self._parts(node, 1)
-        if not parts:
+        if not parts and len(self.problems.found) == told:
             message = f'The rule "{name}" holds nothing.'
             remedy = 'Write <ruleref special="NULL"/> for one that is matched by nothing said.'
             self.note(node, "empty", message, remedy)
@@ -198,6 +199,7 @@ class _Reader:
                 self.document.tags.append(tag)
                 return [tag]
             case _:
+                self._number(node, "weight")  # of no effect outside of <one-of>
                 return [self._item(node, depth)]
 
     def _words(self, node: Node, text: str) -> Part | None:
@@ -270,7 +272,6 @@ class _Reader:
     def _item(self, node: Node, depth: int) -> Part:
         inside = sequence(self._parts(node, depth + 1))
         chance = self._number(node, "repeat-prob")
-        self._number(node, "weight")
         if "repeat" not in node.attributes:
             return inside
         try:

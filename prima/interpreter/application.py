@@ -185,6 +185,8 @@ class Interpreter:
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
         """Give the application's own delayed events that are due."""
+        if not self._timers:
+            return []
         due = sorted((t for t in self._timers if t[0] <= now), key=lambda t: t[:2])
         self._timers = [timer for timer in self._timers if timer[0] > now]
         return [(name, data) for _, _, name, data, _ in due]

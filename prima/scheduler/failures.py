@@ -64,6 +64,8 @@ class Failures(Endings):
         """U5, E1: end what has run longer than it may."""
         for name in [name for name, due in self._holds.items() if due <= self._now()]:
             self._let_go(self.memory.streams[name], "over")
+        if not self._deadlines:
+            return
         late = [name for name, due in self._deadlines.items() if due <= self._now()]
         for name in late:
             self._deadlines.pop(name, None)

@@ -404,7 +404,10 @@ class Robot:
         self._now = now
         reports, self._halted = self._halted, []
         # What goes somewhere sets the wheels first; a dance adds to it (X5).
-        for task in sorted(self.tasks.values(), key=lambda task: task.control == self._dance):
+        tasks = list(self.tasks.values())
+        if self.profile.motions:
+            tasks.sort(key=lambda task: task.control == self._dance)
+        for task in tasks:
             drives = task.control is not None and "locomotion" not in task.lost
             if drives and self._steer(task) and task.ends is None:
                 task.ends = max(now, task.speech_ends)

@@ -59,6 +59,7 @@ class World:
         self._space.add(self._body, shape)
         self._body.position = at
         self._body.angle = math.radians(heading)
+        self._settle()
         self.drive = (0.0, 0.0)
         """What the wheels are told: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
@@ -67,17 +68,23 @@ class World:
         self._walking = 1.0
         self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
 
+    def _settle(self) -> None:
+        """Read where physics has left the body: it moves nowhere else, and reading is slow."""
+        place = self._body.position
+        self._at: Point = (place.x, place.y)
+        self._heading = math.degrees(self._body.angle) % 360.0
+
     # The robot -----------------------------------------------------------------
 
     @property
     def position(self) -> Point:
         """Where the robot is (m)."""
-        return (self._body.position.x, self._body.position.y)
+        return self._at
 
     @property
     def heading(self) -> float:
         """Where the robot's front points (degrees)."""
-        return math.degrees(self._body.angle) % 360.0
+        return self._heading
 
     def pose(self) -> dict[str, float]:
         """The robot's pose, rounded to mm and tenths of a degree."""
@@ -143,6 +150,7 @@ class World:
             self._space.step(seconds)
             body.velocity = (0.0, 0.0)
             body.angular_velocity = 0.0
+            self._settle()
         if self._goal is not None and self.person is not None:
             self._step_person(self._goal, seconds)
 

@@ -1,0 +1,530 @@
+"""The grammar engine: its interface, other documents, what is hostile, and how fast it is."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from time import perf_counter
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from prima.errors import Place
+from prima.grammar import (
+    Grammar,
+    GrammarError,
+    UnsupportedBuiltIn,
+    UnsupportedFormat,
+    UnsupportedLanguage,
+    load,
+    supports,
+)
+from prima.markup.reader import parse
+from prima.markup.tree import Node
+
+SRGS = "http://www.w3.org/2001/06/grammar"
+HEAD = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r"'
+ABNF = "#ABNF 1.0;\nlanguage en;\nroot $r;\n"
+SCRIPT = ABNF + "tag-format <semantics/1.0>;\n"
+
+
+def xml(rules: str, more: str = "") -> str:
+    return f"{HEAD} {more}>{rules}</grammar>"
+
+
+def inside(grammar: str) -> Node:
+    """A <grammar> element of a VoiceXML document."""
+    page = f'<vxml xmlns="http://www.w3.org/2001/vxml" version="2.0">\n{grammar}\n</vxml>'
+    return parse("page.vxml", page.encode()).nodes[0]
+
+
+def codes(error: pytest.ExceptionInfo[GrammarError]) -> list[str]:
+    return sorted(problem.code for problem in error.value.problems)
+
+
+# The interface ---------------------------------------------------------------
+
+
+def test_a_match_tells_what_was_said_and_what_it_means() -> None:
+    grammar = load(
+        xml(
+            '<rule id="r">to "New York" <tag>out.to = "NYC"</tag></rule>',
+            'tag-format="semantics/1.0"',
+        )
+    )
+    (one,) = grammar.match("To new york!")
+    assert one.utterance == "To new york!"
+    assert (one.text, one.tokens) == ("to New York", ("to", "New York"))
+    assert one.interpretation == one.slots == {"to": "NYC"}
+    assert (one.confidence, one.weight, one.mode, one.error) == (1.0, 1.0, "voice", None)
+    assert grammar.mode == "voice" and grammar.lang == "en" and grammar.root == "r"
+
+
+def test_several_meanings_come_best_first_and_once() -> None:
+    grammar = load(
+        SCRIPT + "$r = $a | $b | x {out=1} | x {out=3}; $a = x {out=1}; $b = /1/ x {out=2} | /9/ y;"
+    )
+    assert [one.interpretation for one in grammar.match("x", most=9)] == [1, 3, 2]
+    assert [one.interpretation for one in grammar.match("x", most=2)] == [1, 3]
+    assert grammar.match("x", most=9)[2].weight == pytest.approx(1 / 9)
+    assert grammar.match("x", most=0) == []
+
+
+def test_what_garbage_takes_lowers_the_confidence() -> None:
+    grammar = load(ABNF + "$r = $GARBAGE tea;")
+    assert [grammar.match(said)[0].confidence for said in ("tea", "some tea")] == [1.0, 0.5]
+    assert grammar.match("some tea")[0].weight == 1.0
+
+
+def test_a_failing_tag_gives_an_error_with_its_place() -> None:
+    grammar = load(SCRIPT + "$r = x {out = 1}\n  {out = gone.x};")
+    (one,) = grammar.match("x")
+    assert one.interpretation is None and one.error is not None
+    assert "gone" in str(one.error) and one.error.place == Place("grammar", 6, 3)
+
+
+def test_a_grammar_without_root_takes_a_rule_by_name() -> None:
+    grammar = load("#ABNF 1.0;\nlanguage en;\npublic $a = x;\n$b = y;\n")
+    with pytest.raises(GrammarError, match="no root"):
+        grammar.match("x")
+    assert grammar.rules == {"a": True, "b": False}
+    assert grammar.rule("b").match("y") and not grammar.rule("b").match("x")
+    assert load("#ABNF 1.0;\nlanguage en;\n$b = y;\n", rule="b").match("y")
+    with pytest.raises(GrammarError, match='no rule "c"'):
+        grammar.rule("c")
+
+
+def test_media_types() -> None:
+    assert supports("application/srgs+xml; charset=utf-8") and supports("application/srgs")
+    assert not supports("application/x-jsgf")
+    for kind in ("application/x-jsgf", "text/gsl", "application/x-nuance-gsl"):
+        with pytest.raises(UnsupportedFormat):
+            load(xml('<rule id="r">x</rule>'), type=kind)
+    with pytest.raises(UnsupportedFormat):
+        load(b";GSL2.0;\nX [a b]")
+    with pytest.raises(UnsupportedBuiltIn):
+        load("builtin:grammar/postcode")
+
+
+def test_languages_that_are_not_taken() -> None:
+    with pytest.raises(UnsupportedLanguage):
+        load(xml('<rule id="r">x</rule>'), languages=lambda lang: lang == "ja")
+    assert load(
+        xml('<rule id="r">1</rule>', 'mode="dtmf"').replace('"r" ', '"r" '),
+        languages=lambda lang: False,
+    )
+
+
+def test_encodings() -> None:
+    text = '<?xml version="1.0" encoding="ISO-8859-1"?>' + xml('<rule id="r">café</rule>')
+    for source in (text, text.encode("latin-1")):
+        assert load(source).match("Café")
+    abnf = "#ABNF 1.0 ISO-8859-1;\nlanguage fr;\nroot $r;\n$r = café;\n"
+    assert load(abnf.encode("latin-1")).match("café")
+    assert load(abnf.replace("ISO-8859-1", "UTF-16").encode("utf-16")).match("café")
+    with pytest.raises(GrammarError):
+        load(abnf.replace("ISO-8859-1", "UTF-8").encode("latin-1"))
+
+
+# Elements inside a document ---------------------------------------------------
+
+
+def test_an_element_takes_language_and_mode_from_around_it() -> None:
+    node = inside(
+        '<grammar><rule id="any"><one-of><item>oui</item><item>si</item></one-of></rule></grammar>'
+    )
+    grammar = load(node, lang="fr")
+    assert grammar.lang == "fr" and grammar.root == "any" and grammar.match("Oui!")
+    keys = load(inside('<grammar mode="dtmf" root="k"><rule id="k">1 #</rule></grammar>'))
+    assert keys.match("1#", mode="dtmf") and not keys.match("1#")
+
+
+def test_an_element_of_the_namespace_of_srgs() -> None:
+    assert load(
+        inside(xml('<rule id="r">x</rule>', 'type="application/srgs+xml" scope="dialog"'))
+    ).match("x")
+
+
+def test_an_element_with_several_rules_and_no_root() -> None:
+    two = '<grammar><rule id="a" scope="{}">x</rule><rule id="b">y</rule></grammar>'
+    assert load(inside(two.format("public"))).match("x")
+    with pytest.raises(GrammarError, match="no root"):
+        load(inside(two.format("private"))).match("x")
+
+
+def test_an_element_with_text_in_abnf() -> None:
+    text = "<![CDATA[\n#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = yes<1-2>;\n]]>"
+    assert load(inside(f'<grammar type="application/srgs">{text}</grammar>')).match("yes yes")
+    assert load(inside(f"<grammar>{text}</grammar>")).match("yes")
+    with pytest.raises(UnsupportedFormat):
+        load(inside("<grammar><![CDATA[#JSGF V1.0;]]></grammar>"))
+
+
+def test_problems_of_an_element_have_the_places_of_its_document() -> None:
+    with pytest.raises(GrammarError) as error:
+        load(
+            inside(
+                '<grammar root="a">\n <rule id="a">\n  <item repeat="x">y</item></rule></grammar>'
+            )
+        )
+    (problem,) = error.value.problems
+    assert problem.place == Place("page.vxml", 4, 17)
+
+
+# Other documents --------------------------------------------------------------
+
+FILES = {
+    "http://x.org/g/cities.grxml": xml(
+        '<rule id="r">Rome<tag>out = "FCO"</tag></rule>'
+        '<rule id="far" scope="public">Lima<tag>out = {code: "LIM", zone: zone}</tag></rule>'
+        '<rule id="own">Oslo</rule>',
+        'tag-format="semantics/1.0"',
+    ).replace("<rule", "<tag>var zone = 5</tag><rule", 1),
+    "http://x.org/g/plain.gram": ABNF + "$r = here {there};\npublic $up = $<cities.grxml#far>;",
+    "http://x.org/keys.gram": "#ABNF 1.0;\nmode dtmf;\nroot $r;\n$r = 1;",
+    "http://x.org/g/rootless.gram": "#ABNF 1.0;\nlanguage en;\npublic $a = x;",
+    "http://x.org/g/loop.gram": ABNF + "$r = x | $<other.gram> x;",
+    "http://x.org/g/other.gram": ABNF + "$r = y | $<loop.gram> y;",
+    "http://x.org/g/broken.gram": ABNF + "$r = ;",
+    "http://x.org/g/gsl.gram": ";GSL2.0;",
+}
+asked: list[str] = []
+
+
+def fetch(uri: str) -> bytes:
+    asked.append(uri)
+    return FILES[uri].encode()
+
+
+def reaching(body: str, base: str = "http://x.org/g/main.gram") -> Grammar:
+    return load(SCRIPT + body, base=base, fetch=fetch)
+
+
+def test_rules_of_other_documents() -> None:
+    grammar = reaching(
+        "$r = to $<cities.grxml> {out.root = rules.r} or $<cities.grxml#far> {out.far = rules.far};"
+    )
+    (one,) = grammar.match("to rome or lima")
+    assert one.interpretation == {"root": "FCO", "far": {"code": "LIM", "zone": 5}}
+
+
+def test_documents_of_several_formats_and_through_several() -> None:
+    grammar = reaching(
+        "$r = $<plain.gram#up> {out = rules.latest().code} | $<plain.gram>~<application/srgs>;"
+    )
+    assert grammar.match("lima")[0].interpretation == "LIM"
+    assert grammar.match("here")[0].interpretation == "there"
+
+
+def test_every_document_is_fetched_once() -> None:
+    asked.clear()
+    assert reaching("$r = $<loop.gram> | $<other.gram> | $<loop.gram>;").match("x y x")
+    assert sorted(asked) == ["http://x.org/g/loop.gram", "http://x.org/g/other.gram"]
+
+
+def test_relative_references_keep_to_the_base() -> None:
+    text = xml('<rule id="r"><ruleref uri="cities.grxml"/></rule>', 'xml:base="http://x.org/g/"')
+    assert load(text, base="file:///home/a.grxml", fetch=fetch).match("rome")
+    assert load(
+        ABNF.replace("root", "base <g/>;\nroot", 1) + "$r = $<cities.grxml>;",
+        base="http://x.org/m",
+        fetch=fetch,
+    ).match("rome")
+    node = inside(
+        '<grammar root="r" xml:base="g/"><rule id="r"><ruleref uri="cities.grxml#far"/></rule></grammar>'
+    )
+    assert load(node, base="http://x.org/page.vxml", fetch=fetch).match("lima")
+
+
+def test_an_element_that_names_a_file() -> None:
+    node = inside('<grammar src="g/cities.grxml"/>')
+    assert load(node, base="http://x.org/p.vxml", fetch=fetch).match("rome")
+    far = inside('<grammar src="g/cities.grxml#far" type="application/srgs+xml"/>')
+    assert load(far, base="http://x.org/p.vxml", fetch=fetch).match("lima")
+    for src, code in (
+        ("g/cities.grxml#own", "private-rule"),
+        ("g/cities.grxml#gone", "no-such-rule"),
+        ("g/rootless.gram", "no-root"),
+        ("g/missing.gram", "no-such-file"),
+    ):
+        with pytest.raises(GrammarError) as error:
+            load(inside(f'<grammar src="{src}"/>'), base="http://x.org/p.vxml", fetch=fetch)
+        assert codes(error) == [code]
+
+
+@pytest.mark.parametrize(
+    ("uri", "code"),
+    [
+        ("cities.grxml#own", "private-rule"),
+        ("cities.grxml#gone", "no-such-rule"),
+        ("rootless.gram", "no-root"),
+        ("missing.gram", "no-such-file"),
+        ("broken.gram", "not-abnf"),
+        ("../keys.gram", "mode"),
+        ("gsl.gram", "format"),
+    ],
+)
+def test_references_that_lead_to_no_rule(uri: str, code: str) -> None:
+    with pytest.raises(GrammarError) as error:
+        reaching(f"$r = $<{uri}>;")
+    assert codes(error) == [code]
+
+
+def test_documents_without_end() -> None:
+    def endless(uri: str) -> bytes:
+        number = int(uri.rpartition("/")[2]) + 1
+        return f"{ABNF}$r = x | $<http://x.org/{number}>;".encode()
+
+    with pytest.raises(GrammarError, match="more than 64 documents"):
+        load(ABNF + "$r = $<http://x.org/1>;", fetch=endless)
+
+
+# Whether more may follow -------------------------------------------------------
+
+
+def test_whether_more_keys_may_follow() -> None:
+    grammar = load("#ABNF 1.0;\nmode dtmf;\nroot $r;\n$r = 1 2 3 | 4 [5] | (6|7)<2-3>;")
+    more = [
+        keys
+        for keys in ("", "1", "12", "4", "6", "66")
+        if grammar.accepts_prefix(keys, mode="dtmf")
+    ]
+    none = [
+        keys
+        for keys in ("123", "45", "666", "9", "13")
+        if grammar.accepts_prefix(keys, mode="dtmf")
+    ]
+    assert more == ["", "1", "12", "4", "6", "66"] and none == []
+    digits = load("builtin:dtmf/digits?maxlength=3")
+    assert digits.accepts_prefix("12", mode="dtmf") and not digits.accepts_prefix(
+        "123", mode="dtmf"
+    )
+
+
+def test_whether_more_words_may_follow() -> None:
+    grammar = load(
+        xml('<rule id="r">go to <one-of><item>New York</item><item>Rome</item></one-of></rule>')
+    )
+    assert [grammar.accepts_prefix(said) for said in ("go", "go to new", "go to rome", "stop")] == [
+        True,
+        True,
+        False,
+        False,
+    ]
+
+
+# What is hostile ---------------------------------------------------------------
+
+XS = " ".join("x" * 400)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "$r = $r x | x;",
+        "$r = $r $r | $r $r $r | x | ();",
+        "$r = $a | y; $a = $b | $r; $b = $a | $r x;",
+        "$r = ((([x]<0->)<0->)<0->)<0-> y;",
+        "$r = (x<0-1000000> y<0-1000000>)<0-1000000> z;",
+        "$r = [x]<1000000> z<5000000>;",
+        "$r = ($GARBAGE x $GARBAGE)<0-> z;",
+        "$r = $r0;"
+        + "".join(f"$r{i} = $r{i + 1} $r{i + 1};" for i in range(60))
+        + "$r60 = x | ();",
+        "$r = $r0;" + "".join(f"$r{i} = $r{i + 1};" for i in range(3000)) + "$r3000 = x;",
+        "$r = " + "(x|x x|x x x)" * 100 + " z;",
+    ],
+)
+def test_hostile_rules_end(body: str) -> None:
+    grammar = load(ABNF + body)
+    for said in ("x", "x x x y", XS):
+        began = perf_counter()
+        grammar.match(said, most=5)
+        assert perf_counter() - began < 20
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        b" " * 50_000_000,
+        ABNF + "$r = " + "(" * 10_000 + "x" + ")" * 10_000 + ";",
+        ABNF + "$r = " + "[" * 10_000,
+        xml('<rule id="r">' + "<item>" * 10_000 + "x" + "</item>" * 10_000 + "</rule>"),
+        xml('<rule id="r">&a;</rule>').replace(
+            "<grammar", '<!DOCTYPE g [<!ENTITY a "b">]><grammar', 1
+        ),
+        b"\x00\xff\x00",
+        b"",
+        "#ABNF 1.0;" + "\n" * 1000 + "{",
+    ],
+)
+def test_hostile_files_are_refused(source: str | bytes) -> None:
+    with pytest.raises(GrammarError):
+        load(source)
+
+
+@pytest.mark.parametrize(
+    "tag",
+    [
+        "while (true) {}",
+        "var s = 'x'; while (true) s += s",
+        "out = 'x'.repeat(200000)",
+        "out.self = out",
+        "for (let o = out, i = 0; i < 5000; i++) o = o.o = {}",
+        "function f() { return f() + 1 } f()",
+        "out = {toJSON: function () { throw 1 }}",
+        "throw null",
+        "out = Symbol()" + "; out.x.y",
+    ],
+)
+def test_hostile_tags_fail(tag: str) -> None:
+    began = perf_counter()
+    (one,) = load(f"{SCRIPT}$r = x {{!{{{tag}}}!}};").match("x")
+    assert one.error is not None and one.interpretation is None
+    assert perf_counter() - began < 10
+
+
+def test_the_time_limit_is_of_the_whole_utterance() -> None:
+    grammar = load(SCRIPT + "$r = $b<0->; $b = x {!{var i = 0; while (i < 200000) i++}!};")
+    began = perf_counter()
+    assert grammar.match(XS)[0].error is not None
+    assert perf_counter() - began < 10
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.text(alphabet='$rab=;|()[]<>{}!/0-12" \n#é東*~.', max_size=60))
+def test_any_text_is_a_grammar_or_refused(text: str) -> None:
+    try:
+        grammar = load(ABNF + "$r = " + text)
+    except GrammarError as error:
+        assert error.problems
+        return
+    grammar.match("a b")
+
+
+@st.composite
+def expansions(draw: st.DrawFn, depth: int = 3) -> str:
+    kind = draw(st.integers(0, 6 if depth else 1))
+    if kind <= 1:
+        return draw(st.sampled_from(["a", "b", "$r", "$s", "()", "$NULL"]))
+    inner = [draw(expansions(depth - 1)) for _ in range(draw(st.integers(1, 3)))]
+    if kind == 2:
+        return f"({' | '.join(inner)})"
+    if kind == 3:
+        return f"[{inner[0]}]"
+    if kind == 4:
+        return f"({inner[0]})<{draw(st.sampled_from(['0-', '1-', '2', '0-2']))}>"
+    return f"({' '.join(inner)})"
+
+
+LETTERS = ["", "a", "b", "a a", "a b", "b a", "b b", "a b a", "b b b"]
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(expansions(), expansions())
+def test_the_chart_takes_what_the_rules_derive(one: str, two: str) -> None:
+    """Against sets of all short utterances that the rules derive, made by growing them."""
+    grammar = load(f"{ABNF}$r = {one};\n$s = {two};")
+    derived = derive(
+        {"r": grammar._document.rules["r"].body, "s": grammar._document.rules["s"].body}
+    )
+    for said in LETTERS:
+        assert bool(grammar.match(said)) == (tuple(said.split()) in derived), (said, one, two)
+
+
+LONGEST = 3
+Said = set[tuple[str, ...]]
+
+
+def derive(rules: dict[str, object]) -> Said:
+    known: dict[str, Said] = {name: set() for name in rules}
+    while True:
+        grown = {name: language(body, known) for name, body in rules.items()}
+        if grown == known:
+            return known["r"]
+        known = grown
+
+
+def joined(left: Said, right: Said) -> Said:
+    return {a + b for a in left for b in right if len(a + b) <= LONGEST}
+
+
+def language(part: object, known: dict[str, Said]) -> Said:
+    from prima.grammar import model
+
+    match part:
+        case model.Words(tokens=tokens):
+            return {tokens} if len(tokens) <= LONGEST else set()
+        case model.Reference(rule=rule):
+            return known[rule.name] if rule else set()
+        case model.Choice(parts=parts):
+            return {one for inner in parts for one in language(inner, known)}
+        case model.Sequence(parts=parts):
+            found: Said = {()}
+            for inner in parts:
+                found = joined(found, language(inner, known))
+            return found
+        case model.Repeat(part=inner, low=low, high=high):
+            once = language(inner, known)
+            here: Said = {()}
+            found = {()} if low == 0 else set()
+            for times in range(1, (LONGEST + low + 1) if high is None else high + 1):
+                here = joined(here, once)
+                found |= here if times >= low else set()
+            return found
+        case _:
+            return {()}
+
+
+# How fast it is ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("form", ["xml", "abnf"])
+def test_ten_thousand_alternatives_in_ten_milliseconds(form: str) -> None:
+    items = [
+        f"the {word} of {number}"
+        for number in range(2500)
+        for word in ("lord", "lady", "house", "dog")
+    ]
+    if form == "xml":
+        listed = "".join(f"<item>{item}<tag>{item}</tag></item>" for item in items)
+        grammar = load(
+            xml(
+                f'<rule id="r">find <ruleref uri="#w"/> now</rule><rule id="w"><one-of>{listed}</one-of></rule>'
+            )
+        )
+    else:
+        grammar = load(
+            f"{ABNF}$r = find $w now;\n$w = {'|'.join(f'{item} {{{item}}}' for item in items)};"
+        )
+    took = []
+    for number in (7, 1200, 2499, 1, 2):
+        began = perf_counter()
+        found = grammar.match(f"find the lady of {number} now")
+        took.append(perf_counter() - began)
+        assert found[0].interpretation == f"the lady of {number}"
+    assert min(took) < 0.01
+
+
+def test_loading_takes_time_in_proportion() -> None:
+    def spent(count: int) -> float:
+        text = xml('<rule id="r"><one-of>' + "<item>a b</item>" * count + "</one-of></rule>")
+        began = perf_counter()
+        load(text)
+        return perf_counter() - began
+
+    small = min(spent(2000) for _ in range(3))
+    assert min(spent(16_000) for _ in range(2)) < 8 * 4 * small
+
+
+RULE = '<rule id="r">x<tag>y</tag></rule>'
+
+
+def test_the_parser_of_abnf_and_the_engine_are_loaded_when_needed() -> None:
+    code = (
+        "import sys\nfrom prima.grammar import load\n"
+        f"load({xml(RULE)!r}).match('x')\n"
+        "assert not {'lark', '_quickjs'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
