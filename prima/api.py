@@ -264,6 +264,12 @@ def _reason(record: Record, row: Row) -> str:
         return ""
     it = f"the unit {about} is " if about == row.unit else ""
     match phase:
+        case "request" if record.get("inserted") and not it:
+            return f"put in before {record['before']} (rule {record['inserted']})."
+        case "interrupt":
+            return f"{it or 'it '}gives way to {record['by']} (rule X2).".replace(
+                "is gives", "gives"
+            )
         case "request":
             flag = ", reactive" if record.get("reactive") else ""
             asked = f"{it}requested" if it else f"requested as {base}"

@@ -151,7 +151,11 @@ def _validate_one(path: str) -> list[Problem]:
 
         vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
         if vocabulary is WORLD:
-            read_world(path, data)
+            reading = _Reading(Path(path), {})
+            for area in read_world(path, data).areas:
+                if area.src not in reading.files:
+                    reading.offered(area.src, area)
+            return reading.problems
         elif vocabulary is ROBOT:
             read_robot(path, data)
         else:
@@ -216,7 +220,8 @@ def _load(path: Path, data: bytes) -> Loaded:
     if robot is not None:
         reading.check_commands(robot)
     reading.check_policy(scenario)
-    complete = len(reading.documents) == len(scenario.applications) + len(offers)
+    offered = {name for _, name in offers}
+    complete = len(reading.documents) == len(scenario.applications) + len(offered)
     if world is None or robot is None or not complete:
         raise DocumentError(reading.problems)
     cast = Cast(scenario, reading.documents, world, robot, offers)
@@ -270,15 +275,28 @@ class _Reading:
             message = f'The world "{world.id}" has no <area> that offers an application.'
             self.problems.append(Problem(place, "error", "no-such-name", message))
         beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
+        known: dict[str, AnyDocument | None] = {}
         made = []
         for area in world.areas:
             folder = posixpath.dirname(scenario.world)
             name = posixpath.normpath(posixpath.join(folder, area.src))
-            if name not in beside:
-                document = self.application(name, area.node.attribute_place("application"))
-                if document is not None:
-                    made.append((area, document.id))
+            if name in beside:
+                continue  # the scenario itself says when it runs
+            if name not in known:
+                known[name] = self.offered(name, area)
+            document = known[name]
+            if document is not None:
+                made.append((area, document.id))
         return made
+
+    def offered(self, name: str, area: Area) -> AnyDocument | None:
+        """What an area offers: an EA."""
+        place = area.node.attribute_place("application")
+        document = self.application(name, place)
+        if document is not None and document.kind != "ea":
+            message = f'"{area.src}" is an FA; a place offers EAs.'
+            self.problems.append(Problem(place, "error", "bad-value", message))
+        return document
 
     def check_commands(self, robot: Profile) -> None:
         """Commands that the robot cannot do."""

@@ -286,6 +286,8 @@ class Notice:
     data: Data = field(default_factory=dict)
     event: str = ""
     message: str = ""
+    cause: int | None = None
+    """The event that a refused request was to react to: what is asked for instead does (C5)."""
 
 
 @dataclass(frozen=True, slots=True)

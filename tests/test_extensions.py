@@ -208,6 +208,26 @@ def test_x2_the_application_is_told_how_much_was_heard() -> None:
     assert notice.data == {"done": 0.4, "heard": "A long"}
 
 
+def test_x2_of_a_unit_the_application_is_told_how_much_was_done_in_all() -> None:
+    stage = Stage("prima+x2")
+    stage.request("ea", Group(chain(say("One."), say("Two three.")), restartable=True))
+    stage.select()
+    stage.at(300).end("ea#2")
+    stage.select()
+    stage.request("fa", ask("Yes?"), cause=EVENT)
+    stage.at(500).select()
+    stage.at(501)
+    stage.mediator.interrupted("ea#3", {"done": 0.5, "heard": "Two"})
+    stage.settle()
+    [(name, notice)] = [n for n in stage.notices if n[1].what == "interrupted"]
+    assert (name, notice.event) == ("ea", "interrupted.iu")
+    assert notice.data == {"done": 0.75, "heard": "One. Two"}
+    deadlines = stage.mediator.deadline()
+    stage.at(900).end("fa#1")
+    stage.select()
+    assert deadlines is None or deadlines > 120_000, "nothing of what was broken off is awaited"
+
+
 def test_x2_a_unit_starts_again_whole() -> None:
     stage = Stage("prima+x2")
     unit = Group(chain(say("One."), say("Two.")), restartable=True)

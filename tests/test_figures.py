@@ -287,7 +287,7 @@ def test_taking_a_picture_is_one_unit_to_the_last_answer(scenario: str) -> None:
     transcript = api.rehearse(path_of(scenario))
     unit = [row.what for row in transcript.rows() if row.bracket]
     assert unit[0] == '"Which direction should I turn?"'
-    assert unit[-1] == '"May I take another picture?"'
+    assert unit[-1] == '"No."', "the last answer belongs to it"
     assert {row.app for row in transcript.rows() if row.bracket} == {PICTURE, ""}
 
     def at(phase: str, key: str, value: str) -> int:

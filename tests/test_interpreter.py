@@ -739,3 +739,16 @@ def test_an_event_that_nobody_handles_is_told_with_its_place() -> None:
           <throw event="foo"/></block></form>"""
     )
     assert bench.session.failures == ["app: foo: app.xml:2"]
+
+
+def test_what_is_asked_for_instead_of_a_refused_command_is_the_reaction() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><topological-move to="room"/></block>
+          <on event="corner"><command type="fly"/></on>
+          <on event="error.semantic"><turn-and-speak angle="9">There.</turn-and-speak></on>
+        </form>"""
+    )
+    bench.event("corner")
+    [asked] = [r for r in bench.phases("request") if r["command"] == "turn-and-speak"]
+    assert asked["reactive"] and asked["cause"]

@@ -132,7 +132,9 @@ class Interpreter:
         else:
             fiber = self._waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
+                self.cause = notice.cause
                 self._guard(lambda: self._resume(fiber, notice))
+                self.cause = None
             if notice.what == "cancelled":
                 self._guard(lambda: self.handling.command_event(notice, "cancel"))
 

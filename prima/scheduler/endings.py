@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from prima.messages import Data, Notice, Order
+from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import Application, Behavior, Run, State, Stream
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.intake import Maker, Table
@@ -138,19 +138,24 @@ class Endings:
 
     def interrupted(self, behavior: str, data: Data) -> None:
         """X2: the device tells how much it had done of an AB that was interrupted."""
-        ab = self.memory.behaviors.get(behavior.partition(".")[0])
+        name = behavior.partition(".")[0]
+        ab = self.memory.behaviors.get(name)
+        unit = self._selector.halting.pop(name, None)
         self.chronicle.add(
             "halted",
             "robot",
-            app=ab.app.name if ab else None,
+            app=ab.app.name if ab else unit[0].app.name if unit else None,
             behavior=behavior,
             data=dict(data) or None,
             inbound=True,
         )
-        if ab is None or ab.run is None or ab.silent or ab.app.gone or ab.command is None:
+        if unit is not None:
+            ab, data = unit[0], whole(data, unit[1], unit[2])
+        if ab is None or ab.run is None or ab.silent or ab.app.gone:
             return
-        event = f"interrupted.{ab.command.type}"
-        notice = Notice("interrupted", ab.run.number, ab.command, data, event)
+        command = ab.command or Command("iu", hook=[])
+        event = f"interrupted.{command.type}"
+        notice = Notice("interrupted", ab.run.number, command, data, event)
         self.told.append(Told(ab.app.name, None, [notice]))
 
     def ended(self, behavior: str, goal: bool, data: Data, inbound: bool = True) -> bool:
@@ -230,3 +235,12 @@ class Endings:
 def in_group(ab: Behavior) -> bool:
     """Whether an AB is a part of a unit that shares the unit's fate (U4)."""
     return ab.unit is not None and not ab.unit.spans
+
+
+def whole(data: Data, finished: list[Command], count: int) -> Data:
+    """How much of a unit was done, of ``count`` Commands: the finished ones and a part of one."""
+    part = float(data.get("done", 0.0))
+    said = [command.text for command in finished if command.text]
+    heard = " ".join([*said, str(data.get("heard", ""))]).strip()
+    made = {"done": round((len(finished) + part) / max(count, 1), 3)}
+    return {**made, "heard": heard} if heard else made

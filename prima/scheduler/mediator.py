@@ -150,6 +150,7 @@ class Mediator(Failures):
             source=command.source if command else None,
         )
         notice = Notice("failed", asked.run, command, event=refused.event, message=refused.message)
+        notice.cause = asked.cause
         self.told.append(Told(app.name, None, [notice]))
 
     def _place(
@@ -263,6 +264,8 @@ class Mediator(Failures):
             self._selector.take_floor(stream, "X3")
 
     def _set_deadlines(self) -> None:
+        for name in self._selector.given_up:
+            self._deadlines.pop(name, None)
         for ab in self._selector.started:
             if ab.command is not None:
                 self._deadlines[ab.name] = self._now() + allowance(ab)

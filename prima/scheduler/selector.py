@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.messages import Command, Order
+from prima.messages import Command, Group, Order
 from prima.scheduler.behavior import Behavior, State, Stream
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.effects import Body
@@ -29,6 +29,11 @@ class Selector:
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
+        self.given_up: list[str] = []
+        """Names of ABs that the latest selection interrupted or took out."""
+        self.halting: dict[str, tuple[Behavior, list[Command], int]] = {}
+        """Parts of interrupted units whose devices have still to tell how much was done: the unit,
+        what of it had been finished, and of how many Commands it is."""
         self.body = Body()
         self.in_view = False
         """Whether the camera sees the user, as far as it has told (V4)."""
@@ -39,7 +44,7 @@ class Selector:
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
-        self.started = []
+        self.started, self.given_up = [], []
         for unit in [ab for ab in self.memory.running.values() if ab.inner]:
             self._advance(unit, now)
         again = bool(self.memory.waiting)
@@ -108,12 +113,35 @@ class Selector:
 
     def _interrupt(self, ab: Behavior, reaction: Behavior) -> None:
         self.chronicle.behavior("interrupt", ab, rule="X2", by=reaction.id)
+        self.given_up.append(ab.name)
+        self._remember_parts(ab)
         self._empty(ab)
         if ab.command is not None:
             self._stop_device(ab)
         ab.restarting = True
         self.memory.release(ab)
         self.memory.wait(ab)
+
+    def _remember_parts(self, unit: Behavior) -> None:
+        """What of a unit has been done, for the application when the device has told the rest."""
+        if unit.group is None:
+            return
+        parts, left = list(unit.inner.values()), []
+        while parts:
+            part = parts.pop()
+            parts += part.inner.values()
+            left.append(part)
+        pending = {id(part.command) for part in left if part.command is not None}
+        pending |= {
+            id(one) for part in left if part.group and not part.inner for one in leaves(part.group)
+        }
+        every = leaves(unit.group)
+        finished = [command for command in every if id(command) not in pending]
+        running = [p for p in left if p.state is State.RUNNING and p.command is not None]
+        for part in sorted(
+            running, key=lambda p: (p.command is None or not p.command.text, p.serial)
+        )[:1]:
+            self.halting[part.name] = (unit, finished, len(every))
 
     def _empty(self, unit: Behavior) -> None:
         """Take out what is in a unit that starts again from its beginning."""
@@ -122,6 +150,7 @@ class Selector:
             if inner.state is State.RUNNING and inner.command is not None:
                 self._stop_device(inner)
             self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state.value)
+            self.given_up.append(inner.name)
             self.memory.remove(inner)
 
     def _stop_device(self, ab: Behavior) -> None:
@@ -356,3 +385,11 @@ def yields(ab: Behavior, reaction: Behavior) -> bool:
     """X2: whether a running AB gives way: to a reaction to a later event that it does not outrank."""
     later = reaction.reaction is not None and ab.reacted < reaction.reaction
     return ab.restartable and later and ab.priority <= reaction.priority
+
+
+def leaves(group: Group) -> list[Command]:
+    """The Commands of a unit, those of units inside it included, in their order."""
+    found: list[Command] = []
+    for step in group.steps:
+        found += leaves(step.what) if isinstance(step.what, Group) else [step.what]
+    return found

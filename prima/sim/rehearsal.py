@@ -67,7 +67,7 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
                 )
     seen: set[str] = set()
     nodes = [node for _, _, node in scenario.applications]
-    nodes += [area.node for area, _ in cast.offers]
+    nodes += {name: area.node for area, name in reversed(cast.offers)}.values()
     for node, document in zip(nodes, cast.documents, strict=True):
         if document.id in seen:
             message = f'Two applications have the id "{document.id}".'

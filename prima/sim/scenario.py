@@ -17,6 +17,8 @@ from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.values import outside, read_value, within
 
 Point = tuple[float, float]
+MAX_AREAS = 256
+"""Areas that a world may have."""
 
 
 class Reader:
@@ -152,7 +154,11 @@ def read_world(file: str, data: bytes) -> Map:
     for node in reader.root.all("wall"):
         x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
         world.walls.append(((x1, y1), (x2, y2)))
-    for node in reader.root.all("area"):
+    areas = reader.root.all("area")
+    for node in areas[MAX_AREAS:][:1]:
+        message = f"There are more than {MAX_AREAS} areas."
+        reader.problem(node, "too-large", message, "", "Divide the world.")
+    for node in areas[:MAX_AREAS]:
         if node.get("id") in seen:
             reader.problem(node, "duplicate-id", f'"{node.get("id")}" is there twice.', "id")
         seen.add(node.get("id"))

@@ -63,10 +63,8 @@ class _Tree:
     """The application that has come in since it last did something, if any."""
     by_reaction: bool = False
     left_by: set[str] = field(default_factory=set)
-    started: float = 0.0
-    """When something of it started last."""
     reacting: float = -1.0
-    """When a reaction of it started last."""
+    """When a reaction of it started last, if nobody has come in since; else less than 0."""
 
 
 @dataclass(slots=True)
@@ -92,15 +90,17 @@ class Observer:
         self._first_word: dict[str, bool] = {}
         self._seen = False
         self._cut: set[str] = set()
-        self._events: dict[int, Record] = {}
+        self._now = 0.0
+        self._events: dict[int, tuple[str, float]] = {}
         self._delays: dict[tuple[str, int], Delay] = {}
         self._waits: dict[tuple[str, str], _Wait] = {}
         """Applications that wait for a service's answer, by application and service."""
         self._answered: dict[int, str] = {}
         """Answers to waits that were broken, by their serial number, until they are taken up."""
 
-    def add(self, record: Record) -> None:
-        """Take in one record."""
+    def add(self, record: Record, time: float | None = None) -> None:
+        """Take in one record; ``time`` in seconds, where the record's own is not."""
+        self._now = record["time"] if time is None else time
         match record["phase"]:
             case "request":
                 self._request(record)
@@ -115,7 +115,7 @@ class Observer:
             case "send":
                 app = record["app"]
                 talking = any(tree.begun for tree in self._trees.values() if tree.app == app)
-                self._waits[app, record["data"]["to"]] = _Wait(talking, record["time"])
+                self._waits[app, record["data"]["to"]] = _Wait(talking, self._now)
             case "collision":
                 self._collide(record)
             case "interrupt":
@@ -152,14 +152,14 @@ class Observer:
         request = tree.pending.get(name, record)
         if record.get("cause") in self._events:
             app, event = record["app"], self._events[record["cause"]]
-            seconds = round(record["time"] - event["time"], 3)
-            delay = Delay(event["event"], record["cause"], app, seconds)
+            seconds = round(self._now - event[1], 3)
+            delay = Delay(event[0], record["cause"], app, seconds)
             self._delays.setdefault((app, record["cause"]), delay)
         if self._answered.get(record.get("cause") or 0) == record["app"]:
             del self._answered[record["cause"]]
             self.found.broken_waiting += 1
         if record.get("reactive"):
-            tree.reacting = record["time"]
+            tree.reacting = self._now
         if record.get("text"):
             for (app, _), wait in self._waits.items():
                 wait.talked = wait.talked or app == tree.app
@@ -173,7 +173,7 @@ class Observer:
         if tree.broken_by:
             self.found.broken += not tree.by_reaction
             tree.broken_by = ""
-        tree.begun, tree.started = True, record["time"]
+        tree.begun = True
         tree.running.add(name)
         tree.engaged = tree.engaged or bool(request.get("engages"))
 
@@ -182,11 +182,12 @@ class Observer:
         for other in self._trees.values():
             if other.app == tree.app or other.broken_by or not other.begun:
                 continue
-            if other.pending and not other.running:
+            # Where only a way is left to go, no topic is broken.
+            topic = any(not one.get("leaves") for one in other.pending.values())
+            if topic and not other.running and not tree.running:
                 other.broken_by = tree.app
-                # A stream that only goes on where the other had come in breaks nothing.
-                back = tree.broken_by == other.app
-                other.by_reaction = back or tree.reacting >= other.started
+                other.by_reaction = tree.reacting >= 0
+                other.reacting = -1.0  # when it goes on, that is no reaction any more
         for (app, _), wait in self._waits.items():
             broken = wait.talked and app != tree.app and tree.reacting < wait.since
             wait.broken = wait.broken or broken
@@ -217,7 +218,7 @@ class Observer:
         if name in ("human.found", "human.lost"):
             self._seen = name == "human.found"
         if record.get("serial"):
-            self._events[record["serial"]] = record
+            self._events[record["serial"]] = (record["event"], self._now)
         for kind in ("reply.", "error.service."):
             service = name.removeprefix(kind)
             wait = self._waits.pop((record.get("app") or "", service), None)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from prima.messages import Record
+from prima.transcript.criteria import Observer
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,7 +15,7 @@ class Summary:
 
     seconds: float
     streams_broken: int
-    """Streams suspended because another took the floor."""
+    """Streams broken by no reaction, as docs/measures.md defines it."""
     collisions: int
     reactions: int
     """Events that some application reacted to with a Command that started."""
@@ -28,38 +29,26 @@ class Measure:
     def __init__(self) -> None:
         self.records = 0
         self._last = 0.0
-        self._broken = 0
         self._collisions = 0
-        self._events: dict[int, float] = {}
-        self._waits: dict[tuple[str, int], float] = {}
+        self._observer = Observer()
 
     def add(self, record: Record, time: float) -> None:
         """Take a record in; ``time`` in seconds."""
         self.records += 1
         self._last = time
-        phase = record["phase"]
-        if phase == "suspend":
-            self._broken += 1
-        elif phase == "collision":
-            self._collisions += 1
-        elif phase == "event" and record.get("serial"):
-            self._events[record["serial"]] = time
-        elif phase == "start" and record.get("cause") in self._events:
-            key = (record["app"], record["cause"])
-            self._waits.setdefault(key, time - self._events[record["cause"]])
+        self._collisions += record["phase"] == "collision"
+        self._observer.add(record, time)
 
     def summary(self) -> Summary:
         """What has been counted so far."""
-        waits = self._waits.values()
-        mean = sum(waits) / len(waits) if waits else 0.0
-        longest = max(waits, default=0.0)
+        found = self._observer.result()
         return Summary(
             self._last,
-            self._broken,
+            found.broken,
             self._collisions,
-            len(waits),
-            round(mean, 3),
-            round(longest, 3),
+            found.reactions,
+            found.reaction_mean,
+            found.reaction_max,
         )
 
 

@@ -58,7 +58,8 @@ def make_rows(records: Iterable[Record]) -> list[Row]:
         if row is not None:
             row.number = len(rows)
             rows.append(row)
-    _bracket(rows)
+    ends = {r["behavior"]: r["time"] for r in held if r["phase"] == "end" and r["command"] == "iu"}
+    _bracket(rows, ends)
     return rows
 
 
@@ -82,6 +83,7 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "interrupt":
             request = asked.get(record["behavior"], record)
             what = describe(record["command"], record.get("text"), request.get("args"))
+            what = "the unit" if record["command"] == "iu" else what
             return _plain(record, f"breaks off {what}", "interrupt")
         case "load" if record["actor"] == "mediator":
             return Row(record["time"], "R", record["app"], f"starts {record['app']}", kind="load")
@@ -230,13 +232,24 @@ def _event_row(record: Record, handled: set[int]) -> Row | None:
     return Row(record["time"], letter, record.get("app") or "", what, event=True, kind=name)
 
 
-def _bracket(rows: list[Row]) -> None:
-    """Mark the rows of units: what happens between the first and the last belongs to them."""
-    spans: dict[str, list[int]] = {}
+def _bracket(rows: list[Row], ends: dict[str, float]) -> None:
+    """Mark the rows of units: what happens between the first and the last belongs to them.
+
+    The answer to a unit's last question belongs to it (U5); what comes after a unit was
+    broken off and before it starts again does not (X2).
+    """
+    spans: dict[tuple[str, int], list[int]] = {}
+    broken: dict[str, int] = {}
     for index, row in enumerate(rows):
+        if row.kind == "interrupt":
+            broken[row.behavior] = broken.get(row.behavior, 0) + 1
         if row.unit:
-            spans.setdefault(row.unit, []).append(index)
-    for indices in spans.values():
+            spans.setdefault((row.unit, broken.get(row.unit, 0)), []).append(index)
+    for (unit, _), indices in spans.items():
+        final, after = rows[indices[-1]], indices[-1] + 1
+        answer = rows[after] if after < len(rows) and final.kind == "q-and-a" else None
+        if answer and answer.kind == "speech" and answer.time <= ends.get(unit, -1.0):
+            indices.append(after)
         first, last = indices[0], indices[-1]
         for index in range(first, last + 1):
             rows[index].bracket = "|"
