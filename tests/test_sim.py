@@ -124,11 +124,11 @@ def test_a_device_that_fails_and_one_that_hangs_are_events(tmp_path: Path) -> No
         '<when at="0.5s"><fail device="speaker"/><wait for="1s"/><repair device="speaker"/></when>'
     )
     transcript = rehearse(tmp_path, body, fails)
-    assert "speak fails: the device fails" in told(transcript)
+    assert "Speak fails: the device fails" in told(transcript)
     assert transcript.failures == []
     hangs = '<when at="0.1s"><fail device="speaker" hangs="true"/></when>'
     hung = rehearse(tmp_path, body, hangs, until="600s")
-    assert "speak fails: The device did not end in time." in told(hung)
+    assert "Speak fails: The device did not end in time." in told(hung)
 
 
 def test_a_blocked_way_and_an_unknown_place_are_events(tmp_path: Path) -> None:

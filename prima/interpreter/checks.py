@@ -46,6 +46,7 @@ from prima.interpreter.expressions import (
 )
 from prima.interpreter.names import declared_names, free_names
 from prima.markup.tree import Node
+from prima.values import read_value
 
 LONG_UNIT_MS = 20_000
 """A unit whose speech alone takes longer than this cannot be reacted in."""
@@ -274,7 +275,7 @@ class Checker:
                     self.note(
                         node, "idle-hint", message, 'Add stream="hold".', "hold-for", "warning"
                     )
-                if one.hold is None or "stream" not in node.attributes:
+                if not one.hold or "stream" not in node.attributes or bad_hold(node):
                     continue
                 handlers = (*form.handlers, *self.document.handlers)
                 if not (handlers or form.watches or form.links or self.document.links):
@@ -599,3 +600,11 @@ def _devices(step: StepTemplate) -> frozenset[str]:
 
 def _letters(text: Any) -> int:
     return sum(len(part) for part in text or () if isinstance(part, str))
+
+
+def bad_hold(node: Node) -> bool:
+    """Whether an element's hold-for is no time, which has been told already."""
+    try:
+        return int(read_value("duration", node.get("hold-for", "1s"))) <= 0
+    except ValueError:
+        return True

@@ -90,7 +90,9 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "unload" if record["actor"] == "mediator":
             return _plain(record, f"ends {record['app']}: {record.get('outcome', '')}", "unload")
         case "fail":
-            what = f"{record.get('command') or 'unit'} fails: {record.get('message') or record.get('event')}"
+            title = describe(record.get("command") or "iu", None, None)
+            title = "the unit" if title == "Iu" else title
+            what = f"{title} fails: {record.get('message') or record.get('event')}"
             return _plain(record, what, "fail", event=True)
         case "emergency":
             what = "the emergency stop is " + str(record["outcome"])
