@@ -5,9 +5,11 @@ The package's interface is loaded when it is used; see :mod:`prima.api`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
+# Not from typing: this is imported before an interrupt is taken care of, and has to be quick.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from prima.api import (
         Difference,
         Document,
