@@ -22,7 +22,16 @@ from prima import prelude
 from prima.codes import CODES
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import UsageError
-from prima.interpreter import application, checks, content, expressions, frame, grammar, handling
+from prima.interpreter import (
+    application,
+    bounds,
+    checks,
+    content,
+    expressions,
+    frame,
+    grammar,
+    handling,
+)
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
 from prima.markup import reader
 from prima.markup.schema import XML_SCHEMA, make_schema
@@ -72,7 +81,7 @@ def seconds(milliseconds: float) -> str:
     return f"{milliseconds:g}ms" if milliseconds < 1000 else f"{milliseconds / 1000:g}s"
 
 
-def bounds(kind: str, low: float | None, high: float | None) -> str:
+def range_of(kind: str, low: float | None, high: float | None) -> str:
     """What a number may be, in words."""
     shown: Callable[[float], str] = seconds if kind == "duration" else "{:g}".format
     if low is not None and high is not None:
@@ -87,7 +96,7 @@ def attribute_row(item: Attribute) -> tuple[str, ...]:
     name = f"`{item.name}` or `{item.name}-expr`" if item.dynamic else f"`{item.name}`"
     kind = " or ".join(f"`{choice}`" for choice in item.choices) or item.kind
     default = "*required*" if item.required else f"`{item.default}`" if item.default else ""
-    meaning = f"{sentence(item.doc)} {bounds(item.kind, item.low, item.high)}".strip()
+    meaning = f"{sentence(item.doc)} {range_of(item.kind, item.low, item.high)}".strip()
     return (name, kind, default, meaning)
 
 
@@ -217,7 +226,7 @@ def limits() -> str:
         ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
         (
             "what an application says, logs and sends in one instant",
-            f"{application.MAX_OUTPUT:,} characters",
+            f"{bounds.MAX_OUTPUT:,} characters",
             "the application ends",
         ),
         (
@@ -227,10 +236,10 @@ def limits() -> str:
         ),
         (
             "an application's scripts in one instant, all together",
-            f"{application.MAX_SCRIPT_SECONDS:g} s",
+            f"{bounds.MAX_SCRIPT_SECONDS:g} s",
             "the application ends",
         ),
-        ("steps of content in one instant", f"{application.MAX_STEPS:,}", "the application ends"),
+        ("steps of content in one instant", f"{bounds.MAX_STEPS:,}", "the application ends"),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
         ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),

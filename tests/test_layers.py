@@ -59,7 +59,7 @@ INSIDE = {
         {"elements", "srgs"},
         {"build", "checks", "frame", "selection"},
         {"reader", "content"},
-        {"form", "handling"},
+        {"form", "handling", "bounds"},
         {"application"},
         {"__init__"},
     ],

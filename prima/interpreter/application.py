@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import count
-from typing import NoReturn
 
-from prima.interpreter.content import Executor, source
+from prima.interpreter.bounds import Bounds
+from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
     Document,
@@ -38,7 +38,6 @@ from prima.interpreter.frame import (
     Transfer,
 )
 from prima.interpreter.handling import Handling
-from prima.markup.tree import Node
 from prima.messages import (
     Action,
     CloseUnit,
@@ -56,16 +55,10 @@ from prima.messages import (
     Step,
 )
 
-MAX_STEPS = 20_000
-"""Pieces of content that an application may go through in one instant."""
-MAX_SCRIPT_SECONDS = 3.0
-"""What an application's scripts may take in one instant, all together."""
-MAX_OUTPUT = 1_000_000
-"""Characters that an application may say, log and send in one instant."""
 MAX_TIMERS = 256
 
 
-class Interpreter:
+class Interpreter(Bounds):
     """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands."""
 
     def __init__(
@@ -75,7 +68,7 @@ class Interpreter:
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        self.engine = Engine()
+        super().__init__(Engine())
         self.actions: list[Action] = []
         self.now = 0
         self.over = False
@@ -96,10 +89,6 @@ class Interpreter:
         self.sensors: dict[str, Json] = {}
         self.cause: int | None = None
         self.serial = 0
-        self._steps = 0
-        self._output = 0
-        self.written = 0
-        """Characters said, logged and sent since the start."""
         self._instant = -1
         self._timed = "session" in document.node.source.text
         """Whether the document looks at the clock at all."""
@@ -206,26 +195,6 @@ class Interpreter:
             data["command"] = command.type
         return Event(name, self.serial, data, reactive=False)
 
-    def count_step(self, node: Node) -> None:
-        """Bound what an application does in one instant; a document may loop for ever."""
-        self._steps += 1
-        if self._steps > MAX_STEPS:
-            self.give_up(node, "it loops without ever waiting")
-        if self.engine.spent > MAX_SCRIPT_SECONDS:
-            self.give_up(node, "its scripts take too long without ever waiting")
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound what an application says, logs and sends in one instant."""
-        self._output += characters
-        self.written += characters
-        if self._output > MAX_OUTPUT:
-            self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
-
-    def give_up(self, node: Node, reason: str) -> NoReturn:
-        """End the application: it has gone past a limit that no handler can mend."""
-        place = source(node)
-        raise GoOut(f"error.semantic: {place}: {reason}", True, place)
-
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self._runs)
@@ -263,8 +232,7 @@ class Interpreter:
     def _tick(self, now: int) -> None:
         if now != self._instant:
             self._instant = self.now = now
-            self._steps = self._output = 0
-            self.engine.spent = 0.0
+            self.renew()
             if self._timed and not self.over:
                 self._guard(lambda: self.engine.clock(self.application, now / 1000))
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from itertools import count
-from typing import NoReturn
 
-from prima.interpreter.application import MAX_OUTPUT, MAX_SCRIPT_SECONDS, MAX_STEPS
-from prima.interpreter.content import source
+from prima.interpreter.bounds import Bounds
 from prima.interpreter.expressions import Engine
+from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import prefixes
-from prima.markup.tree import Node
 from prima.messages import (
     Action,
     Command,
@@ -26,10 +24,10 @@ from prima.messages import (
 )
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.state import SCOPES, Flow, GoOut, Heard, Resume, Thrown
+from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
 
 
-class VoiceInterpreter:
+class VoiceInterpreter(Bounds):
     """Runs one VoiceXML application; its interface is :class:`prima.interpreter.application`'s."""
 
     def __init__(
@@ -39,11 +37,10 @@ class VoiceInterpreter:
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        self.engine = Engine(SCOPES)
+        super().__init__(Engine(SCOPES))
         self.actions: list[Action] = []
         self.sensors: dict[str, Json] = {}
         self.over = False
-        self.written = 0
         self.heard: Heard | None = None
         self.deadline: int | None = None
         self._machine = Machine(self)
@@ -54,8 +51,6 @@ class VoiceInterpreter:
         self._cause: int | None = None
         self._marked: str | None = None
         self._instant = -1
-        self._steps = 0
-        self._output = 0
 
     # What a session tells -----------------------------------------------------------
 
@@ -169,30 +164,10 @@ class VoiceInterpreter:
         self._run = 0
         return resume
 
-    def count_step(self, node: Node) -> None:
-        """Bound what is done in one instant; a document may loop for ever."""
-        self._steps += 1
-        if self._steps > MAX_STEPS:
-            self._give_up(node, "it loops without ever waiting")
-        if self.engine.spent > MAX_SCRIPT_SECONDS:
-            self._give_up(node, "its scripts take too long without ever waiting")
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound what comes out in one instant."""
-        self._output += characters
-        self.written += characters
-        if self._output > MAX_OUTPUT:
-            self._give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
-
-    def _give_up(self, node: Node, reason: str) -> NoReturn:
-        place = source(node)
-        raise GoOut(f"error.semantic: {place}: {reason}", True, place)
-
     def _tick(self, now: int) -> None:
         if now != self._instant:
             self._instant = now
-            self._steps = self._output = 0
-            self.engine.spent = 0.0
+            self.renew()
 
     def _drive(self, resume: Resume | None) -> None:
         assert self._flow is not None

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.expressions import RESULT_LIMIT, Scope, ScriptError
+from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Json, Say, Send
 from prima.values import read_value
 from prima.voicexml.dom import DATA, plain_tree
 from prima.voicexml.fetching import decoded, fetch, load_page
 from prima.voicexml.prompts import SPOKEN, Speaker, Speech
-from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, GoOut, HungUp, Thrown
+from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, HungUp, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 if TYPE_CHECKING:

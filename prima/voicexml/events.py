@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import prefixes, takes
 from prima.markup.tree import Node
-from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoItem, GoOut, HungUp, Thrown
+from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoItem, HungUp, Thrown
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Json
 from prima.voicexml.content import ITEMS, Content, milliseconds
@@ -22,7 +23,6 @@ from prima.voicexml.state import (
     GoBack,
     GoDialog,
     GoItem,
-    GoOut,
     Heard,
     HungUp,
     Resume,

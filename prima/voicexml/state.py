@@ -119,13 +119,3 @@ class GoBack(Leave):
         self.values = values
         self.event = event
         self.message = message
-
-
-class GoOut(Leave):
-    """The end of the application."""
-
-    def __init__(self, reason: str = "exit", failed: bool = False, source: str = "") -> None:
-        super().__init__(reason)
-        self.reason = reason
-        self.failed = failed
-        self.source = source

@@ -1,0 +1,53 @@
+"""What any application may do in one instant: beyond it, the application ends."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from prima.interpreter.content import source
+from prima.interpreter.expressions import Engine
+from prima.interpreter.frame import GoOut
+from prima.markup.tree import Node
+
+MAX_STEPS = 20_000
+"""Pieces of content that an application may go through in one instant."""
+MAX_SCRIPT_SECONDS = 3.0
+"""What an application's scripts may take in one instant, all together."""
+MAX_OUTPUT = 1_000_000
+"""Characters that an application may say, log and send in one instant."""
+
+
+class Bounds:
+    """Counts what an application does; interpreters of both languages are such."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.written = 0
+        """Characters said, logged and sent since the start."""
+        self._steps = 0
+        self._output = 0
+
+    def renew(self) -> None:
+        """A new instant begins."""
+        self._steps = self._output = 0
+        self.engine.spent = 0.0
+
+    def count_step(self, node: Node) -> None:
+        """Bound what an application does in one instant; a document may loop for ever."""
+        self._steps += 1
+        if self._steps > MAX_STEPS:
+            self.give_up(node, "it loops without ever waiting")
+        if self.engine.spent > MAX_SCRIPT_SECONDS:
+            self.give_up(node, "its scripts take too long without ever waiting")
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what an application says, logs and sends in one instant."""
+        self._output += characters
+        self.written += characters
+        if self._output > MAX_OUTPUT:
+            self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
+
+    def give_up(self, node: Node, reason: str) -> NoReturn:
+        """End the application: it has gone past a limit that no handler can mend."""
+        place = source(node)
+        raise GoOut(f"error.semantic: {place}: {reason}", True, place)
