@@ -6,7 +6,8 @@ everything below them works on text and values.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -29,6 +30,7 @@ from prima.messages import Record
 from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
+    from prima.sim.services import Web
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
     from prima.transcript.table import Row
@@ -92,6 +94,7 @@ def rehearse(
     bound: int | None = None,
     sink: Sink | None = None,
     keep: bool = True,
+    hosts: Iterable[str] = (),
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -102,10 +105,12 @@ def rehearse(
         bound: rule E4's bound on loops of a feedback Command.
         sink: is given each line of the transcript as soon as it is made.
         keep: whether the records are kept in memory; without, only the sink has them.
+        hosts: what the applications may fetch from by http and https, as ``HOST`` or
+            ``HOST:PORT``; where the scenario's services do not answer instead.
 
     Raises:
         DocumentError: documents are wrong.
-        UsageError: no such policy or file.
+        UsageError: no such policy or file, or no host's name.
     """
     from prima.scheduler.selection import policy_named
     from prima.sim.rehearsal import Rehearsal
@@ -121,7 +126,7 @@ def rehearse(
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
-    rehearsal = Rehearsal(cast, chosen, bound)
+    rehearsal = Rehearsal(cast, chosen, bound, _web(list(hosts)))
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -147,6 +152,18 @@ def rehearse(
     made.failures = list(rehearsal.session.failures)
     made.outcome = rehearsal.outcome
     return made
+
+
+def _web(hosts: list[str]) -> Web | None:
+    """What fetches from hosts; the network's modules are loaded only then."""
+    if not hosts:
+        return None
+    from prima.web import web
+
+    for host in hosts:
+        if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
+            raise UsageError(f'"{host}" is no host: write its name alone, as in example.org:8080.')
+    return web(hosts)
 
 
 def read(path: str | Path, partial: bool = False) -> Transcript:

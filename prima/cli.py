@@ -149,6 +149,13 @@ def validate(files: tuple[str, ...], form: str) -> None:
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
 @click.option("--why", "--explain", is_flag=True, help="Print the rule that put each row there.")
+@click.option(
+    "--allow-host",
+    "hosts",
+    metavar="HOST[:PORT]",
+    multiple=True,
+    help="Let VoiceXML documents fetch from this host; without, no network is used.",
+)
 @_format
 def run(
     scenario: str | None,
@@ -159,6 +166,7 @@ def run(
     policy: str | None,
     bound: int | None,
     why: bool,
+    hosts: tuple[str, ...],
     form: str,
 ) -> None:
     """Run a scenario in simulation and print the mediated transcript.
@@ -190,13 +198,13 @@ def run(
     _start_watchdog()
     if output is not None:
         transcript = _run_into(
-            output, lambda sink: api.rehearse(loaded, policy, bound, sink, keep=False)
+            output, lambda sink: api.rehearse(loaded, policy, bound, sink, False, hosts)
         )
         _tell(f"{output}: {_outline(transcript)}")
     elif form == "json":
-        transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, keep=False)
+        transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, False, hosts)
     else:
-        transcript = api.rehearse(loaded, policy, bound)
+        transcript = api.rehearse(loaded, policy, bound, hosts=hosts)
         _print(transcript.table(why))
     for failure in transcript.failures:
         _tell(f"prima: {failure.rstrip(': ')}{_handling(failure)}")

@@ -220,6 +220,7 @@ def _load(path: Path, data: bytes) -> Loaded:
     if robot is not None:
         reading.check_commands(robot)
     reading.check_policy(scenario)
+    reading.replies(scenario)
     offered = {name for _, name in offers}
     complete = len(reading.documents) == len(scenario.applications) + len(offered)
     if world is None or robot is None or not complete:
@@ -288,6 +289,14 @@ class _Reading:
             if document is not None:
                 made.append((area, document.id))
         return made
+
+    def replies(self, scenario: Scenario) -> None:
+        """What services answer fetches with."""
+        for service in scenario.services:
+            for reply in service.replies:
+                if reply.src and reply.node is not None:
+                    place = reply.node.attribute_place("src")
+                    reply.body = self.read(reply.src, place, lambda _, data: data) or b""
 
     def offered(self, name: str, area: Area) -> AnyDocument | None:
         """What an area offers: an EA."""

@@ -18,6 +18,25 @@ Record = dict[str, Json]
 """One line of the transcript while it is still being made: field name to value."""
 
 
+@dataclass(frozen=True, slots=True)
+class Cue:
+    """Something that goes with a text besides its words, for the device that says it.
+
+    A device may leave cues alone, and simply speak. Those of one text stand in the order in
+    which they come to pass; ``lasts`` and ``end`` enclose each other properly.
+    """
+
+    at: int
+    """How many characters of the text stand before it."""
+    kind: Literal["pause", "sentence", "rate", "lasts", "end", "mark", "earlier", "hotword"]
+    """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
+    ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
+    ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
+    ``earlier``: marks of what the application said just before count for this question.
+    ``hotword``: what the user says breaks off this question only if it is understood."""
+    value: float | str | None = None
+
+
 @dataclass(slots=True)
 class Command:
     """What an application asks for (thesis 4.1, Table 4.1)."""
@@ -31,6 +50,8 @@ class Command:
     source: str = ""
     restartable: bool = False
     """Whether it gives way to a reaction and starts again afterwards (rule X2)."""
+    cues: tuple[Cue, ...] = ()
+    """Pauses, rates and marks of its text."""
     hook: Any = None
     """What the application keeps with the Command; nobody else looks at it."""
 
@@ -103,10 +124,14 @@ class LeaveState:
 
 @dataclass(slots=True)
 class Send:
-    """A message to a named service."""
+    """A message to a named service, or to a URI that something is asked of.
+
+    ``data`` has the values sent as ``params``, and where an answer is waited for as a
+    :class:`Fetched` the ``method``, ``get`` or ``post``.
+    """
 
     service: str
-    data: Json
+    data: Data
     serial: int
     source: str = ""
 
@@ -164,7 +189,8 @@ class Halted:
 
     behavior: str
     data: Data = field(default_factory=dict)
-    """``done``: the part of it, 0 to 1; ``heard``: the beginning of the text that was said."""
+    """``done``: the part of it, 0 to 1; ``heard``: the beginning of the text that was said.
+    Of a text with marks also ``passed``, how many, and ``mark``, the name of the last."""
 
 
 @dataclass(slots=True)
@@ -181,6 +207,9 @@ class Heard:
     """The user said something (rule V1)."""
 
     text: str
+    data: Data = field(default_factory=dict)
+    """Of a question with marks: ``markname``, the last one passed when the user began to speak,
+    or None, and ``marktime``, the ms that were played from there on."""
 
 
 @dataclass(slots=True)
@@ -191,6 +220,23 @@ class Occurred:
     actor: Literal["user", "environment", "robot", "mediator"] = "environment"
     data: Data = field(default_factory=dict)
     app: str | None = None
+
+
+@dataclass(slots=True)
+class Fetched:
+    """The answer to what an application has asked a URI for (a VoiceXML document, data, ...).
+
+    ``serial`` is the :class:`Send`'s. ``problem`` tells why there is no answer; ``status`` is
+    that of a host, or 0. ``body`` is text that ``charset`` makes the resource's bytes of.
+    """
+
+    app: str
+    serial: int
+    uri: str
+    body: str = ""
+    charset: Literal["utf-8", "latin-1"] = "utf-8"
+    status: int = 0
+    problem: str = ""
 
 
 @dataclass(slots=True)
@@ -239,6 +285,7 @@ Inbound = (
     | Failed
     | Heard
     | Occurred
+    | Fetched
     | Sensed
     | Narrated
     | Emergency
@@ -267,7 +314,8 @@ class Order:
     """Whether another motion goes on on the same devices, to be composed with (X5)."""
     app: str = ""
     data: Json = None
-    """For ``send``: the service and what it is sent."""
+    """For ``send``: the service and what it is sent. For a ``start`` after an interruption: the
+    mark to go on from, as the device told it (:class:`Halted`)."""
 
 
 # What the mediator tells an application ------------------------------------------

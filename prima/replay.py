@@ -10,6 +10,7 @@ from prima.messages import (
     Emergency,
     Ended,
     Failed,
+    Fetched,
     Halted,
     Heard,
     Inbound,
@@ -40,9 +41,11 @@ def inbound_of(record: Record) -> Inbound | None:
         case "fail":
             return Failed(record["behavior"], record["device"], record["message"])
         case "event" if record["event"] == "speech" and record["actor"] == "user":
-            return Heard(record["text"])
+            return Heard(record["text"], data)
         case "event":
             return Occurred(record["event"], record["actor"], data, record.get("app"))
+        case "fetched":
+            return Fetched(record["app"], **data)
         case "sensed":
             return Sensed(data)
         case "note":

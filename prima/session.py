@@ -10,6 +10,7 @@ the inbound values is a journal, and feeding them again a replay.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
 from prima.commands import CommandType
@@ -21,6 +22,7 @@ from prima.messages import (
     Ended,
     Event,
     Failed,
+    Fetched,
     Halted,
     Heard,
     Inbound,
@@ -161,6 +163,8 @@ class Session:
                 self._heard(value)
             case Occurred():
                 self._occurred(value)
+            case Fetched():
+                self._fetched(value)
             case Sensed():
                 self._sensed(value)
             case Narrated():
@@ -227,14 +231,22 @@ class Session:
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""
         self._serial += 1
-        self._record("event", "user", event="speech", text=value.text, serial=self._serial)
+        told = dict(value.data)
+        self._record(
+            "event",
+            "user",
+            event="speech",
+            text=value.text,
+            data=told or None,
+            serial=self._serial,
+        )
         question = self.mediator.question()
         if question is not None and not self._hears(question):
             question = None
         if question is not None and question.run is not None:
             answer = self.apps[question.app.name].answer(question.run.number, value.text)
             if answer is not None:
-                data = {"outcome": "filled", "utterance": value.text, "value": answer}
+                data = {"outcome": "filled", "utterance": value.text, "value": answer, **told}
                 self._conclude(question.id, data)
                 return
             link = self.apps[question.app.name].listens_to(value.text)
@@ -244,7 +256,9 @@ class Session:
                 return
         if self._follow_links(value.text) or question is None or question.silent:
             return
-        self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})
+        cues = question.command.cues if question.command is not None else ()
+        if not any(cue.kind == "hotword" for cue in cues):
+            self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text, **told})
 
     @staticmethod
     def _hears(question: Behavior) -> bool:
@@ -262,6 +276,15 @@ class Session:
                 app.follow(self.chronicle.now, link, event)
                 self._act(app)
         return taken
+
+    def _fetched(self, value: Fetched) -> None:
+        told = {key: one for key, one in asdict(value).items() if one and key != "app"}
+        self._record("fetched", "environment", app=value.app, data=told)
+        app = self.apps.get(value.app)
+        if app is not None and not isinstance(app, Interpreter) and value.app in self._loaded:
+            app.fetched(self.chronicle.now, value)
+            self._act(app)
+            self._settle()
 
     def _conclude(self, behavior: str, data: dict[str, Json]) -> None:
         """The answer is the question's end (C4); the devices are told to stop listening."""
@@ -298,6 +321,7 @@ class Session:
         for app in self._in_order():
             for name, data in app.expire(now):
                 self._own_event(app, name, dict(data), reactive=False)
+            self._act(app)
 
     # Outbound -----------------------------------------------------------------
 
@@ -342,7 +366,7 @@ class Session:
                         self._quit(app, action)
 
     def _send(self, app: App, action: Send) -> None:
-        data = {"to": action.service, "params": action.data}
+        data = {"to": action.service, **action.data}
         self.chronicle.add(
             "send", "robot", app=app.name, data=data, serial=action.serial, source=action.source
         )

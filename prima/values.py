@@ -203,6 +203,14 @@ def read_value(kind: str, text: str) -> Value:
     return KINDS[kind].read(text if kind == "text" else text.strip(XML_SPACE))
 
 
+def milliseconds(text: str, default: int) -> int:
+    """A time such as ``5s`` or ``500ms`` in ms, or the default where it is none."""
+    try:
+        return int(read_value("duration", text.strip())) if text.strip() else default
+    except ValueError:
+        return default
+
+
 def shown(value: object) -> str:
     """A value in ECMAScript's words, for a message."""
     if value is None:

@@ -22,7 +22,7 @@ LAYERS = [
     {"voicexml"},
     {"session"},
     {"sim", "replay"},
-    {"loading"},
+    {"loading", "web"},
     {"api"},
     {"study"},
     {"cli", "__init__", "reference", "pictures"},
@@ -80,7 +80,6 @@ ALONE = {
     "pymunk": {"sim.world"},
     "networkx": {"sim.routes"},
     "_quickjs": {"interpreter.expressions", "grammar.sandbox"},
-    "lark": {"grammar.abnf"},
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},
 }
@@ -176,7 +175,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
     code = (
         "import sys\nfrom prima.cli import cli\n"
         "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'lark', 'asyncio'} & set(sys.modules)\n"
+        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
         "assert not heavy, heavy"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

@@ -295,9 +295,7 @@ def test_uris_are_joined(base: str, uri: str, whole: str) -> None:  # 1.5.1
     assert join(base, uri) == whole
 
 
-@pytest.mark.parametrize(
-    "uri", ["http://example.org/x.vxml", "../secret.vxml", "/etc/passwd", "ftp://x/y", "file:///x"]
-)
+@pytest.mark.parametrize("uri", ["../secret.vxml", "/etc/passwd", "ftp://x/y", "file:///x"])
 def test_nothing_is_fetched_from_outside_the_folder(tmp_path: Path, uri: str) -> None:
     folder = tmp_path / "app"
     folder.mkdir()

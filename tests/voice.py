@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from prima.messages import Ended
+from collections.abc import Mapping
+
+from prima.messages import Ended, Fetched, Inbound
 from prima.voicexml.document import FetchError, VoiceDocument, read_page
 from tests.robot import Bench
 
@@ -33,8 +35,29 @@ def voice(text: str, name: str = "app", kind: str = "ea", **files: str) -> Voice
 class Call(Bench):
     """Drives one VoiceXML application: says what the user says, and lets prompts be finished."""
 
+    web: Mapping[str, str | int | None] = {}
+    """Answers what is asked of URIs outside: a body, or a status; None does not answer."""
+
     def __init__(self, text: str, *others: VoiceDocument, **files: str) -> None:
         super().__init__(voice(text, **files), *others)  # type: ignore[arg-type]
+
+    def step(self, *inbound: Inbound, at: int | None = None) -> None:
+        """One instant; what is fetched is answered in the next one."""
+        before = len(self.orders) if hasattr(self, "orders") else 0
+        super().step(*inbound, at=at)
+        answers = [
+            self._answer(order.app, str(order.data["to"]), int(order.behavior.partition("!")[2]))
+            for order in self.orders[before:]
+            if order.verb == "send" and "method" in order.data
+        ]
+        for answer in filter(None, answers):
+            self.step(answer)
+
+    def _answer(self, app: str, uri: str, serial: int) -> Fetched | None:
+        found = self.web.get(uri, 0)
+        if isinstance(found, int):
+            return Fetched(app, serial, uri, status=found, problem="there is no such thing")
+        return Fetched(app, serial, uri, found) if found is not None else None
 
     def play(self) -> list[str]:
         """Let everything that is said come to its end; gives all that has been said so far."""
@@ -68,3 +91,11 @@ class Call(Bench):
         """How the application has ended: ``exit``, an event's name, or nothing if it runs."""
         found = [r for r in self.phases("unload") if r["actor"] == "mediator"]
         return str(found[0]["outcome"]) if found else ""
+
+
+class Online(Call):
+    """An application whose services and hosts answer."""
+
+    def __init__(self, web: Mapping[str, str | int | None], text: str, **files: str) -> None:
+        self.web = web
+        super().__init__(text, **files)

@@ -220,7 +220,7 @@ class Interpreter(Bounds):
 
     def send(self, service: str, data: Json, place: str) -> None:
         """Ask a service something."""
-        self.actions.append(Send(service, data, next(self._sends), place))
+        self.actions.append(Send(service, {"params": data}, next(self._sends), place))
 
     def delay(self, name: str, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event here later, unless the state is left before."""

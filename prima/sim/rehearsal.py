@@ -13,7 +13,7 @@ from prima.sim.person import Person
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
 from prima.sim.scenario import Area, Map, Point, Profile, Scenario
-from prima.sim.services import Services
+from prima.sim.services import Services, Web
 from prima.sim.world import STEP_MS, World
 
 THRESHOLD = 0.5
@@ -79,7 +79,9 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
 class Rehearsal:
     """One run of a scenario. Iterate over :meth:`run` for its records, in order."""
 
-    def __init__(self, cast: Cast, policy: Policy, bound: int | None = None) -> None:
+    def __init__(
+        self, cast: Cast, policy: Policy, bound: int | None = None, web: Web | None = None
+    ) -> None:
         self.cast = cast
         problems = check_cast(cast, cast.scenario.node.source.file)
         if problems:
@@ -95,7 +97,7 @@ class Rehearsal:
         self.world.person = self._person_start(scenario)
         self.robot = Robot(cast.robot, self.world, Routes(cast.world))
         self.person = Person(scenario, self.world, self.robot)
-        self.services = Services(scenario.services)
+        self.services = Services(scenario.services, web)
         self.session = Session(cast.documents, policy, cast.robot.commands, bound)
         self._watching = any(
             doc.watches or any(form.watches for form in doc.forms.values())

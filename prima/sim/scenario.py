@@ -362,11 +362,27 @@ class When:
 
 @dataclass(slots=True)
 class Reply:
-    """What a service answers, after how long (ms); ``error`` where it fails."""
+    """What a service answers, after how long (ms); ``error`` where it fails.
+
+    ``src`` names the file that a fetch is answered with, ``body`` is what it holds.
+    """
 
     after: int
     data: dict[str, Json] = field(default_factory=dict)
     error: str = ""
+    status: int = 0
+    src: str = ""
+    body: bytes = b""
+    node: Node | None = None
+
+
+@dataclass(slots=True)
+class Service:
+    """A service, and the URI under which it is reached by its address."""
+
+    name: str
+    uri: str
+    replies: list[Reply]
 
 
 @dataclass(slots=True)
@@ -387,7 +403,7 @@ class Scenario:
     person_speed: float
     applications: list[tuple[str, int, Node]]
     whens: list[When]
-    services: dict[str, list[Reply]]
+    services: list[Service]
     node: Node
 
 
@@ -438,10 +454,14 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         applications=applications,
         whens=[_when(reader, node) for node in root.all("when")]
         + [_answer(reader, node) for node in root.all("answer")],
-        services={
-            node.get("name"): [_reply(reader, child) for child in node.nodes if child.key]
+        services=[
+            Service(
+                node.get("name"),
+                node.get("uri"),
+                [_reply(reader, child) for child in node.nodes if child.key],
+            )
             for node in root.all("service")
-        },
+        ],
         node=root,
     )
     reader.finish()
@@ -505,8 +525,9 @@ def _answer(reader: Reader, node: Node) -> When:
 def _reply(reader: Reader, node: Node) -> Reply:
     after = max(reader.get(node, "after") or 0, 1)
     if node.tag == "failure":
-        return Reply(after, error=reader.get(node, "reason") or "no answer")
-    return Reply(after, _data(node))
+        status = reader.get(node, "status") or 0
+        return Reply(after, error=reader.get(node, "reason") or "no answer", status=status)
+    return Reply(after, _data(node), src=node.get("src"), node=node)
 
 
 def _data(node: Node) -> dict[str, Json]:

@@ -1,38 +1,73 @@
-"""The services of a scenario: they answer after a while, or fail."""
+"""The services of a scenario: they answer after a while, or fail; and hosts that a run may ask."""
 
 from __future__ import annotations
 
-from prima.messages import Inbound, Occurred, Order
-from prima.sim.scenario import Reply
+from collections.abc import Callable, Iterable
+from html import escape
+from urllib.parse import urlsplit
+
+from prima.messages import Data, Fetched, Inbound, Occurred, Order
+from prima.sim.scenario import Reply, Service
+from prima.values import shown
+
+SCHEME = "service:"
+"""How the URI of a scenario's service begins."""
+Web = Callable[[str, str, Data], Fetched]
+"""Fetches a URI by a method with values, at once; the answer's application and serial are open."""
 
 
 class Services:
-    """Answers what applications send; one that the scenario does not name does not answer."""
+    """Answers what applications send or fetch; one that the scenario does not name does not."""
 
-    def __init__(self, replies: dict[str, list[Reply]]) -> None:
-        self._replies = replies
+    def __init__(self, services: Iterable[Service], web: Web | None = None) -> None:
+        self._services = {service.name: service for service in services}
+        self._web = web
         self._asked: dict[str, int] = {}
-        self._pending: list[tuple[int, int, Occurred]] = []
+        self._pending: list[tuple[int, int, Inbound]] = []
         self._serial = 0
 
     def order(self, now: int, order: Order) -> None:
-        """Take a message to a service."""
+        """Take a message to a service, or a fetch."""
+        fetches = "method" in order.data
         name = order.data["to"]
-        replies = self._replies.get(name)
-        if replies is None:
+        service = self._of(name) if fetches else self._services.get(name)
+        if service is None and fetches:
+            self._later(now, 1, self._outside(order))
+            return
+        if service is None:
             reply = Reply(1, error=f'there is no service "{name}"')
-        elif not replies:
+        elif not service.replies:
             return  # it takes what it is sent and says nothing
         else:
-            reply = replies[min(self._asked.get(name, 0), len(replies) - 1)]
-        self._asked[name] = self._asked.get(name, 0) + 1
-        if reply.error:
-            data = {"service": name, "message": reply.error}
-            event = Occurred(f"error.service.{name}", "environment", data, order.app)
+            asked = self._asked.get(service.name, 0)
+            reply = service.replies[min(asked, len(service.replies) - 1)]
+            self._asked[service.name] = asked + 1
+        self._later(now, reply.after, _fetched(order, reply) if fetches else _event(order, reply))
+
+    def _of(self, uri: str) -> Service | None:
+        """The service that a URI is of: the one named, or the one with the longest address."""
+        if uri.startswith(SCHEME):
+            return self._services.get(uri.removeprefix(SCHEME))
+        below = [one for one in self._services.values() if one.uri and _is_below(uri, one.uri)]
+        return max(below, key=lambda one: len(one.uri), default=None)
+
+    def _outside(self, order: Order) -> Fetched:
+        """What no service of the scenario answers: a host does, if it may be asked."""
+        uri = order.data["to"]
+        if uri.startswith(SCHEME):
+            answer = Fetched(
+                "", 0, uri, problem=f'there is no service "{uri.removeprefix(SCHEME)}"'
+            )
+        elif self._web is None:
+            answer = Fetched("", 0, uri, problem=not_allowed(uri))
         else:
-            event = Occurred(f"reply.{name}", "environment", dict(reply.data), order.app)
+            answer = self._web(uri, order.data["method"], order.data["params"])
+        answer.app, answer.serial = order.app, _serial(order)
+        return answer
+
+    def _later(self, now: int, after: int, value: Inbound) -> None:
         self._serial += 1
-        self._pending.append((now + reply.after, self._serial, event))
+        self._pending.append((now + after, self._serial, value))
 
     def due(self) -> int | None:
         """When the next answer arrives, if any is under way."""
@@ -44,4 +79,61 @@ class Services:
             (pending for pending in self._pending if pending[0] <= now), key=lambda p: p[:2]
         )
         self._pending = [pending for pending in self._pending if pending[0] > now]
-        return [event for _, _, event in arrived]
+        return [value for _, _, value in arrived]
+
+
+def _serial(order: Order) -> int:
+    return int(order.behavior.rpartition("!")[2])
+
+
+def _is_below(uri: str, base: str) -> bool:
+    """Whether a URI is an address or lies under it."""
+    rest = uri.removeprefix(base)
+    return uri.startswith(base) and (not rest or base.endswith("/") or rest[0] in "/?")
+
+
+def _event(order: Order, reply: Reply) -> Occurred:
+    name = order.data["to"]
+    if reply.error:
+        data = {"service": name, "message": reply.error}
+        return Occurred(f"error.service.{name}", "environment", data, order.app)
+    return Occurred(f"reply.{name}", "environment", dict(reply.data), order.app)
+
+
+def _fetched(order: Order, reply: Reply) -> Fetched:
+    """A reply as the answer to a fetch."""
+    serial, uri = _serial(order), order.data["to"]
+    if reply.error:
+        return Fetched(order.app, serial, uri, status=reply.status, problem=reply.error)
+    return answer(order.app, serial, uri, reply.body or _xml(reply.data))
+
+
+def answer(app: str, serial: int, uri: str, data: bytes) -> Fetched:
+    """Bytes as an answer: text, of which the same bytes can be made again."""
+    try:
+        return Fetched(app, serial, uri, data.decode("utf-8"))
+    except UnicodeDecodeError:
+        return Fetched(app, serial, uri, data.decode("latin-1"), "latin-1")
+
+
+def _xml(data: Data) -> bytes:
+    """A reply's data as XML: a ``reply`` with a ``data`` for each."""
+    held = "".join(
+        f"<data name="{escape(name)}">{escape(shown(value), quote=False)}</data>"
+        for name, value in data.items()
+    )
+    return f"<reply>{held}</reply>".encode()
+
+
+def not_allowed(uri: str) -> str:
+    """Why a host is not asked, and what to do."""
+    return f'the run does not allow the host: add "--allow-host {host_of(uri)}"'
+
+
+def host_of(uri: str) -> str:
+    """The host that a URI names, with its port if it names one, in lower case."""
+    parts = urlsplit(uri)
+    try:
+        return f"{parts.hostname or ''}:{parts.port}" if parts.port else parts.hostname or ""
+    except ValueError:
+        return ""

@@ -427,14 +427,36 @@ SCENARIO = Vocabulary(
             "service",
             "A service that applications send to. Its replies are given in order; the last repeats. One"
             " without replies takes what it is sent and says nothing.",
-            (attribute("name", "id", "its name", "required"),),
+            (
+                attribute("name", "id", "its name", "required"),
+                attribute(
+                    "uri", "text", "an http(s) URI: it answers what is fetched from there or below"
+                ),
+            ),
             ("reply", "failure"),
         ),
-        Element("reply", "An answer.", (_AFTER,), ("data",)),
+        Element(
+            "reply",
+            "An answer.",
+            (
+                _AFTER,
+                attribute(
+                    "src",
+                    "path",
+                    "the file that a fetch of a VoiceXML document is answered with; without one,"
+                    " with XML of its data",
+                ),
+            ),
+            ("data",),
+        ),
         Element(
             "failure",
             "No answer but an error.",
-            (_AFTER, attribute("reason", "text", "why", default="the service does not answer")),
+            (
+                _AFTER,
+                attribute("reason", "text", "why", default="the service does not answer"),
+                attribute("status", "integer", "the status of HTTP that a fetch is answered with"),
+            ),
         ),
     ),
 )

@@ -75,6 +75,8 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
             return _goal_row(record, asked)
         case "event":
             return _event_row(record, handled)
+        case "fetched":
+            return _fetched_row(record)
         case "note":
             letter = "U" if record["actor"] == "user" else "E"
             return Row(record["time"], letter, "", record["text"], kind="note")
@@ -139,6 +141,8 @@ def _start_row(record: Record, asked: dict[str, Record]) -> Row | None:
         return None
     request = asked.get(record["behavior"].partition(".")[0], record)
     what = describe(command, record.get("text"), request.get("args"), request.get("extra"))
+    if resumed and (record.get("data") or {}).get("mark"):
+        what += f" from the mark {record['data']['mark']}"
     if request.get("inserted"):
         what += f" [inserted, {request['inserted']}]"
     return Row(
@@ -206,6 +210,13 @@ def _goal_row(record: Record, asked: dict[str, Record]) -> Row:
         kind=f"goal {record['command']}",
         behavior=record["behavior"],
     )
+
+
+def _fetched_row(record: Record) -> Row:
+    """The answer to what an application has asked a URI for."""
+    data = record["data"]
+    what = f"fails: {data['problem']}" if data.get("problem") else "answers"
+    return Row(record["time"], "E", record["app"], f"{data['uri']} {what}", event=True)
 
 
 def _event_row(record: Record, handled: set[int]) -> Row | None:

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator, Mapping
 from itertools import count
 
 from prima.interpreter.bounds import Bounds
+from prima.interpreter.content import source
 from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import prefixes
+from prima.markup.tree import Node
 from prima.messages import (
     Action,
     Command,
     Data,
     Event,
+    Fetched,
     Json,
     LeaveState,
     Notice,
     Quit,
     Request,
     Say,
+    Send,
     Step,
 )
 from prima.voicexml.document import VoiceDocument
@@ -51,6 +56,14 @@ class VoiceInterpreter(Bounds):
         self._cause: int | None = None
         self._marked: str | None = None
         self._instant = -1
+        self._sends = count(1)
+        self._asked: int | None = None
+        """The serial of the fetch whose answer is waited for: the transitioning state."""
+        self._answer: Fetched | None = None
+        self._patient = False
+        """Whether what is played now is played to its end, even with the answer there."""
+        self._missed: deque[Event] = deque()
+        """Events that came while an answer was waited for (4.1.8): none is lost."""
 
     # What a session tells -----------------------------------------------------------
 
@@ -63,6 +76,13 @@ class VoiceInterpreter(Bounds):
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
+        if self._asked is not None:
+            self._missed.append(event)
+        else:
+            self._happened(event)
+            self._catch_up()
+
+    def _happened(self, event: Event) -> None:
         context = self._machine.context
         if self.over or context is None or not self._run:
             return
@@ -108,6 +128,20 @@ class VoiceInterpreter(Bounds):
             self._drive(Resume(event=Event(notice.event, 0, data, reactive=False)))
         elif notice.what == "done":
             self._drive(Resume(notice.data))
+        self._catch_up()
+
+    def fetched(self, now: int, answer: Fetched) -> None:
+        """The answer to a fetch; one that comes too late, or twice, is not heeded."""
+        self._tick(now)
+        if self.over or answer.serial != self._asked:
+            return
+        self._asked, self._answer, self.deadline = None, answer, None
+        if self._run and self._patient:
+            return
+        if self._run:
+            self.actions.append(LeaveState(self._state))
+        self._drive(Resume())
+        self._catch_up()
 
     def sensed(self, now: int, values: Data) -> list[str]:
         """VoiceXML watches no sensors."""
@@ -139,8 +173,11 @@ class VoiceInterpreter(Bounds):
         return found if found is not None else self.heard.utterance
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
-        """VoiceXML has no delayed events."""
+        """VoiceXML has no delayed events; but a fetch may take too long (6.1.1)."""
         self._tick(now)
+        if self._asked is not None and self.deadline is not None and now >= self.deadline:
+            message = "no answer within its fetchtimeout"
+            self.fetched(now, Fetched(self.name, self._asked, "", problem=message))
         return []
 
     def stop(self) -> None:
@@ -163,6 +200,38 @@ class VoiceInterpreter(Bounds):
         resume = yield
         self._run = 0
         return resume
+
+    def send(self, service: str, data: Data, node: Node) -> int:
+        """Send something to a service, or to a URI; gives its serial."""
+        self.count_output(len(str(data)), node)
+        serial = next(self._sends)
+        self.actions.append(Send(service, data, serial, source(node)))
+        return serial
+
+    def ask(self, uri: str, method: str, values: Data, timeout: int, node: Node) -> None:
+        """Ask a URI for a resource; no more than ``timeout`` ms are waited for it."""
+        self._asked = self.send(uri, {"method": method, "params": values}, node)
+        self._answer, self.deadline = None, self._instant + timeout
+
+    def pass_time(
+        self, queued: list[Command], audio: list[Command]
+    ) -> Generator[None, Resume, None]:
+        """Play what is queued, and then fetch audio until the answer is there (6.1.1)."""
+        for commands, self._patient in ((queued, True), (audio, False)):
+            if commands and self._answer is None:
+                yield from self.wait(commands)
+        self._patient = False
+
+    def answered(self) -> Generator[None, Resume, Fetched]:
+        """Wait for the answer of a fetch."""
+        while self._answer is None:
+            yield
+        return self._answer
+
+    def _catch_up(self) -> None:
+        """Give the events that came while an answer was waited for, once there is a wait."""
+        while self._missed and self._run and self._asked is None and not self.over:
+            self._happened(self._missed.popleft())
 
     def _tick(self, now: int) -> None:
         if now != self._instant:

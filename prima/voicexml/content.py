@@ -4,42 +4,35 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from itertools import count
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.expressions import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Json, Say, Send
-from prima.values import read_value
+from prima.messages import Json, Say
 from prima.voicexml.dom import DATA, plain_tree
-from prima.voicexml.fetching import decoded, fetch, load_page
+from prima.voicexml.fetching import Request, decoded
 from prima.voicexml.prompts import SPOKEN, Speaker, Speech
-from prima.voicexml.state import Context, GoBack, GoDialog, GoItem, HungUp, Thrown
+from prima.voicexml.state import Context, Flow, GoBack, GoDialog, GoItem, HungUp, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
+    pass
 
-__all__ = ["ITEMS", "SPOKEN", "Content", "fetch", "load_page", "milliseconds"]
 ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
 SERVICE = "service:"
 """How the URI of a scenario's service begins."""
 
 
 class Content(Speaker):
-    """Runs executable content for one application."""
+    """Runs executable content for one application; it takes time only where something is fetched."""
 
-    def __init__(self, owner: Machine) -> None:
-        super().__init__(owner)
-        self._sends = count(1)
-
-    def run(self, node: Node, context: Context, local: Scope) -> None:
+    def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
-        self.run_all(node.content, context, local)
+        yield from self.run_all(node.content, context, local)
 
-    def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> None:
+    def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:
         """Run pieces of content; text and what is said among it make one prompt (4.1.2)."""
         speech = Speech(context.page.lang, "")
         for item in content:
@@ -56,10 +49,10 @@ class Content(Speaker):
             elif item.tag == "prompt":
                 self.prompt(item, context, local)
             else:
-                self.act(item, context, local)
+                yield from self.act(item, context, local)
         self.flush(speech)
 
-    def act(self, node: Node, context: Context, local: Scope) -> None:
+    def act(self, node: Node, context: Context, local: Scope) -> Flow:
         """One element that is not said."""
         match node.tag:
             case "var":
@@ -69,23 +62,23 @@ class Content(Speaker):
             case "clear":
                 self.clear(node, context, local)
             case "if":
-                self.branch(node, context, local)
+                yield from self.branch(node, context, local)
             case "foreach":
                 for element in self.elements(node, context, local):
                     self.engine.put(local, node.get("item"), element)
-                    self.run(node, context, local)
+                    yield from self.run(node, context, local)
             case "script":
-                self.script(node, local, context, local)
+                yield from self.script(node, local, context, local)
             case "log":
                 self.log(node, context, local)
             case "reprompt":
                 self.owner.reprompted = True
             case "data":
-                self.data(node, local, context, local)
+                yield from self.data(node, local, context, local)
             case _:
-                self.leave(node, context, local)
+                yield from self.leave(node, context, local)
 
-    def leave(self, node: Node, context: Context, local: Scope) -> None:
+    def leave(self, node: Node, context: Context, local: Scope) -> Flow:
         """Elements that control does not come back from."""
         match node.tag:
             case "throw":
@@ -93,9 +86,9 @@ class Content(Speaker):
                 message = self.word(node, "message", context, local)
                 raise Thrown(name, message, source(node))
             case "goto":
-                self.go(node, context, local)
+                yield from self.go(node, context, local)
             case "submit":
-                self.submit(node, context, local)
+                yield from self.submit(node, context, local)
             case "exit":
                 self.report(node, context, local)
                 raise GoOut()
@@ -179,7 +172,7 @@ class Content(Speaker):
 
     # Control ----------------------------------------------------------------------------
 
-    def branch(self, node: Node, context: Context, local: Scope) -> None:
+    def branch(self, node: Node, context: Context, local: Scope) -> Flow:
         """The first branch whose condition holds (5.3.4)."""
         chosen: list[Node | str] = []
         taken = self.holds(node, context, local)
@@ -190,9 +183,9 @@ class Content(Speaker):
                 taken = self.holds(item, context, local)
             elif taken:
                 chosen.append(item)
-        self.run_all(chosen, context, local)
+        yield from self.run_all(chosen, context, local)
 
-    def go(self, node: Node, context: Context, local: Scope) -> None:
+    def go(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for an item, a dialog or a document (5.3.7)."""
         item = self.word(node, "nextitem", context, local)
         if item:
@@ -200,25 +193,24 @@ class Content(Speaker):
                 message = f'{source(node)}: there is no form item "{item}"'
                 raise Thrown("error.badfetch", message, source(node))
             raise GoItem(item)
-        self.owner.go(context, self.word(node, "next", context, local), node, False)
+        yield from self.owner.go(context, self.word(node, "next", context, local), node)
 
-    def submit(self, node: Node, context: Context, local: Scope) -> None:
-        """Leave for another document, or send values to a service and go on (5.3.8)."""
+    def submit(self, node: Node, context: Context, local: Scope) -> Flow:
+        """Leave for what values are answered with, or send them and go on (5.3.8)."""
         inputs = [one.get("name") for one in self.owner.items(context) if one.tag != "block"]
         names = node.get("namelist").split() if "namelist" in node.attributes else inputs
         values = self.values(node, [name for name in names if name], context, local)
         uri = self.word(node, "next", context, local)
-        if not uri.startswith(SERVICE):
-            self.owner.go(context, uri, node, True)
-            return
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
-        self.owner.count_output(len(str(values)), node)
-        self.owner.actions.append(Send(service, values, next(self._sends), source(node)))
-        if dialog:
-            if context.page.dialog(dialog) is None:
-                message = f'{source(node)}: there is no dialog "{dialog}"'
-                raise Thrown("error.badfetch", message, source(node))
-            raise GoDialog(None, dialog)
+        if not uri.startswith(SERVICE) or not dialog:
+            request = Request(node.get("method"), values)
+            yield from self.owner.go(context, uri, node, request)
+            return
+        if context.page.dialog(dialog) is None:
+            message = f'{source(node)}: there is no dialog "{dialog}"'
+            raise Thrown("error.badfetch", message, source(node))
+        self.owner.send(service, values, node)
+        raise GoDialog(None, dialog)
 
     def give_back(self, node: Node, context: Context, local: Scope) -> None:
         """Come back from a subdialog (5.3.10)."""
@@ -231,12 +223,12 @@ class Content(Speaker):
 
     # Scripts, data and the transcript -----------------------------------------------------
 
-    def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+    def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Run a script; what it declares belongs to the scope it stands in (5.3.12)."""
         code, attribute = node.own_text, ""
         uri = self.word(node, "src", context, local)
         if uri:
-            data = self.owner.fetch(context.page.resolve(uri, node), node)
+            data = yield from self.owner.fetch(context.page.resolve(uri, node), node)
             code = decoded(data, node.get("charset"))
             attribute = "src" if "src" in node.attributes else "srcexpr"
         try:
@@ -246,11 +238,11 @@ class Content(Speaker):
                 error = ScriptError(f"line {error.line}: {error}")
             raise self.failure(error, node, attribute) from None
 
-    def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+    def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
-        self.named(node, context, local)
+        request = Request(node.get("method"), self.named(node, context, local))
         uri = context.page.resolve(self.word(node, "src", context, local), node)
-        content = self.owner.fetch(uri, node)
+        content = yield from self.owner.fetch(uri, node, request)
         if not node.get("name"):
             return
         held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
@@ -282,11 +274,3 @@ class Content(Speaker):
         said = text[:RESULT_LIMIT]
         self.owner.count_output(len(said), node)
         self.owner.actions.append(Say("log", said, source(node)))
-
-
-def milliseconds(text: str, default: int) -> int:
-    """A time such as ``5s`` or ``500ms``, or the default."""
-    try:
-        return int(read_value("duration", text.strip())) if text.strip() else default
-    except ValueError:
-        return default

@@ -35,7 +35,7 @@ class Events:
             if handler is None:
                 yield from self._default(context, thrown)
                 return
-            self._run(context, handler, thrown)
+            yield from self._run(context, handler, thrown)
         except (Thrown, ScriptError) as error:
             again = thrown_of(error)
             self.owner.count_step(self.owner.document.node)
@@ -92,11 +92,11 @@ class Events:
             self.engine.unset(local, "_message")
         return local
 
-    def _run(self, context: Context, handler: Node, thrown: Thrown) -> None:
+    def _run(self, context: Context, handler: Node, thrown: Thrown) -> Flow:
         """Run a handler as if it stood where the event was thrown; what is next may be quiet."""
         self.owner.reprompted = False
         try:
-            self.owner.content.run(handler, context, self._scope(thrown))
+            yield from self.owner.content.run(handler, context, self._scope(thrown))
         except GoItem:
             context.quiet = not self.owner.reprompted  # the dialog is still the same (5.3.6)
             raise

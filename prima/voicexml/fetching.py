@@ -1,30 +1,68 @@
-"""Fetching what an application names: documents, scripts, data and grammars."""
+"""Fetching what an application names: documents, scripts, data and grammars (6.1).
+
+A file of the application's folder is there at once. What a service or a host has to answer
+takes time: the application asks, and is in its transitioning state until the answer is there.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-from urllib.parse import urldefrag
+from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError
 from prima.interpreter.content import source
 from prima.markup.tree import Node
+from prima.messages import Command, Fetched, Json
+from prima.values import milliseconds
 from prima.voicexml.document import FetchError, Page, broken, read_page
-from prima.voicexml.state import Thrown
+from prima.voicexml.state import Flow, Resume, Thrown
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
+REMOTE = frozenset(["http", "https", "service"])
+"""Schemes of URIs that are asked for outside the application."""
+FETCH_TIMEOUT = 10_000
+"""How long an answer is waited for (ms) where ``fetchtimeout`` does not say."""
 
-def load_page(owner: Machine, uri: str, node: Node) -> Page:
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What goes along with a URI: a submit's, subdialog's or data's method and values."""
+
+    method: str = "get"
+    values: Mapping[str, Json] = field(default_factory=dict)
+
+
+class Missing(Thrown):
+    """A resource that must be asked for before a grammar that names it can be loaded."""
+
+    def __init__(self, uri: str, node: Node) -> None:
+        super().__init__("error.badfetch", f"{uri} has not been fetched", source(node))
+        self.uri = uri
+        self.node = node
+
+
+def remote(uri: str) -> bool:
+    """Whether a URI is no file's."""
+    return urlsplit(uri).scheme in REMOTE
+
+
+def load_page(
+    owner: Machine, uri: str, node: Node, request: Request | None = None
+) -> Generator[None, Resume, Page]:
     """Fetch and read another document of the application.
 
     Raises:
         Thrown: ``error.badfetch``, with what is wrong with the document; ``error.semantic``
             for an application root that names a root itself (1.5.2).
     """
-    page = owner.pages.get(uri)
+    asks = request is not None and remote(uri)
+    page = None if asks else owner.pages.get(uri)
     if page is None:
-        data = owner.fetch(uri, node)
+        data = yield from fetch(owner, uri, node, request)
         try:
             page = read_page(uri, uri, data)
             error = broken(page)
@@ -33,23 +71,91 @@ def load_page(owner: Machine, uri: str, node: Node) -> Page:
         if error is not None or page is None:
             message = f"{source(node)}: {error.problems[0] if error else uri}"
             raise Thrown("error.badfetch", message, source(node))
-        owner.pages[uri] = page
+        if not asks:
+            owner.pages[uri] = page
     if node.tag == "vxml" and page.application:
         message = f"{source(node)}: {uri} names an application root itself"
         raise Thrown("error.semantic", message, source(node))
     return page
 
 
-def fetch(owner: Machine, uri: str, node: Node) -> bytes:
+def fetch(
+    owner: Machine, uri: str, node: Node, request: Request | None = None
+) -> Generator[None, Resume, bytes]:
     """A resource's bytes.
 
     Raises:
-        Thrown: ``error.badfetch`` or what the fetcher says.
+        Thrown: ``error.badfetch``, with ``.http.STATUS`` where a host has answered so (5.2.6).
     """
+    whole = urldefrag(uri)[0]
+    if not remote(whole):
+        return _file(owner, whole, node)
+    answer = yield from _asked(owner, whole, node, request or Request())
+    if answer.problem:
+        name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
+        raise Thrown(name, f"{source(node)}: {whole}: {answer.problem}", source(node))
+    return answer.body.encode(answer.charset)
+
+
+def _asked(
+    owner: Machine, uri: str, node: Node, request: Request
+) -> Generator[None, Resume, Fetched]:
+    """Ask for a resource, and play prompts and fetch audio until its answer is there (6.1.1)."""
+    timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
+    owner.owner.ask(uri, request.method or "get", dict(request.values), timeout, node)
+    audio = _setting(owner, node, "fetchaudio")
+    if audio:
+        said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
+        queued, owner.queue = owner.queue, []
+        yield from owner.owner.pass_time(queued, [said])
+    return (yield from owner.owner.answered())
+
+
+def _setting(owner: Machine, node: Node, name: str) -> str:
+    """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
+    own = node.get(name)
+    return own or (owner.setting(owner.context, name) if owner.context is not None else "")
+
+
+def _file(owner: Machine, uri: str, node: Node) -> bytes:
     try:
-        return owner.document.fetch(urldefrag(uri)[0])
+        return owner.document.fetch(uri)
     except FetchError as error:
         raise Thrown(error.event, f"{source(node)}: {uri}: {error}", source(node)) from None
+
+
+# Grammars -----------------------------------------------------------------------------------
+
+
+def held(owner: Machine, uri: str, node: Node) -> bytes:
+    """A grammar's bytes: a file's, or what :func:`gathered` has asked for.
+
+    Raises:
+        Thrown: ``error.badfetch``; :class:`Missing` while nobody has asked for it.
+    """
+    whole = urldefrag(uri)[0]
+    if not remote(whole):
+        return _file(owner, whole, node)
+    found = owner.resources.get(whole)
+    if found is None:
+        raise Missing(whole, node)
+    if isinstance(found, Thrown):
+        raise found
+    return found
+
+
+def gathered(owner: Machine, use: Callable[[], object]) -> Flow:
+    """Do what needs grammars, once all that they are made of has been asked for."""
+    while True:
+        try:
+            use()
+            return
+        except Missing as missing:
+            owner.count_step(missing.node)
+            try:
+                owner.resources[missing.uri] = yield from fetch(owner, missing.uri, missing.node)
+            except Thrown as thrown:
+                owner.resources[missing.uri] = thrown
 
 
 def decoded(data: bytes, charset: str) -> str:

@@ -10,6 +10,7 @@ from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Json, Say
 from prima.voicexml.document import Page
+from prima.voicexml.fetching import held
 from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase
 from prima.voicexml.state import Context, Heard
 
@@ -165,7 +166,7 @@ class Inputs:
         key = (page.uri, node.index, uri)
         if key not in self._loaded:
             self._loaded[key] = matcher(
-                node, page, uri, lambda name: self.owner.fetch(name, node), self._failed
+                node, page, uri, lambda name: held(self.owner, name, node), self._failed
             )
         return self._loaded[key]
 

@@ -9,6 +9,7 @@ from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.document import Page
+from prima.voicexml.fetching import Request
 from prima.voicexml.results import RESULTS, shadow
 from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Heard, HungUp, Thrown
 
@@ -28,12 +29,12 @@ class Items:
 
     # What the user said ---------------------------------------------------------------
 
-    def process(self, context: Context, heard: Heard) -> None:
+    def process(self, context: Context, heard: Heard) -> Flow:
         """What the user said goes to the item, form, link or choice that has taken it."""
         owner = heard.owner
         self.remember(context, heard)
         if owner.tag in ("link", "choice"):
-            self._follow(context, owner, heard)
+            yield from self._follow(context, owner, heard)
         if owner.tag in ("form", "menu") and owner is not context.form:
             page = heard.page if heard.page is not context.page else None
             raise GoDialog(page, _name(heard.page, owner), heard)
@@ -43,9 +44,9 @@ class Items:
         for item in self.owner.items(context):
             if item.tag == "initial":
                 self.mark(context, item)
-        self.run_filled(context, filled)
+        yield from self.run_filled(context, filled)
 
-    def _follow(self, context: Context, node: Node, heard: Heard) -> None:
+    def _follow(self, context: Context, node: Node, heard: Heard) -> Flow:
         """A link's or choice's target: a dialog, or an event (2.2, 2.5)."""
         content, local = self.owner.content, self.owner.local()
         event = content.word(node, "event", context, local)
@@ -55,7 +56,7 @@ class Items:
         base = heard.page if urldefrag(uri)[0] else None
         if heard.page is not context.page and base is None:
             uri, base = heard.page.uri.rpartition("/")[2] + uri, heard.page
-        self.owner.go(context, uri, node, False, base)
+        yield from self.owner.go(context, uri, node, None, base)
 
     def remember(self, context: Context, heard: Heard) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""
@@ -102,18 +103,18 @@ class Items:
         """Set the variable of a control item."""
         self.fill(context, item, True)
 
-    def run_filled(self, context: Context, filled: list[Node]) -> None:
+    def run_filled(self, context: Context, filled: list[Node]) -> Flow:
         """Run the filled elements that what was just filled has satisfied (2.4)."""
         assert context.form is not None
         for node in context.form.nodes:
             if node in filled:
                 context.item = node
                 for action in node.all("filled"):
-                    self.owner.content.run(action, context, self.owner.local())
+                    yield from self.owner.content.run(action, context, self.owner.local())
             elif node.tag == "filled":
                 context.item = None
                 if self._satisfied(context, node, filled):
-                    self.owner.content.run(node, context, self.owner.local())
+                    yield from self.owner.content.run(node, context, self.owner.local())
 
     def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
         """Whether a form's filled is to run: for any, or all, of its items (2.4)."""
@@ -134,7 +135,10 @@ class Items:
             raise Thrown("error.semantic", message, source(item))
         params = self._params(context, item)
         uri = self.owner.content.word(item, "src", context, self.owner.local())
-        fetched, dialog = self.owner.documents.find(context, uri, item)
+        names = item.get("namelist").split()
+        values = self.owner.content.values(item, names, context, self.owner.local())
+        request = Request(item.get("method"), values) if names else None
+        fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
         blank = self.engine.scope()
         inner = Context(context.session, page, blank, blank, self.engine.dialog())
@@ -150,7 +154,7 @@ class Items:
             raise Thrown(result.event, result.message, source(item))
         values = {name: value for name, value in result.values.items() if value is not None}
         self.fill(context, item, values)
-        self.run_filled(context, [item])
+        yield from self.run_filled(context, [item])
 
     def _params(self, context: Context, item: Node) -> dict[str, Json]:
         """What a subdialog is given, by value (6.4)."""
@@ -162,12 +166,12 @@ class Items:
             for param in item.all("param")
         }
 
-    def recorded(self, context: Context, item: Node, heard: Heard) -> None:
+    def recorded(self, context: Context, item: Node, heard: Heard) -> Flow:
         """A recording: in simulation, the words that were said (2.3.6)."""
         size = len(heard.utterance.encode())
         data: dict[str, Json] = {"duration": 100 * len(heard.utterance), "size": size}
         self.fill(context, item, heard.utterance, {**data, "maxtime": False})
-        self.run_filled(context, [item])
+        yield from self.run_filled(context, [item])
 
     def transfer(self, context: Context, item: Node) -> Flow:
         """A call to somebody else: this robot has no telephone (2.3.7)."""
@@ -176,7 +180,7 @@ class Items:
         if item.get("bridge") != "true" and item.get("type") != "bridge":
             raise HungUp("connection.disconnect.transfer", "", source(item))
         self.fill(context, item, "noanswer", {"duration": 0})
-        self.run_filled(context, [item])
+        yield from self.run_filled(context, [item])
 
 
 def _name(page: Page, dialog: Node) -> str:

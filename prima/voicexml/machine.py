@@ -10,10 +10,11 @@ from prima.interpreter.expressions import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Json
-from prima.voicexml.content import ITEMS, Content, milliseconds
+from prima.values import milliseconds
+from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
 from prima.voicexml.events import Events, thrown_of
-from prima.voicexml.fetching import fetch
+from prima.voicexml.fetching import Request, fetch, gathered
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
 from prima.voicexml.scopes import Documents
@@ -43,6 +44,8 @@ class Machine:
         self.engine = owner.engine
         self.document = owner.document
         self.pages: dict[str, Page] = {owner.document.page.uri: owner.document.page}
+        self.resources: dict[str, bytes | Thrown] = {}
+        """What grammars are made of and no file is: its bytes, or why it cannot be had."""
         self.queue: list[Command] = []
         """Prompts and Commands that are played on reaching a wait (4.1.8)."""
         self.asking: Node | None = None
@@ -72,15 +75,26 @@ class Machine:
         """Bound what comes out in one instant."""
         self.owner.count_output(characters, node)
 
-    def fetch(self, uri: str, node: Node) -> bytes:
+    def fetch(
+        self, uri: str, node: Node, request: Request | None = None
+    ) -> Generator[None, Resume, bytes]:
         """A resource's bytes, or ``error.badfetch``."""
-        return fetch(self, uri, node)
+        return fetch(self, uri, node, request)
+
+    def send(self, service: str, values: Json, node: Node) -> None:
+        """Send values to a service, without waiting for its answer."""
+        self.owner.send(service, {"params": values}, node)
 
     def go(
-        self, context: Context, uri: str, node: Node, submits: bool, base: Page | None = None
-    ) -> None:
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        request: Request | None = None,
+        base: Page | None = None,
+    ) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""
-        self.documents.go(context, uri, node, submits, base)
+        return self.documents.go(context, uri, node, request, base)
 
     def find(self, context: Context, thrown: Thrown) -> Node | None:
         """The handler of an event that has been counted (5.2.4)."""
@@ -187,7 +201,7 @@ class Machine:
     def _enter(self, context: Context, page: Page) -> Flow:
         """Set up a document's scopes; what fails is an event in it."""
         try:
-            self.documents.enter(context, page)
+            yield from self.documents.enter(context, page)
         except (Thrown, ScriptError) as error:
             context.form = context.item = None
             yield from self.events.handle(context, thrown_of(error))
@@ -201,7 +215,7 @@ class Machine:
         context.quiet = False
         wanted = ""
         try:
-            self._initialise(context, form)
+            yield from self._initialise(context, form)
         except (Thrown, ScriptError) as error:
             wanted = yield from self._handled(context, error)
         while True:
@@ -210,7 +224,7 @@ class Machine:
             try:
                 if heard is not None:
                     taken, heard = heard, None
-                    self.items_of.process(context, taken)
+                    yield from self.items_of.process(context, taken)
                     continue
                 item = self.select(context, wanted)
                 wanted = ""
@@ -233,7 +247,7 @@ class Machine:
             return go.name
         return ""
 
-    def _initialise(self, context: Context, form: Node) -> None:
+    def _initialise(self, context: Context, form: Node) -> Flow:
         """Make a form's variables and those of its items, in document order (2.1.6.1)."""
         context.dialog = self.engine.dialog()
         params, context.params = context.params or {}, None
@@ -241,7 +255,7 @@ class Machine:
             if node.tag == "var" and node.get("name") in params:
                 self._set(context, node.get("name"), params.pop(node.get("name")))
             elif node.tag in ("var", "script", "data"):
-                self.documents.declare(node, context.dialog, context)
+                yield from self.documents.declare(node, context.dialog, context)
             elif node.tag in ITEMS:
                 self._declare_item(context, node)
         for name in params:
@@ -258,7 +272,7 @@ class Machine:
     def _declare_item(self, context: Context, item: Node) -> None:
         """Give an item's variable its first value; one without a name is but visited or not."""
         if item.get("name"):
-            self.documents.declare(item, context.dialog, context)
+            self.content.declare(item, context.dialog, context, self.local())
             return
         expr = "expr" if "expr" in item.attributes else ""
         if expr and self.content.value(item, expr, context, self.local()) is not None:
@@ -288,10 +302,10 @@ class Machine:
         quiet, context.quiet = context.quiet, False
         if item.tag == "block":
             self.items_of.mark(context, item)
-            self.content.run(item, context, self.local())
+            yield from self.content.run(item, context, self.local())
             return
         if not quiet:
-            self._prompt(context, item)
+            yield from self._prompt(context, item)
         match item.tag:
             case "subdialog":
                 yield from self.items_of.call(context, item)
@@ -306,7 +320,7 @@ class Machine:
 
     # Prompts --------------------------------------------------------------------------
 
-    def _prompt(self, context: Context, item: Node) -> None:
+    def _prompt(self, context: Context, item: Node) -> Flow:
         """Queue the prompts of an item that its counter has reached (4.1.6)."""
         count = context.prompts[item.index] = context.prompts.get(item.index, 0) + 1
         pieces = [
@@ -322,11 +336,11 @@ class Machine:
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
-            self.content.run_all(bare, context, self.local())
+            yield from self.content.run_all(bare, context, self.local())
             bare = []
             said = self.content.spoken(piece, context, self.local())
             self.say(said, self.content.lang(piece, context), source(piece), piece)
-        self.content.run_all(bare, context, self.local())
+        yield from self.content.run_all(bare, context, self.local())
 
     def _holds(self, context: Context, piece: Node | str) -> bool:
         return isinstance(piece, str) or self.content.holds(piece, context, self.local())
@@ -349,13 +363,13 @@ class Machine:
 
     def _listen(self, context: Context, item: Node) -> Flow:
         """Play what is queued, then wait for the user (C4)."""
-        for _ in self.inputs.active(context):
-            pass  # a grammar that cannot be used is told before anything is said
+        # A grammar that cannot be used is told before anything is said.
+        yield from gathered(self, lambda: list(self.inputs.active(context)))
         asked = self.queue.pop() if self.queue and self.queue[-1].type == "speak" else None
         question = self._question(context, item, asked)
         self.owner.heard = None
         resume = yield from self._wait([*self.queue, question])
-        self._answered(context, item, resume)
+        yield from self._answered(context, item, resume)
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question that an item's last prompt is (4.1.5, 4.1.7)."""
@@ -371,7 +385,7 @@ class Machine:
         text = asked.text if asked else None
         return Command("q-and-a", args, text, lang=lang, source=source(item))
 
-    def _answered(self, context: Context, item: Node, resume: Resume) -> None:
+    def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
         """Process what has ended the wait."""
         if resume.event is not None:
             raise _outside(resume)
@@ -379,9 +393,9 @@ class Machine:
         heard = self.owner.heard
         if outcome == "filled" and heard is not None:
             if heard.owner is item and item.tag == "record":
-                self.items_of.recorded(context, item, heard)
+                yield from self.items_of.recorded(context, item, heard)
             else:
-                self.items_of.process(context, heard)
+                yield from self.items_of.process(context, heard)
             return
         if outcome == "nomatch":
             utterance = str(resume.data.get("utterance", ""))

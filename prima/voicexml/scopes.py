@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
@@ -9,8 +10,8 @@ from prima.interpreter.content import source
 from prima.interpreter.expressions import Scope
 from prima.markup.tree import Node
 from prima.voicexml.document import Page
-from prima.voicexml.fetching import load_page
-from prima.voicexml.state import Context, GoDialog, Thrown
+from prima.voicexml.fetching import Request, load_page
+from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -40,33 +41,35 @@ class Documents:
         self.engine.raw(CONNECTION, (session, blank, blank, blank, blank))
         return session
 
-    def enter(self, context: Context, page: Page) -> None:
+    def enter(self, context: Context, page: Page) -> Flow:
         """Make a document the active one, with what it keeps of its application (1.5.2)."""
-        root = self.root(page)
+        root = yield from self.root(page)
         if root is None and context.root is not None and context.root.uri == page.uri:
             context.document = context.application
             context.page, context.root = page, None
             return
         try:
             if root is not None:
-                self._enter_root(context, root)
+                yield from self._enter_root(context, root)
         finally:
             context.page, context.root = page, root
             context.document = self.engine.scope()
             if root is None:
                 context.application = context.document
-        self._declare(context, page)
+        yield from self._declare(context, page)
 
-    def root(self, page: Page) -> Page | None:
+    def root(self, page: Page) -> Generator[None, Resume, Page | None]:
         """The application root of a leaf.
 
         Raises:
             Thrown: ``error.badfetch`` or ``error.semantic``.
         """
         uri = page.application
-        return load_page(self.owner, uri, page.root) if uri and uri != page.uri else None
+        if not uri or uri == page.uri:
+            return None
+        return (yield from load_page(self.owner, uri, page.root))
 
-    def _enter_root(self, context: Context, root: Page) -> None:
+    def _enter_root(self, context: Context, root: Page) -> Flow:
         """The application of a leaf: the one there is, or a new one."""
         if context.root is not None and context.root.uri == root.uri:
             return
@@ -75,9 +78,9 @@ class Documents:
             return
         context.page, context.root = root, None
         context.application = context.document = self.engine.scope()
-        self._declare(context, root)
+        yield from self._declare(context, root)
 
-    def _declare(self, context: Context, page: Page) -> None:
+    def _declare(self, context: Context, page: Page) -> Flow:
         """Make the variables of the active document, in document order (5.1.2)."""
         scope = context.document
         self.engine.put(scope, "document", scope)
@@ -85,29 +88,34 @@ class Documents:
             self.engine.put(scope, "application", scope)
         context.dialog = self.engine.dialog()
         for node in page.root.all("var", "script", "data"):
-            self.declare(node, scope, context)
+            yield from self.declare(node, scope, context)
 
-    def declare(self, node: Node, scope: Scope, context: Context) -> None:
+    def declare(self, node: Node, scope: Scope, context: Context) -> Flow:
         """What a document or form declares: a variable, a script's variables, or data."""
         content, local = self.owner.content, self.owner.local()
         match node.tag:
             case "script":
-                content.script(node, scope, context, local)
+                yield from content.script(node, scope, context, local)
             case "data":
-                content.data(node, scope, context, local)
+                yield from content.data(node, scope, context, local)
             case _:
                 content.declare(node, scope, context, local)
 
     def go(
-        self, context: Context, uri: str, node: Node, submits: bool, base: Page | None = None
-    ) -> None:
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        request: Request | None = None,
+        base: Page | None = None,
+    ) -> Flow:
         """Follow a URI, written in ``base`` or in this document, to a dialog (5.3.7).
 
         Raises:
             GoDialog: with the page, or without where it is this one.
             Thrown: ``error.badfetch``.
         """
-        page, dialog = self.find(context, uri, node, submits, base)
+        page, dialog = yield from self.find(context, uri, node, request, base)
         raise GoDialog(page, dialog)
 
     def find(
@@ -115,10 +123,12 @@ class Documents:
         context: Context,
         uri: str,
         node: Node,
-        submits: bool = False,
+        request: Request | None = None,
         base: Page | None = None,
-    ) -> tuple[Page | None, str]:
+    ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched.
+
+        With a ``request`` it is always fetched, even where the URI has a fragment only.
 
         Raises:
             Thrown: ``error.badfetch``.
@@ -127,11 +137,10 @@ class Documents:
             raise Thrown("error.badfetch", f"{source(node)}: there is no URI", source(node))
         target, fragment = urldefrag(uri)
         page = None
-        if target or submits:
-            page = load_page(
-                self.owner, urldefrag((base or context.page).resolve(uri, node))[0], node
-            )
-            self.root(page)  # a document without its root is none
+        if target or request is not None:
+            whole = urldefrag((base or context.page).resolve(uri, node))[0]
+            page = yield from load_page(self.owner, whole, node, request)
+            yield from self.root(page)  # a document without its root is none
         if (page or context.page).dialog(fragment) is None:
             where = f" in {page.uri}" if page else ""
             message = f'{source(node)}: there is no dialog "{fragment}"{where}'
