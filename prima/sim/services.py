@@ -119,7 +119,7 @@ def answer(app: str, serial: int, uri: str, data: bytes) -> Fetched:
 def _xml(data: Data) -> bytes:
     """A reply's data as XML: a ``reply`` with a ``data`` for each."""
     held = "".join(
-        f"<data name="{escape(name)}">{escape(shown(value), quote=False)}</data>"
+        f'<data name="{escape(name)}">{escape(shown(value), quote=False)}</data>'
         for name, value in data.items()
     )
     return f"<reply>{held}</reply>".encode()
