@@ -122,7 +122,11 @@ def test_encodings() -> None:
         assert load(source).match("Café")
     abnf = "#ABNF 1.0 ISO-8859-1;\nlanguage fr;\nroot $r;\n$r = café;\n"
     assert load(abnf.encode("latin-1")).match("café")
-    assert load(abnf.replace("ISO-8859-1", "UTF-16").encode("utf-16")).match("café")
+    assert load(abnf.replace("ISO-8859-1", "ISO8859-1").encode("latin-1")).match("café")
+    wide = abnf.replace("ISO-8859-1", "UTF-16")
+    for encoding in ("utf-16", "utf-16-le", "utf-16-be"):
+        assert load(wide.encode(encoding)).match("café")
+    assert load(abnf.replace(" ISO-8859-1", "").encode("utf-8-sig")).match("café")
     with pytest.raises(GrammarError):
         load(abnf.replace("ISO-8859-1", "UTF-8").encode("latin-1"))
 
@@ -182,6 +186,8 @@ FILES = {
         'tag-format="semantics/1.0"',
     ).replace("<rule", "<tag>var zone = 5</tag><rule", 1),
     "http://x.org/g/plain.gram": ABNF + "$r = here {there};\npublic $up = $<cities.grxml#far>;",
+    "http://x.org/g/closed.gram": ABNF + "private $r = closed;",
+    "http://x.org/g/self.gram": ABNF + "$r = x | $<self.gram#own> | $<self.gram>; $own = y;",
     "http://x.org/keys.gram": "#ABNF 1.0;\nmode dtmf;\nroot $r;\n$r = 1;",
     "http://x.org/g/rootless.gram": "#ABNF 1.0;\nlanguage en;\npublic $a = x;",
     "http://x.org/g/loop.gram": ABNF + "$r = x | $<other.gram> x;",
@@ -215,6 +221,17 @@ def test_documents_of_several_formats_and_through_several() -> None:
     )
     assert grammar.match("lima")[0].interpretation == "LIM"
     assert grammar.match("here")[0].interpretation == "there"
+
+
+def test_a_private_root_is_referred_to_without_its_name() -> None:
+    assert reaching("$r = $<closed.gram>;").match("closed")
+
+
+def test_a_document_that_refers_to_itself_by_its_uri() -> None:
+    asked.clear()
+    grammar = load(fetch("http://x.org/g/self.gram"), base="http://x.org/g/self.gram", fetch=fetch)
+    assert grammar.match("y") and asked == ["http://x.org/g/self.gram"]
+    assert reaching("$r = $<self.gram>;").match("y")
 
 
 def test_every_document_is_fetched_once() -> None:
@@ -257,6 +274,9 @@ def test_an_element_that_names_a_file() -> None:
     ("uri", "code"),
     [
         ("cities.grxml#own", "private-rule"),
+        ("closed.gram#r", "private-rule"),
+        ("cities.grxml#FAR", "no-such-rule"),
+        ("#r2", "no-such-rule"),
         ("cities.grxml#gone", "no-such-rule"),
         ("rootless.gram", "no-root"),
         ("missing.gram", "no-such-file"),
@@ -525,6 +545,6 @@ def test_the_parser_of_abnf_and_the_engine_are_loaded_when_needed() -> None:
     code = (
         "import sys\nfrom prima.grammar import load\n"
         f"load({xml(RULE)!r}).match('x')\n"
-        "assert not {'lark', '_quickjs'} & set(sys.modules)"
+        "assert not {'prima.grammar.abnf', '_quickjs'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import codecs
 import re
-from functools import lru_cache, partial
-
-import lark
-from lark import Token, Tree
+from functools import partial
+from typing import NoReturn
 
 from prima.errors import Place, Problem, did_you_mean
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
@@ -29,56 +27,34 @@ from prima.markup.reader import ENCODINGS
 from prima.markup.tree import Source
 
 MAX_DEPTH = 100
-SYNTAX = r"""
-start: declaration* rule*
-declaration: "language" LANGTAG ";"   -> language
-    | "mode" MODE ";"                 -> mode
-    | "root" RULENAME ";"             -> root
-    | "tag-format" URI ";"            -> tag_format
-    | "base" URI ";"                  -> base
-    | "lexicon" LEXICON ";"           -> lexicon
-    | ("meta" | "http-equiv") QUOTED "is" QUOTED ";" -> meta
-    | TAG ";"                         -> global_tag
-rule: [SCOPE] RULENAME "=" expansion ";"
-expansion: alternative ("|" alternative)*
-alternative: [WEIGHT] element+
-element: _unit REPEAT*
-_unit: word | reference | tag | nothing | group | optional
-word: (TOKEN | QUOTED) [LANGUAGE]
-reference: (RULENAME | URIREF) [LANGUAGE]
-tag: TAG
-nothing: "(" ")"
-group: "(" expansion ")" [LANGUAGE]
-optional: "[" expansion "]" [LANGUAGE]
-
-SCOPE.2: /(public|private)(?=[\s\/$])/
-MODE: /[^\s;]+/
-LANGTAG: /[^\s;]+/
-RULENAME: /\$[\w.:\-]+/
-URIREF: /\$<[^<>]*>(~<[^<>]*>)?/
-URI: /<[^<>]*>/
-LEXICON: /<[^<>]*>(~<[^<>]*>)?/
-REPEAT: /<[^<>]*>/
-WEIGHT: /\/[^\/*\n]+\//
-TAG: /\{!\{[\s\S]*?\}!\}|\{(?!!\{)[^}]*\}/
-QUOTED: /"[^"]*"/
-LANGUAGE: /![A-Za-z0-9\-]+/
-TOKEN: /[^\s;=|*+<>()\[\]{}\/$"!]+/
-COMMENT: /\/\/[^\n]*|\/\*[\s\S]*?\*\//
-%ignore COMMENT
-%ignore /\s+/
-"""
 HEADER = re.compile(r"#ABNF[ \t]+([^\s;]+)(?:[ \t]+([^\s;]+))?[ \t]*;")
-_NESTING = re.compile(
-    r"""//[^\n]*|/\*[\s\S]*?\*/|"[^"]*"|\{!\{[\s\S]*?\}!\}|\{[^}]*\}|<[^<>]*>|[()\[\]]"""
+_BLANK = r"(?:\s++|//[^\n]*+|/\*[\s\S]*?\*/)*+"
+_WORD = r"""[^\s;=|*+<>()\[\]{}/$"!]+"""
+_SYMBOL = re.compile(
+    rf"""{_BLANK}(?:
+    (?P<word>{_WORD})
+    |(?P<sign>[;=|()\[\]])
+    |(?P<tag>\{{!\{{[\s\S]*?\}}!\}}|\{{(?!!\{{)[^}}]*\}})
+    |(?P<quoted>"[^"]*")
+    |(?P<name>\${_WORD})
+    |(?P<link>\$<[^<>]*>(?:~<[^<>]*>)?)
+    |(?P<angle><[^<>]*>(?:~<[^<>]*>)?)
+    |(?P<weight>/[^/*\n]+/)
+    |(?P<language>!(?:{_WORD})?)
+    |(?P<end>\Z)
+    |(?P<other>[\s\S])
+    )""",
+    re.VERBOSE,
 )
+"""What a grammar is written with, with what is passed over before it; something always fits."""
+_TEXT = re.compile(rf"""{_BLANK}("[^"]*"|'[^']*')""")
+"""A text in quotes of either kind, as declarations have it."""
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
-_NAMES = {
-    "SEMICOLON": '";"', "EQUAL": '"="', "TOKEN": "a token", "RULENAME": "$name",
-    "$END": "the end", "RPAR": '")"', "RSQB": '"]"', "VBAR": '"|"', "URI": "<uri>",
-    "LANGTAG": "a language", "MODE": "voice or dtmf", "QUOTED": "a text in quotes",
-}  # fmt: skip
-"""What is named where something else stands, most telling first."""
+DECLARATIONS = (
+    *("base", "http-equiv", "language", "lexicon", "meta", "mode", "root", "tag-format"),
+)
+ONCE = frozenset(["base", "language", "mode", "root", "tag-format"])
+SCOPES = ("public", "private")
 
 
 def decode_abnf(file: str, data: bytes) -> str:
@@ -87,12 +63,8 @@ def decode_abnf(file: str, data: bytes) -> str:
     Raises:
         GrammarError: an unknown encoding, or the bytes are not in it.
     """
-    encoding = "utf-8-sig"
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        encoding = "utf-16"
-    elif match := HEADER.match(data[:200].decode("latin-1")):
-        encoding = (match[2] or "utf-8").lower()
-    if encoding.removesuffix("-sig") not in ENCODINGS:
+    encoding = _encoding(data)
+    if not _is_accepted(encoding):
         message = f'The encoding "{encoding[:40]}" is not accepted.'
         raise refuse(GrammarError, Place(file), "encoding", message, "Save it as UTF-8.")
     try:
@@ -103,9 +75,24 @@ def decode_abnf(file: str, data: bytes) -> str:
         raise refuse(GrammarError, Place(file, line), "encoding", message) from None
 
 
-@lru_cache(maxsize=1)
-def _parser() -> lark.Lark:
-    return lark.Lark(SYNTAX, parser="lalr", lexer="contextual", maybe_placeholders=True)
+def _is_accepted(encoding: str) -> bool:
+    """Whether an encoding is one of those accepted, under any of its names."""
+    try:
+        name = codecs.lookup(encoding).name
+    except (LookupError, ValueError):
+        return False
+    more = ("utf-8-sig", "utf-16-le", "utf-16-be")
+    return name in {codecs.lookup(one).name for one in (*ENCODINGS, *more)}
+
+
+def _encoding(data: bytes) -> str:
+    """The encoding of a file by its first bytes, or as its header says."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if data.startswith((b"#\0", b"\0#")):
+        return "utf-16-le" if data[0] else "utf-16-be"
+    header = HEADER.match(data[:200].decode("latin-1"))
+    return (header[2] or "utf-8").lower() if header else "utf-8-sig"
 
 
 def read_abnf(source: Source, document: Document, problems: Problems, where: Where) -> None:
@@ -121,223 +108,296 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
         message = f'Version "{found[:20]}" is not known.' if found else "The header is missing."
         remedy = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
         raise refuse(GrammarError, source.at(0), "not-abnf", message, remedy)
-    _check_depth(source)
-    blank = re.sub(r"[^\n]", " ", header[0])
-    try:
-        tree = _parser().parse(blank + source.text[header.end() :])
-    except lark.UnexpectedInput as error:
-        raise GrammarError([_syntax_problem(source, error)]) from None
-    _Reader(source, document, problems).read(tree)
-
-
-def _check_depth(source: Source) -> None:
-    depth = 0
-    for match in _NESTING.finditer(source.text):
-        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(match[0], 0)
-        if depth > MAX_DEPTH:
-            place = source.at(match.start())
-            message = f"Brackets are nested more than {MAX_DEPTH} deep."
-            raise refuse(GrammarError, place, "too-deep", message, "Make rules of the inner ones.")
-
-
-def _syntax_problem(source: Source, error: lark.UnexpectedInput) -> Problem:
-    """What stands where nothing of the kind may stand."""
-    offset = error.pos_in_stream
-    if isinstance(error, lark.UnexpectedToken) and error.token.type == "$END":
-        offset = len(source.text.rstrip())
-    if offset is None or offset < 0:
-        offset = len(source.text.rstrip())
-    accepted: set[str] = set()
-    if isinstance(error, lark.UnexpectedToken):
-        accepted = set(error.accepts or error.expected)
-    elif isinstance(error, lark.UnexpectedCharacters):
-        accepted = set(error.allowed or ())
-    found = source.text[offset : offset + 20].split("\n")[0].strip()
-    message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
-    likely = [shown for name, shown in _NAMES.items() if name in accepted]
-    remedy = f"Here may stand {likely[0]}." if likely else ""
-    return Problem(source.at(offset), "error", "not-abnf", message, remedy)
+    _Reader(source, document, problems, header.end()).read()
 
 
 class _Reader:
-    """Puts the parsed text into a document; notes what is wrong and goes on."""
+    """Reads a text from left to right, one symbol ahead.
 
-    def __init__(self, source: Source, document: Document, problems: Problems) -> None:
+    What a symbol says wrongly is noted and the reading goes on; it ends where one cannot stand.
+    """
+
+    def __init__(self, source: Source, document: Document, problems: Problems, at: int) -> None:
         self.source = source
+        self.text = source.text
         self.document = document
         self.problems = problems
-        self.seen: set[str] = set()
+        self.kind = ""
+        """The kind of the symbol that comes next."""
+        self.symbol = ""
+        self.at = at
+        self.end = at
+        self._next()
 
-    def note(self, at: Token, code: str, message: str, remedy: str = "") -> None:
+    # Symbols
+
+    def _next(self) -> None:
+        match = _SYMBOL.match(self.text, self.end)
+        assert match is not None and match.lastgroup is not None
+        self.kind = match.lastgroup
+        self.symbol = match[self.kind]
+        self.at, self.end = match.start(self.kind), match.end()
+
+    def _take(self, kind: str, expected: str) -> tuple[str, int]:
+        """The next symbol, which is of this kind, and where it stands."""
+        if self.kind != kind:
+            self._fail(expected)
+        found = self.symbol, self.at
+        self._next()
+        return found
+
+    def _sign(self, sign: str) -> None:
+        if self.symbol != sign or self.kind != "sign":
+            self._fail(f'"{sign}"')
+        self._next()
+
+    def _fail(self, expected: str) -> NoReturn:
+        """Something stands where it cannot stand."""
+        offset = len(self.text.rstrip()) if self.kind == "end" else self.at
+        found = self.text[offset : offset + 20].split("\n")[0].strip()
+        message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
+        remedy = f"Here may stand {expected}."
+        if found.startswith("}"):
+            remedy = "A tag that holds a } itself is written {!{ ... }!}."
+        elif self.kind == "other":
+            remedy = _UNCLOSED.get(self.symbol, f"{remedy} Signs are words only in quotes.")
+        place = self.source.at(offset)
+        raise GrammarError(
+            [*self.problems.found, Problem(place, "error", "not-abnf", message, remedy)]
+        )
+
+    def _where(self, at: int) -> Where:
+        return partial(self.source.at, at)
+
+    def note(self, at: int, code: str, message: str, remedy: str = "") -> None:
         self.problems.note(self._where(at), code, message, remedy)
 
-    def _where(self, at: Token) -> Where:
-        return partial(self.source.at, at.start_pos or 0)
+    # Header (section 4)
 
-    def read(self, tree: Tree[Token]) -> None:
-        """All declarations, then all rules: the mode says what tokens are."""
-        children = [child for child in tree.children if isinstance(child, Tree)]
-        root: Token | None = None
-        for child in children:
-            if child.data != "rule":
-                root = self._declare(child) or root
+    def read(self) -> None:
+        """The header, then the rules."""
+        root = self._header()
         document = self.document
         if not document.lang and document.mode == "voice":
             remedy = 'Write "language en-US;" or the like.'
             self.problems.note(document.where, "missing-attribute", "It has no language.", remedy)
-        for child in children:
-            if child.data == "rule":
-                self._rule(child)
+        while self.kind != "end":
+            self._rule()
         if root is not None and document.root not in document.rules:
             hint = did_you_mean(document.root, document.rules)
             self.note(root, "no-such-rule", f'The root rule "{document.root}" is not there.', hint)
 
-    # Header (section 4)
+    def _header(self) -> int | None:
+        """All declarations; gives where the root is named."""
+        seen: set[str] = set()
+        root: int | None = None
+        while self.kind == "tag" or (self.kind == "word" and self.symbol not in SCOPES):
+            kind, at = self.symbol, self.at
+            if self.kind == "tag":
+                self.document.globals.append(self._tag())
+            elif kind not in DECLARATIONS:
+                self._fail("a declaration such as root $name; or a rule such as $name = ...;")
+            elif kind in ("meta", "http-equiv"):
+                self._meta()
+            else:
+                self._next()
+                at = self.at
+                self._declare(kind)
+                root = at if kind == "root" else root
+            if kind in ONCE & seen:
+                self.note(
+                    at, "duplicate-element", f"There are two declarations of {kind}.", "Keep one."
+                )
+            seen.add(kind)
+            self._sign(";")
+        return root
 
-    def _declare(self, tree: Tree[Token]) -> Token | None:
-        """One declaration; gives the token of the root's name."""
-        kind = str(tree.data)
-        value = [child for child in tree.children if isinstance(child, Token)][-1]
-        if kind in self.seen and kind not in ("meta", "global_tag", "lexicon"):
-            message = f"There are two declarations of {kind.replace('_', '-')}."
-            self.note(value, "duplicate-element", message, "Keep one.")
-        self.seen.add(kind)
-        document = self.document
+    def _declare(self, kind: str) -> None:
+        document, at = self.document, self.at
         match kind:
             case "language":
-                self._language(value, str(value))
-                document.lang = str(value)
+                document.lang, _ = self._take("word", "a language such as en-US")
+                self._language(document.lang, at)
             case "mode":
-                if value not in MODES:
-                    message = f'A grammar\'s mode is voice or dtmf, not "{value}".'
-                    self.note(value, "bad-value", message)
-                document.mode = "dtmf" if value == "dtmf" else "voice"
+                mode, _ = self._take("word", "voice or dtmf")
+                if mode not in MODES:
+                    message = f'A grammar\'s mode is voice or dtmf, not "{mode[:40]}".'
+                    self.note(at, "bad-value", message)
+                document.mode = "dtmf" if mode == "dtmf" else "voice"
             case "root":
-                document.root = str(value[1:])
-                return value
-            case "tag_format":
-                document.tag_format = str(value[1:-1]).strip()
+                document.root = self._take("name", "the name of a rule, $name")[0][1:]
+            case "tag-format":
+                document.tag_format = self._uri()
             case "base":
-                document.base = str(value[1:-1]).strip()
-            case "lexicon":
-                document.lexicons.append(str(value.partition("~")[0][1:-1]))
-            case "meta":
-                name, content = (str(child)[1:-1] for child in tree.children[-2:])
-                document.meta[name] = content
+                document.base = self._uri()
             case _:
-                document.globals.append(self._tag(value))
-        return None
+                document.lexicons.append(self._uri(media=True))
 
-    def _language(self, at: Token, text: str) -> None:
+    def _uri(self, media: bool = False) -> str:
+        symbol, at = self._take("angle", "a URI in angle brackets, <uri>")
+        uri, told, _ = symbol.partition("~")
+        if not uri[1:-1].strip() or (told and not media):
+            self.note(at, "bad-value", f'"{symbol[:60]}" is no URI in angle brackets.')
+        return uri[1:-1].strip()
+
+    def _meta(self) -> None:
+        """``meta "name" is "content"``, where quotes may be single ones (4.11)."""
+        name = self._quoted()
+        self._next()
+        if (self.kind, self.symbol) != ("word", "is"):
+            self._fail("the word is")
+        self.document.meta[name] = self._quoted()
+        self._next()
+
+    def _quoted(self) -> str:
+        match = _TEXT.match(self.text, self.end)
+        if match is None:
+            self._next()
+            self._fail("a text in quotes")
+        self.end = match.end()
+        return match[1][1:-1]
+
+    def _language(self, text: str, at: int) -> None:
         if not is_language(text):
             self.note(at, "bad-value", f'"{text[:40]}" names no language.', 'Write "en-US".')
 
     # Rules (section 3) and expansions (section 2)
 
-    def _rule(self, tree: Tree[Token]) -> None:
-        scope, name, expansion = tree.children
-        assert isinstance(name, Token) and isinstance(expansion, Tree)
-        called = str(name[1:])
-        if problem := name_problem(called):
-            self.note(name, "bad-value", problem)
-        elif called in self.document.rules:
-            self.note(name, "duplicate-id", f'There are two rules "{called}".')
-        rule = Rule(called, self._expansion(expansion), self.document, scope == "public")
-        self.document.rules.setdefault(called, rule)
+    def _rule(self) -> None:
+        public = False
+        if self.kind == "word" and self.symbol in SCOPES:
+            public = self.symbol == "public"
+            self._next()
+        elif self.kind == "tag" or (self.kind == "word" and self.symbol in DECLARATIONS):
+            self._fail("a rule, $name = ...;: declarations come before all rules")
+        symbol, at = self._take("name", "a rule, $name = ...;")
+        name = symbol[1:]
+        if problem := name_problem(name):
+            self.note(at, "bad-value", problem)
+        elif name in self.document.rules:
+            self.note(at, "duplicate-id", f'There are two rules "{name}".')
+        self._sign("=")
+        rule = Rule(name, self._expansion(1), self.document, public)
+        self._sign(";")
+        self.document.rules.setdefault(name, rule)
 
-    def _expansion(self, tree: Tree[Token]) -> Part:
+    def _expansion(self, depth: int) -> Part:
+        """Alternatives (2.4); at least one, none of them empty."""
+        if depth > MAX_DEPTH:
+            message = f"Brackets are nested more than {MAX_DEPTH} deep."
+            place = self.source.at(self.at)
+            raise refuse(GrammarError, place, "too-deep", message, "Make rules of the inner ones.")
         parts: list[Part] = []
         weights: list[float | None] = []
-        for alternative in tree.children:
-            assert isinstance(alternative, Tree)
-            weight, *elements = alternative.children
-            weights.append(self._number(weight) if isinstance(weight, Token) else None)
-            parts.append(self._sequence([one for one in elements if isinstance(one, Tree)]))
-        return choice(parts, weights)
+        while True:
+            weights.append(self._weight())
+            parts.append(self._sequence(depth))
+            if self.kind != "sign" or self.symbol != "|":
+                return choice(parts, weights)
+            self._next()
 
-    def _number(self, token: Token) -> float | None:
+    def _weight(self) -> float | None:
+        if self.kind != "weight":
+            return None
+        symbol, at = self._take("weight", "a weight")
         try:
-            return decimal(token.strip("/").strip(), "weight")
+            return decimal(symbol[1:-1].strip(), "weight")
         except ValueError as error:
-            self.note(token, "bad-value", str(error))
+            self.note(at, "bad-value", str(error))
             return None
 
-    def _sequence(self, elements: list[Tree[Token]]) -> Part:
-        """Elements one after another; tokens side by side are taken together."""
+    def _sequence(self, depth: int) -> Part:
+        """Expansions one after another (2.3); tokens side by side are taken together."""
         parts: list[Part] = []
         words: list[str] = []
-        for element in elements:
-            unit, *repeats = element.children
-            assert isinstance(unit, Tree)
-            if unit.data == "word" and not repeats:
-                words.append(self._token(unit))
+        began = self.at
+        while (part := self._unit(depth)) is not None:
+            if self.kind == "angle":
+                if isinstance(part, str):
+                    part = self._words([part])
+                part = self._repeat(part)
+            if isinstance(part, str):
+                words.append(part)
                 continue
-            parts += self._words(words)
-            words = []
-            part = self._unit(unit)
-            for bounds in repeats:
-                part = self._repeat(part, bounds)
+            if words:
+                parts.append(self._words(words))
+                words = []
             parts.append(part)
-        return sequence(parts + self._words(words))
+        if self.at == began:
+            self._fail("a token, or () for nothing")
+        if words:
+            parts.append(self._words(words))
+        return sequence(parts)
 
-    def _unit(self, unit: Tree[Token]) -> Part:
-        first = unit.children[0] if unit.children else None
-        if unit.data == "word":
-            return sequence(self._words([self._token(unit)]))
-        self._attached(unit)
-        if unit.data == "reference":
-            assert isinstance(first, Token)
-            return self._reference(first)
-        if unit.data == "tag":
-            assert isinstance(first, Token)
-            tag = self._tag(first)
-            self.document.tags.append(tag)
-            return tag
-        if not isinstance(first, Tree):
-            return sequence([])
-        inside = self._expansion(first)
-        return Repeat(inside, 0, 1) if unit.data == "optional" else inside
+    def _unit(self, depth: int) -> Part | str | None:
+        """One expansion with its language; a token as text, or None where there is none."""
+        found: Part | str
+        match self.kind:
+            case "word" | "quoted":
+                found = self._token()
+            case "tag":
+                tag = self._tag()
+                self.document.tags.append(tag)
+                return tag
+            case "name" | "link":
+                found = self._reference()
+            case "sign" if self.symbol in "([":
+                closing = ")" if self.symbol == "(" else "]"
+                self._next()
+                if closing == ")" and (self.kind, self.symbol) == ("sign", ")"):
+                    self._next()
+                    return sequence([])
+                found = self._expansion(depth + 1)
+                self._sign(closing)
+                found = Repeat(found, 0, 1) if closing == "]" else found
+            case _:
+                return None
+        self._attached()
+        return found
 
-    def _attached(self, unit: Tree[Token]) -> None:
-        last = unit.children[-1] if unit.children else None
-        if isinstance(last, Token) and last.type == "LANGUAGE":
-            self._language(last, str(last[1:]))
+    def _attached(self) -> None:
+        """The language of an expansion, if one is told (2.7)."""
+        if self.kind == "language":
+            self._language(self.symbol[1:], self.at)
+            self._next()
 
-    def _token(self, unit: Tree[Token]) -> str:
-        self._attached(unit)
-        token = unit.children[0]
-        assert isinstance(token, Token)
-        text = " ".join((token[1:-1] if token.type == "QUOTED" else token).split())
+    def _token(self) -> str:
+        quoted = self.kind == "quoted"
+        symbol, at = self._take(self.kind, "a token")
+        text = " ".join(symbol[1:-1].split()) if quoted else symbol
         if not text:
-            self.note(token, "bad-token", "A token holds something.", "Write () for nothing.")
-        pressed = keys(text) if self.document.mode == "dtmf" and text else " "
+            self.note(at, "bad-token", "A token holds something.", "Write () for nothing.")
+            return ""
+        if self.document.mode != "dtmf":
+            return text
+        pressed = keys(text)
         if pressed is None or len(pressed) != 1:
             message = f'"{text[:40]}" is no key of a telephone.'
-            self.note(token, "bad-token", message, 'Keys are 0 to 9, "*", "#", and A to D.')
-        return (pressed or "").strip() if self.document.mode == "dtmf" else text
+            self.note(at, "bad-token", message, 'Keys are 0 to 9, "*", "#", and A to D.')
+        return pressed or ""
 
-    def _words(self, words: list[str]) -> list[Part]:
-        if not words:
-            return []
+    def _words(self, words: list[str]) -> Part:
         folded = "".join(words) if self.document.mode == "dtmf" else fold(" ".join(words))
-        return [Words(folded, tuple(words))]
+        return Words(folded, tuple(words))
 
-    def _reference(self, token: Token) -> Part:
-        if token.type == "RULENAME":
-            name = str(token[1:])
+    def _reference(self) -> Part:
+        local = self.kind == "name"
+        symbol, at = self._take(self.kind, "a rule")
+        if local:
+            name = symbol[1:]
             if name in RESERVED:
                 return Special(name)
             if problem := name_problem(name):
-                self.note(token, "bad-value", problem)
-            found = Reference(f"#{name}", self._where(token))
+                self.note(at, "bad-value", problem)
+            found = Reference(f"#{name}", self._where(at))
         else:
-            uri, _, media = token[1:].partition("~")
-            found = Reference(uri[1:-1].strip(), self._where(token), media[1:-1].strip())
+            uri, _, media = symbol[1:].partition("~")
+            found = Reference(uri[1:-1].strip(), self._where(at), media[1:-1].strip())
         self.document.references.append(found)
         return found
 
-    def _repeat(self, part: Part, bounds: object) -> Part:
-        assert isinstance(bounds, Token)
+    def _repeat(self, part: Part) -> Part:
+        bounds, at = self._take("angle", "a repeat")
         match = _REPEAT.fullmatch(bounds)
         try:
             if match is None:
@@ -348,9 +408,19 @@ class _Reader:
             chance = probability(match[2].strip())
             return Repeat(part, low, high, cost(chance), cost(1 - chance))
         except ValueError as error:
-            self.note(bounds, "bad-value", str(error))
+            self.note(at, "bad-value", str(error))
             return part
 
-    def _tag(self, token: Token) -> Tag:
-        text = str(token[3:-3] if token.startswith("{!{") else token[1:-1])
-        return Tag(text, self._where(token))
+    def _tag(self) -> Tag:
+        symbol, at = self._take("tag", "a tag")
+        text = symbol[3:-3] if symbol.startswith("{!{") else symbol[1:-1]
+        return Tag(text, self._where(at))
+
+
+_UNCLOSED = {
+    '"': 'A quote is opened and not closed: write the other ".',
+    "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
+    "<": "An angle bracket is opened and not closed: write >.",
+    "/": "A comment or a weight is not closed: /* ... */, /0.5/.",
+}
+"""Remedies for what begins something and does not end it."""

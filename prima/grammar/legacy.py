@@ -26,7 +26,7 @@ FORMATS = {
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
 _DOLLAR = re.compile(rf"{_STRING}|\$\$|\$(?P<rule>[A-Za-z_]\w*)|\$(?!\w)")
-_SISR = re.compile(r"(?<![\w.$])(?:out\b\s*[.=\[+]|rules\s*\.|meta\s*\.)")
+_SISR = re.compile(r"(?<![\w.$])(?:out\b\s*[.=\[+]|(?:rules|meta)\s*[.\[])")
 _SLOT = re.compile(r"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)\s*=(?!=)\s*(.+?)\s*")
 _GSL = re.compile(r"<\s*([A-Za-z_]\w*)\s+([^<>]+?)\s*>")
 _ALL_GSL = re.compile(rf"(?:\s*{_GSL.pattern})+\s*")
@@ -105,6 +105,8 @@ def _slots(code: str) -> list[tuple[str, str]]:
     """The slots that a tag fills, with what; none if it is no list of assignments."""
     if _ALL_GSL.fullmatch(code):
         return [(match[1], match[2]) for match in _GSL.finditer(code)]
+    if "=" not in code:
+        return []
     found: list[tuple[str, str]] = []
     for piece in _pieces(code):
         match = _SLOT.fullmatch(piece)

@@ -147,9 +147,10 @@ class Library:
         elif rule is None:
             hint = did_you_mean(name, found.rules)
             note(reference.where, "no-such-rule", f'There is no rule "{name[:80]}" there.', hint)
-        elif named and not rule.public and name != found.root and found is not document:
+        elif named and not rule.public and found is not document:
             message = f'The rule "{name}" is private to its grammar.'
-            note(reference.where, "private-rule", message, 'Write scope="public" there.')
+            remedy = f"Refer to {found.uri}" if name == found.root else 'Write scope="public" there'
+            note(reference.where, "private-rule", message, f"{remedy}.")
             return None
         return rule
 

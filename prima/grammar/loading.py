@@ -163,7 +163,7 @@ def _external(
     library.problems.check()
     assert document is not None
     name = rule or fragment
-    if name and name in document.rules and name != document.root:
+    if name and name in document.rules:
         if not document.rules[name].public:
             message = f'The rule "{name}" is private to its grammar.'
             raise refuse(GrammarError, where(), "private-rule", message)
@@ -191,6 +191,12 @@ def _document(lang: str, library: Library, uri: str, data: bytes, type: str) -> 
         source = Source(file, decode_abnf(file, data))
         read_abnf(source, document, library.problems, document.where)
         return document
+    if begin and not begin.startswith("<"):
+        message = "This is no grammar of SRGS."
+        remedy = (
+            "Begin with <grammar ...> for the XML form, or with #ABNF 1.0 UTF-8; for the other."
+        )
+        raise refuse(GrammarError, Place(file), "not-xml", message, remedy)
     try:
         node = parse(file, data)
     except DocumentError as error:
@@ -203,6 +209,8 @@ def _document(lang: str, library: Library, uri: str, data: bytes, type: str) -> 
 def _beginning(data: bytes) -> str:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data[:200].decode("utf-16", errors="replace").lstrip()
+    if data[:2] in (b"#\0", b"\0#"):
+        return data[:200].replace(b"\0", b"").decode("latin-1")
     return data[:200].decode("utf-8-sig", errors="replace").lstrip()
 
 

@@ -48,6 +48,8 @@ def _letter(letter: str) -> str:
 
 def tokens(text: str) -> list[str] | None:
     """The tokens of a text (SRGS 2.1), quoted ones as one; None if a quote is left open."""
+    if '"' not in text:
+        return text.split()
     if text.count('"') % 2:
         return None
     return [" ".join((match[1] or match[2] or "").split()) for match in _TOKEN.finditer(text)]

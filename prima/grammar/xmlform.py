@@ -81,7 +81,7 @@ class _Reader:
         document.base = node.get("xml:base")
         document.root = node.get("root").strip()
         self._children(node)
-        if document.root and document.root not in document.rules:
+        if "root" in node.attributes and document.root not in document.rules:
             hint = did_you_mean(document.root, document.rules)
             message = f'The root rule "{document.root}" is not there.'
             self.note(node, "no-such-rule", message, hint, "root")
@@ -128,6 +128,10 @@ class _Reader:
                 self._header(child)
 
     def _header(self, node: Node) -> None:
+        if node.tag != "metadata":
+            self._no_elements(node)
+        if node.tag in ("meta", "lexicon") and node.text:
+            self.note(node, "stray-text", f"<{node.tag}> holds nothing.", "Remove the text.")
         if node.tag == "tag":
             tag = Tag(node.own_text, _where(node))
             self.document.globals.append(tag)
@@ -180,7 +184,9 @@ class _Reader:
             elif self._known(item, node):
                 if item.tag in EXPANSION:
                     parts += self._part(item, depth)
-                elif not (item.tag == "example" and node.tag == "rule"):
+                elif item.tag == "example" and node.tag == "rule":
+                    self._no_elements(item)
+                else:
                     message = f"<{item.tag}> cannot stand in <{node.tag}>."
                     self.note(item, "misplaced-element", message)
         return parts
@@ -207,6 +213,10 @@ class _Reader:
         found = tokens(text)
         if found is None:
             self.note(node, "bad-token", "A quote is opened and not closed.", 'Write the other ".')
+            return None
+        if "" in found:
+            remedy = 'Write <ruleref special="NULL"/> for nothing.'
+            self.note(node, "bad-token", "A token holds something.", remedy)
             return None
         return self._said(node, found)
 
