@@ -74,6 +74,7 @@ def read_application(
     document = VoiceDocument(
         own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
     )
+    document.glance = lambda uri, most: _glance(folder, uri, most)
     return document, page.problems
 
 
@@ -86,6 +87,33 @@ def _fetch(folder: Path, uri: str) -> bytes:
     """A resource of a VoiceXML application: a file inside its folder, and nothing else."""
     from prima.voicexml.document import FetchError
 
+    target = _inside(folder, uri)
+    try:
+        return read_file(target)
+    except UsageError as error:
+        raise FetchError(str(error).removeprefix(f"{target}: ")) from None
+    except DocumentError as error:
+        raise FetchError(error.problems[0].message) from None
+
+
+def _glance(folder: Path, uri: str, most: int) -> tuple[bytes, int]:
+    """The first bytes of a file inside an application's folder, and how many it has."""
+    from prima.voicexml.document import FetchError
+
+    try:
+        target = _inside(folder, uri)
+        if not target.is_file():
+            raise FetchError("there is no such file")
+        with target.open("rb") as stream:
+            return stream.read(most), target.stat().st_size
+    except (OSError, ValueError) as error:
+        raise FetchError(str(error)) from None
+
+
+def _inside(folder: Path, uri: str) -> Path:
+    """Where a file of an application's folder is; nothing else is looked at."""
+    from prima.voicexml.document import FetchError
+
     parts = urlsplit(uri)
     if parts.scheme not in ("", "file"):
         raise FetchError(f"{parts.scheme}: is not fetched: no network is used", "error.badfetch")
@@ -93,12 +121,7 @@ def _fetch(folder: Path, uri: str) -> bytes:
     target = (root / unquote(parts.path).lstrip("/")).resolve()
     if root != target and root not in target.parents:
         raise FetchError("it is outside the application's folder")
-    try:
-        return read_file(target)
-    except UsageError as error:
-        raise FetchError(str(error).removeprefix(f"{target}: ")) from None
-    except DocumentError as error:
-        raise FetchError(error.problems[0].message) from None
+    return target
 
 
 def load(path: str | Path) -> Document:

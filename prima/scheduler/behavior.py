@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from prima.commands import CommandType
-from prima.messages import Command, Group
+from prima.messages import Command, Data, Group
 from prima.scheduler.effects import Effects
 
 HIGH = 1
@@ -131,6 +131,8 @@ class Behavior:
     """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
     restarting: bool = False
     """Whether the AB was interrupted and has not started again (X2)."""
+    since: Data | None = None
+    """The mark from which it goes on after an interruption, as its device told it (X2)."""
     inserted: str = ""
     """The rule by which the mediator itself put the AB in (X1, X4)."""
     blocked: tuple[str, str] = ("", "")

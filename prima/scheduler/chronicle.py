@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.messages import Json, Record
+from prima.messages import Cue, Json, Record
 from prima.scheduler.behavior import Behavior, Stream
 
 LOSERS_NAMED = 8
@@ -52,6 +52,7 @@ class Chronicle:
             ab,
             args=(command.args or None) if command else None,
             extra=(command.extra or None) if command else None,
+            cues=shown_cues(command.cues) if command and command.cues else None,
             parent=ab.parent,
             parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
             devices=sorted(ab.devices),
@@ -87,3 +88,8 @@ class Chronicle:
             losers=[ab.id for ab in losers[:LOSERS_NAMED]],
             losers_count=len(losers),
         )
+
+
+def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
+    """Cues as a record has them: the place in the text, and the value under the kind's name."""
+    return [{"at": cue.at, cue.kind: True if cue.value is None else cue.value} for cue in cues]

@@ -151,6 +151,9 @@ class Endings:
         )
         if unit is not None:
             ab, data = unit[0], whole(data, unit[1], unit[2])
+        elif ab is not None:
+            marks = {key: data[key] for key in ("mark", "passed") if key in data}
+            ab.since = marks or None
         if ab is None or ab.run is None or ab.silent or ab.app.gone:
             return
         command = ab.command or Command("iu", hook=[])

@@ -153,4 +153,13 @@ def allowance(ab: Behavior) -> int:
         for name, argument in row.arguments.items()
         if argument.kind == "duration" and name in command.args
     )
-    return HANG_MS + sum(stated) + MS_A_LETTER * len(command.text or "")
+    times = sum(
+        cue.value
+        for cue in command.cues
+        if isinstance(cue.value, int | float) and cue.kind != "rate"
+    )
+    slowest = min(
+        (float(cue.value or 1) for cue in command.cues if cue.kind == "rate"), default=1.0
+    )
+    letters = MS_A_LETTER * len(command.text or "") / min(slowest, 1.0)
+    return HANG_MS + sum(stated) + round(times + letters)

@@ -275,6 +275,7 @@ class Selector:
             order = Order(
                 "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
             )
+            order.data = ab.since if ab.resumed else None
             self.orders.append(order)
         elif first and not ab.spans:
             self._open_group(ab, now)
@@ -288,6 +289,7 @@ class Selector:
             reactive=True if reaction is not None else None,
             cause=reaction if reaction and reaction > 0 else None,
             resumed=ab.resumed or None,
+            data=ab.since if ab.resumed else None,
             rule=rule,
         )
 

@@ -31,6 +31,8 @@ class Script:
     serial: int
     left: list[Doing] = field(compare=False)
     speaking: str = field(default="", compare=False)
+    began: int = field(default=0, compare=False)
+    """When the user began to speak."""
 
 
 class Person:
@@ -118,7 +120,7 @@ class Person:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
-                made.append(Heard(script.speaking))
+                made.append(Heard(script.speaking, self.robot.marks_passed(script.began)))
                 script.speaking = ""
             if not script.left:
                 break
@@ -131,6 +133,7 @@ class Person:
         match doing.name:
             case "say":
                 self.robot.speech_begins(now)
+                script.began = now
                 script.speaking = doing.text
                 script.time = now + voice.duration(
                     doing.text, voice.language(doing.text), self.robot.profile.voices

@@ -74,6 +74,11 @@ class Task:
     ends: int | None = None
     began: int = 0
     speech_ends: int = 0
+    said: voice.Timeline | None = None
+    """What it says, where that has cues."""
+    skipped: int = 0
+    """How much (ms) of that had been said before an interruption (X2)."""
+    app: str = ""
     listens: int | None = None
     listening: bool = False
     fails: tuple[str, str] | None = None
@@ -86,6 +91,19 @@ class Task:
     def name(self) -> str:
         """The Command's AB without the number of its loop."""
         return self.id.partition(".")[0]
+
+    def cued(self, *kinds: str) -> bool:
+        """Whether its text has a cue of one of these kinds."""
+        return any(cue.kind in kinds for cue in self.command.cues)
+
+    def passed(self, now: int) -> tuple[int, str, int] | None:
+        """How many marks its speech has passed, the last one's name, and the ms since then."""
+        played = self.skipped + now - self.began
+        count = self.said.passed(played) if self.said is not None else 0
+        if self.said is None or not count:
+            return None
+        time, name = self.said.marks[count - 1]
+        return count, name, round(played - time)
 
 
 class Robot:
@@ -100,6 +118,8 @@ class Robot:
         """Devices that fail, and whether they hang instead."""
         self._halted: list[Inbound] = []
         """What is to be told of interrupted Commands."""
+        self._marks: dict[str, tuple[str, int]] = {}
+        """The last mark that each application's speech has passed, and when."""
         self._plans: dict[str, Plan] = {}
         self._owners: dict[str, Task] = {}
         self._now = 0
@@ -132,10 +152,16 @@ class Robot:
     def _so_far(self, task: Task) -> dict[str, Json]:
         """How much of a Command has been done, and of what it says, how much was heard (X2)."""
         ends = max(task.speech_ends, task.ends or 0)
-        done = (self._now - task.began) / (ends - task.began) if ends > task.began else 0.0
+        began = task.began - task.skipped
+        done = (self._now - began) / (ends - began) if ends > task.began else 0.0
         data: dict[str, Json] = {"done": round(min(max(done, 0.0), 1.0), 3)}
         text = task.command.text
-        if text:
+        if task.said is not None:
+            data["heard"] = task.said.heard(self._now - began)
+            passed = task.passed(self._now)
+            if passed is not None:
+                data["passed"], data["mark"] = passed[:2]
+        elif text:
             share = (self._now - task.began) / max(task.speech_ends - task.began, 1)
             data["heard"] = voice.beginning(text, task.command.lang, share)
         return data
@@ -148,7 +174,7 @@ class Robot:
     def _start(self, order: Order) -> None:
         command = order.command
         assert command is not None
-        task = Task(order.behavior, command, order.devices, began=self._now)
+        task = Task(order.behavior, command, order.devices, began=self._now, app=order.app)
         self.tasks[task.id] = task
         for device in order.devices:
             before = self._owners.get(device)
@@ -162,15 +188,24 @@ class Robot:
                 task.fails = (broken[0], "the device fails")
             return
         row = self.profile.commands[command.type]
-        if command.text and (order.loop <= 1 or order.resumed):
-            lasts = voice.duration(command.text, command.lang, self.profile.voices)
-            task.speech_ends = self._now + lasts
+        if (command.text or command.cues) and (order.loop <= 1 or order.resumed):
+            task.speech_ends = self._now + self._speech(task, order)
         if row.feedback:
             self._start_loop(task, order)
         else:
             if "locomotion" in task.devices:
                 self.world.drive = (0.0, 0.0)
             self._start_once(task)
+
+    def _speech(self, task: Task, order: Order) -> int:
+        """How long (ms) the robot now speaks: from a mark on, where the order names one (X2)."""
+        text, lang, cues = task.command.text or "", task.command.lang, task.command.cues
+        if not cues:
+            return voice.duration(text, lang, self.profile.voices)
+        task.said = voice.timeline(text, lang, self.profile.voices, cues)
+        if order.data:
+            task.skipped = round(task.said.marks[order.data["passed"] - 1][0])
+        return max(task.said.total - task.skipped, 1)
 
     def _start_loop(self, task: Task, order: Order) -> None:
         plan = self._plans.get(task.name)
@@ -429,6 +464,9 @@ class Robot:
 
     def _end(self, task: Task) -> list[Inbound]:
         del self.tasks[task.id]
+        passed = task.passed(self._now)
+        if passed is not None:
+            self._marks[task.app] = (passed[1], self._now - passed[2])
         if task.fails is not None:
             return [Failed(task.id, *task.fails)]
         row, kind = self.profile.commands[task.command.type], task.command.type
@@ -535,14 +573,38 @@ class Robot:
         return None
 
     def speech_begins(self, now: int) -> None:
-        """The user begins to speak: a question that listens, or may be interrupted, waits."""
+        """The user begins to speak: a question that listens, or may be interrupted, waits.
+
+        With hotword bargein the robot speaks on until it has understood (VoiceXML 2.0, 4.1.5.1).
+        """
         task = self._question()
         if task is None or task.fails is not None:
             return
         if task.listening:
             task.ends = None
-        elif task.command.args.get("bargein", True) and task.listens is not None:
-            task.listens = now + 1
+            return
+        bargein = task.command.args.get("bargein", True) and not task.cued("hotword")
+        if bargein and task.listens is not None:
+            task.listens, task.speech_ends = now + 1, now
+
+    def marks_passed(self, began: int) -> dict[str, Json]:
+        """The last mark that a question had passed when the user began to speak (2.1, 4).
+
+        As :class:`prima.messages.Heard` has it; nothing for a question without marks.
+        """
+        task = self._question()
+        if task is None or not task.cued("mark", "earlier"):
+            return {}
+        until = max(task.speech_ends, task.began)
+        if task.command.args.get("bargein", True):
+            until = min(until, began)
+        passed = task.passed(until)
+        if passed is not None:
+            return {"markname": passed[1], "marktime": passed[2]}
+        name, time = self._marks.get(task.app, ("", until + 1))
+        if not task.cued("earlier") or time > until:
+            return {"markname": None}
+        return {"markname": name, "marktime": until - time}
 
     def speech_over(self, now: int) -> None:
         """The user has spoken and nobody took it as the answer: listen on."""

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from prima.messages import Cue
 
 RATES = {"en": 14.0, "ja": 8.0, "zh": 5.0, "ko": 6.0}
 """Letters a second where a robot profile does not say otherwise."""
@@ -11,6 +15,8 @@ PAUSE_MS = 300
 """What every utterance takes beyond its letters."""
 SENTENCE_MS = 250
 """The pause after a sentence inside an utterance."""
+STOPS = ".!?。！？"
+"""What ends a sentence."""
 KANJI = 2.0
 """A kanji in Japanese is read as about two kana."""
 
@@ -34,25 +40,134 @@ def duration(text: str, lang: str, rates: dict[str, float]) -> int:
     sentence of a language without spaces takes its due.
     """
     primary = lang.lower().partition("-")[0]
-    rate = rates.get(lang.lower()) or rates.get(primary) or RATES.get(primary, DEFAULT_RATE)
     letters = sum(weight(letter, primary) for letter in text)
-    stops = sum(1 for letter in text[:-1] if letter in ".!?。！？")
-    return max(round(letters / rate * 1000) + PAUSE_MS + stops * SENTENCE_MS, 1)
+    stops = sum(1 for letter in text[:-1] if letter in STOPS)
+    spoken = round(letters / speed(lang, rates) * 1000)
+    return max(spoken + PAUSE_MS + stops * SENTENCE_MS, 1)
+
+
+def speed(lang: str, rates: dict[str, float]) -> float:
+    """Letters a second of a language, by a robot's own rates or the usual ones."""
+    primary = lang.lower().partition("-")[0]
+    return rates.get(lang.lower()) or rates.get(primary) or RATES.get(primary, DEFAULT_RATE)
 
 
 def beginning(text: str, lang: str, share: float) -> str:
     """What has been heard of a text when a share of its time (0 to 1) has gone, in whole words."""
     primary = lang.lower().partition("-")[0]
     weights = [weight(letter, primary) for letter in text]
-    left, cut = share * sum(weights), 0
-    for index, heavy in enumerate(weights):
+    left, said = share * sum(weights), 0
+    for heavy in weights:
         left -= heavy
         if left < 0:
             break
-        after = text[index + 1 : index + 2]
-        if not after.strip() or not (text[index].isascii() and after.isascii()):
-            cut = index + 1
-    return text[:cut].strip()
+        said += 1
+    return whole_words(text, said)
+
+
+def whole_words(text: str, said: int) -> str:
+    """The first ``said`` characters of a text, without a word that is not over."""
+    for cut in range(said, 0, -1):
+        after = text[cut : cut + 1]
+        if not after.strip() or not (text[cut - 1].isascii() and after.isascii()):
+            return text[:cut].strip()
+    return ""
+
+
+# Speech with cues ---------------------------------------------------------------------------
+
+Beat = tuple[str, float | str]
+"""A letter or a silence with its ms, a mark, or the beginning or end of what lasts a set time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """When the letters of a text have been said and its marks are passed, in ms from its start."""
+
+    text: str
+    total: int
+    ends: tuple[float, ...]
+    """When each character has been said."""
+    marks: tuple[tuple[float, str], ...]
+    """When each mark is passed, and its name, in the text's order."""
+
+    def heard(self, time: float) -> str:
+        """What has been heard of the text after a time, in whole words."""
+        return whole_words(self.text, sum(1 for end in self.ends if end <= time))
+
+    def passed(self, time: float) -> int:
+        """How many marks have been passed after a time."""
+        return sum(1 for when, _ in self.marks if when <= time)
+
+
+def timeline(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]) -> Timeline:
+    """Lay a text out in time, with its pauses, rates and set times (SSML 1.0, 2.2.3 and 2.2.4).
+
+    What lasts a set time is stretched or shortened as a whole, pauses in it included.
+    """
+    beats = list(_beats(text, lang, rates, cues))
+    scales = iter(_scales(beats))
+    ends: list[float] = []
+    marks: list[tuple[float, str]] = []
+    now, free = 0.0, False
+    inside = [(1.0, 0.0)]
+    """By how much what stands here is stretched, and when it ends, outermost first."""
+    for kind, value in beats:
+        match kind:
+            case "mark":
+                marks.append((round(now), str(value)))
+            case "lasts":
+                outer = inside[-1][0]
+                inside.append((outer * next(scales), now + float(value) * outer))
+            case "end":
+                now = inside.pop()[1]
+            case _:
+                now += float(value) * inside[-1][0]
+                if kind == "letter":
+                    ends.append(now)
+                    free = free or (float(value) > 0 and len(inside) == 1)
+    total = max(round(now) + (PAUSE_MS if free else 0), 1)
+    return Timeline(text, total, tuple(ends), tuple(marks))
+
+
+def _beats(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]) -> Iterator[Beat]:
+    """A text's letters and cues in the order in which they come to pass."""
+    primary, rate = lang.lower().partition("-")[0], speed(lang, rates)
+    factor, left = 1.0, list(reversed(cues))
+    for index in range(len(text) + 1):
+        while left and left[-1].at <= index:
+            cue = left.pop()
+            match cue.kind:
+                case "rate":
+                    factor = float(cue.value or 1.0)
+                case "sentence":
+                    yield "pause", SENTENCE_MS
+                case "mark":
+                    yield "mark", str(cue.value)
+                case "pause" | "lasts" | "end":
+                    yield cue.kind, float(cue.value or 0.0)
+        if index < len(text):
+            yield "letter", weight(text[index], primary) / rate * 1000 / factor
+            if index < len(text) - 1 and text[index] in STOPS:
+                yield "pause", SENTENCE_MS
+
+
+def _scales(beats: list[Beat]) -> list[float]:
+    """By how much each stretch that lasts a set time is to be stretched, in their order."""
+    scales: list[float] = []
+    open_: list[tuple[int, float, float]] = []
+    now = 0.0
+    for kind, value in beats:
+        if kind == "lasts":
+            open_.append((len(scales), now, float(value)))
+            scales.append(1.0)
+        elif kind == "end":
+            index, since, wanted = open_.pop()
+            scales[index] = wanted / (now - since) if now > since else 0.0
+            now = since + wanted
+        elif kind != "mark":
+            now += float(value)
+    return scales
 
 
 def language(text: str) -> str:

@@ -19,6 +19,7 @@ ORDER = [
     "text",
     "args",
     "extra",
+    "cues",
     "parent",
     "parents",
     "devices",

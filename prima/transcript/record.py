@@ -70,6 +70,9 @@ class Record(BaseModel):
     text: str | None = Field(None, description="What is said.")
     args: dict[str, Any] | None = Field(None, description="Motion arguments; times in ms.")
     extra: dict[str, Any] | None = Field(None, description="Additional arguments of an FA.")
+    cues: list[dict[str, Any]] | None = Field(
+        None, description="Pauses, rates and marks of the text, each `at` a place in it; in ms."
+    )
     parent: str | None = Field(None, description="The AB that this one follows.")
     parents: list[str] | None = Field(
         None, description="All ABs that it waits for, where more than one."

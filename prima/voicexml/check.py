@@ -19,6 +19,7 @@ from prima.interpreter.expressions import (
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.values import read_value
+from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import (
     ALTERNATIVES,
     COMMANDS,
@@ -161,6 +162,7 @@ def _check_attributes(node: Node, entry: Entry, problems: list[Problem]) -> None
 
 
 _REMEDIES = {
+    "rate": 'Write slow, fast or another name of a rate, a number, or a change such as "+10%".',
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
     "integer": "Write a whole number from 1.",
 }
@@ -174,6 +176,8 @@ def _fits(kind: str, text: str) -> bool:
             return read_value("duration", text.strip()) >= 0  # type: ignore[operator]
         except ValueError:
             return False
+    if kind == "rate":
+        return is_rate(text)
     return text in kind.split()
 
 

@@ -28,6 +28,9 @@ __all__ = [
 Fetch = Callable[[str], bytes]
 """Gives the bytes of a resource by its URI, relative to the application's folder."""
 
+Glance = Callable[[str, int], tuple[bytes, int]]
+"""Gives a file's first bytes, at most so many, and its size; raises :class:`FetchError`."""
+
 
 class FetchError(Exception):
     """A resource cannot be had; ``event`` is what the application is told."""
@@ -121,6 +124,8 @@ class VoiceDocument:
     page: Page
     fetch: Fetch
     node: Node
+    glance: Glance | None = None
+    """Where recordings are looked at; without it they are fetched."""
     watches: list[Json] = field(default_factory=list)
     forms: dict[str, Json] = field(default_factory=dict)
 

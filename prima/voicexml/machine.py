@@ -338,8 +338,7 @@ class Machine:
                 continue
             yield from self.content.run_all(bare, context, self.local())
             bare = []
-            said = self.content.spoken(piece, context, self.local())
-            self.say(said, self.content.lang(piece, context), source(piece), piece)
+            self.content.utter(piece, context, self.local())
         yield from self.content.run_all(bare, context, self.local())
 
     def _holds(self, context: Context, piece: Node | str) -> bool:
@@ -383,7 +382,10 @@ class Machine:
         own = item.get("xml:lang") if item.tag != "menu" else ""
         lang = asked.lang if asked and asked.lang else own or context.page.lang
         text = asked.text if asked else None
-        return Command("q-and-a", args, text, lang=lang, source=source(item))
+        kind = prompt.get("bargeintype") if prompt is not None else ""
+        hotword = (kind or self.setting(context, "bargeintype")) == "hotword"
+        cues = self.content.question_cues(asked, self.queue, hotword)
+        return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
 
     def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
         """Process what has ended the wait."""
@@ -392,6 +394,7 @@ class Machine:
         outcome = str(resume.data.get("outcome", "noinput"))
         heard = self.owner.heard
         if outcome == "filled" and heard is not None:
+            heard.take_mark(resume.data)
             if heard.owner is item and item.tag == "record":
                 yield from self.items_of.recorded(context, item, heard)
             else:
@@ -399,7 +402,9 @@ class Machine:
             return
         if outcome == "nomatch":
             utterance = str(resume.data.get("utterance", ""))
-            self.items_of.remember(context, Heard(utterance, utterance, item, context.page))
+            heard = Heard(utterance, utterance, item, context.page)
+            heard.take_mark(resume.data)
+            self.items_of.remember(context, heard)
         raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
 
 

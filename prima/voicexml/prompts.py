@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import TYPE_CHECKING
+from urllib.parse import urldefrag
 
 from prima.commands import TABLE_4_2
 from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
 from prima.interpreter.expressions import Scope, ScriptError
 from prima.markup.tree import Node
-from prima.messages import Command, Json
+from prima.messages import Command, Cue, Json
 from prima.values import shown
+from prima.voicexml.cues import MAX_NAME, break_ms, clipped, fold, later, milliseconds, rate_of
+from prima.voicexml.document import FetchError, join
+from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
@@ -38,11 +43,16 @@ SPOKEN = frozenset(
     ]
 )
 """Elements that are said; all but ``prompt`` are a prompt even without one around (4.1.2)."""
-SILENT = frozenset(["break", "lexicon", "metadata", "meta", "desc"])
+SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
 SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v !== null && v.nodeType !== undefined ? v.textContent : v; }""".replace("\n", "")
 """What is said of a value in the engine: of a node of ``data`` its text."""
 APART = frozenset(["p", "s", "paragraph", "sentence"])
+SENTENCE = Cue(0, "sentence")
+UNKNOWN_MS = 1000
+"""How long a recording plays that cannot be looked at and has no text (4.1.3)."""
+MAX_KNOWN = 1000
+"""Recordings whose length is remembered."""
 
 
 @dataclass(slots=True)
@@ -51,13 +61,43 @@ class Speech:
 
     lang: str
     place: str
-    parts: list[str] = field(default_factory=list)
+    parts: list[str | Cue] = field(default_factory=list)
+    base: str = ""
+    """The prompt's ``xml:base``, for its recordings."""
+    rate: float = 1.0
+    """How fast it is said, as a multiple of the usual rate."""
+    silent: bool = False
+    """Whether a recording is heard in the place of what is read: its marks are not passed."""
+    takes: int = 0
 
-    def take(self) -> str:
-        """The text so far, white space folded; nothing of it is left."""
-        text = " ".join("".join(self.parts).split())[:MAX_TEXT]
+    def take(self) -> tuple[str, tuple[Cue, ...]]:
+        """The text so far, white space folded, and its cues; nothing of it is left."""
+        text, cues = fold(self.parts)
         self.parts.clear()
-        return text
+        self.takes += 1
+        if self.rate != 1.0:
+            self.parts.append(Cue(0, "rate", self.rate))
+        if len(text) > MAX_TEXT:
+            text, cues = text[:MAX_TEXT], clipped(cues, MAX_TEXT)
+        return text, cues
+
+    def say_at(self, rate: float) -> None:
+        """What follows is said at a rate."""
+        if rate != self.rate:
+            self.rate = rate
+            self.parts.append(Cue(0, "rate", rate))
+
+    def open(self, ms: int | None) -> int:
+        """What follows takes so long, until it is closed; gives what closes it."""
+        if ms is None:
+            return -1
+        self.parts.append(Cue(0, "lasts", ms))
+        return self.takes
+
+    def close(self, opened: int) -> None:
+        """Here ends what takes a set time, unless it has been split meanwhile."""
+        if opened == self.takes:
+            self.parts.append(Cue(0, "end"))
 
 
 class Speaker:
@@ -67,7 +107,10 @@ class Speaker:
         self.owner = owner
         self.engine = owner.engine
         self.mark: str | None = None
-        """The last mark of what is queued (VoiceXML 2.1, 3)."""
+        """The last mark of what is queued, for devices that tell of none (VoiceXML 2.1, 4)."""
+        self.ahead: tuple[Cue, ...] = ()
+        """Pauses and marks behind which nothing has been said yet."""
+        self._known: dict[str, int | None] = {}
 
     # Expressions ------------------------------------------------------------------
 
@@ -118,8 +161,41 @@ class Speaker:
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
         """Queue a prompt in executable content (4.1)."""
         if self.holds(node, context, local):
-            said = self.spoken(node, context, local)
-            self.owner.say(said, self.lang(node, context), source(node), node)
+            self.utter(node, context, local)
+
+    def utter(self, node: Node, context: Context, local: Scope) -> None:
+        """Queue what a prompt says, whether its condition holds or not."""
+        speech = self.read_whole(node, context, local)
+        text, cues = speech.take()
+        self.owner.say(text, speech.lang, speech.place, node)
+        self.add(text, cues)
+
+    def add(self, text: str, cues: tuple[Cue, ...]) -> None:
+        """Give a text that has just been queued its cues.
+
+        Where there was none, pauses and marks go behind what is said before, or ahead of what
+        will be said next.
+        """
+        queue = self.owner.queue
+        last = queue[-1] if queue and queue[-1].type == "speak" else None
+        if last is not None and text:
+            last.cues, self.ahead = (*self.ahead, *cues), ()
+        elif last is not None:
+            last.cues += later(cues, len(last.text or ""))
+        else:
+            self.ahead += later(cues, 0)
+        # The author has said from where a text with marks can go on (X2).
+        if last is not None:
+            last.restartable = any(cue.kind == "mark" for cue in last.cues)
+
+    def question_cues(
+        self, asked: Command | None, before: list[Command], hotword: bool
+    ) -> tuple[Cue, ...]:
+        """The cues of a question: those of the prompt that it is, and what counts for it."""
+        marked = any(cue.kind == "mark" for one in before for cue in one.cues)
+        earlier = (Cue(0, "earlier"),) if marked else ()
+        own, self.ahead = (asked.cues if asked is not None else self.ahead), ()
+        return (*((Cue(0, "hotword"),) if hotword else ()), *earlier, *own)
 
     @staticmethod
     def lang(node: Node, context: Context) -> str:
@@ -127,24 +203,30 @@ class Speaker:
         return node.get("xml:lang") or context.page.lang
 
     def spoken(self, node: Node, context: Context, local: Scope) -> str:
-        """What an element says, as text: SSML is read for its words (4.1.1).
+        """What an element says, as text alone: SSML is read for its words (4.1.1).
 
         What stands before a Command, or is of another language, has been queued already.
         """
-        speech = Speech(self.lang(node, context), source(node))
+        return self.read_whole(node, context, local).take()[0]
+
+    def read_whole(self, node: Node, context: Context, local: Scope) -> Speech:
+        """Read an element that is said; gives what has not been queued of it."""
+        speech = Speech(self.lang(node, context), source(node), base=node.get("xml:base"))
         for item in [node] if node.tag in SPOKEN - {"prompt"} else node.content:
             self.read(item, context, local, speech)
-        return speech.take()
+        return speech
 
     def inner(self, node: Node, context: Context, local: Scope) -> str:
         """What an element's content says, as text alone."""
         speech = Speech(self.lang(node, context), source(node))
         self.read_all(node, context, local, speech)
-        return "".join(speech.parts)
+        return "".join(part for part in speech.parts if isinstance(part, str))
 
     def flush(self, speech: Speech) -> None:
         """Queue what has been read."""
-        self.owner.say(speech.take(), speech.lang, speech.place)
+        text, cues = speech.take()
+        self.owner.say(text, speech.lang, speech.place)
+        self.add(text, cues)
 
     def read_all(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read an element's content."""
@@ -180,8 +262,12 @@ class Speaker:
             case "sub":
                 speech.parts.append(f" {node.get('alias') or node.text} ")
             case "mark":
-                self.mark = self.word(node, "name", context, local)
-                speech.parts.append(" ")
+                self.mark_here(node, context, local, speech)
+            case "break":
+                ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
+                speech.parts += [" ", Cue(0, "pause", ms), " "] if ms else [" "]
+            case "prosody":
+                self.prosody(node, context, local, speech)
             case tag if tag in SILENT:
                 speech.parts.append(" ")
             case "enumerate":
@@ -192,9 +278,9 @@ class Speaker:
                     speech.parts.append(" ")
                     self.read_all(node, context, local, speech)
             case tag if tag in APART:
-                speech.parts.append(" ")
+                speech.parts += [" ", SENTENCE]
                 self.read_all(node, context, local, speech)
-                speech.parts.append(" ")
+                speech.parts += [SENTENCE, " "]
             case _:
                 self.read_all(node, context, local, speech)
 
@@ -207,20 +293,70 @@ class Speaker:
         except ScriptError as error:
             raise self.failure(error, node, "expr") from None
 
+    def mark_here(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """A place that is told as passed (VoiceXML 2.1, 4)."""
+        name = self.word(node, "name", context, local)[:MAX_NAME]
+        self.owner.count_output(len(name), node)
+        speech.parts.append(" ")
+        if not speech.silent:
+            self.mark = name
+            speech.parts += [Cue(0, "mark", name), " "]
+
+    def prosody(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 2.2.4)."""
+        around = speech.rate
+        speech.say_at(rate_of(node.get("rate"), around))
+        opened = speech.open(milliseconds(node.get("duration")))
+        self.read_all(node, context, local, speech)
+        speech.close(opened)
+        speech.say_at(around)
+
     def audio(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """A recording: its text if it has one, else what it is called (4.1.3)."""
+        """A recording: its text if it has one, else what it is called (4.1.3).
+
+        A recording of the application's folder takes its own time, whatever its text.
+        """
         name = node.get("src")
         if "expr" in node.attributes:
             uri = self.value(node, "expr", context, local)
             if uri is None:
                 return  # an undefined one is not said at all, nor is what it holds
             name = shown(uri)
+        ms = self.recording(context.page.base(), speech.base, name)
         speech.parts.append(" ")
         if node.text or node.nodes:
+            silent, speech.silent = speech.silent, speech.silent or ms is not None
+            opened = speech.open(ms)
             self.read_all(node, context, local, speech)
+            speech.close(opened)
+            speech.silent = silent
         else:
+            opened = speech.open(UNKNOWN_MS if ms is None else ms)
             speech.parts.append(f"[{name.rpartition('/')[2]}]")
+            speech.close(opened)
         speech.parts.append(" ")
+
+    def recording(self, *uris: str) -> int | None:
+        """How long (ms) a recording of the application's folder plays, if it can be played.
+
+        ``uris`` are its URI and before it the bases that it is relative to, outermost first.
+        """
+        try:
+            uri = urldefrag(reduce(join, uris))[0]
+            if uri not in self._known:
+                if len(self._known) >= MAX_KNOWN:
+                    self._known.clear()
+                self._known[uri] = self._look_at(uri)
+        except (FetchError, ValueError):
+            return None
+        return self._known[uri]
+
+    def _look_at(self, uri: str) -> int | None:
+        document = self.owner.document
+        if document.glance is not None:
+            return length_ms(*document.glance(uri, HEADER_BYTES))
+        whole = document.fetch(uri)
+        return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------
 
@@ -239,6 +375,10 @@ class Speaker:
                 if "expr" in child.attributes
                 else child.get("value")
             )
-        said = " ".join(self.inner(node, context, local).split())[:MAX_TEXT] or None
-        self.owner.count_output(len(said or ""), node)
-        return Command(name, args, said, lang=lang or context.page.lang, source=source(node))
+        speech = Speech(self.lang(node, context), source(node))
+        self.read_all(node, context, local, speech)
+        said, cues = speech.take()
+        self.owner.count_output(len(said), node)
+        made = Command(name, args, said or None, lang=lang or context.page.lang)
+        made.source, made.cues = source(node), cues if said else ()
+        return made

@@ -21,6 +21,8 @@ def shadow(heard: Heard) -> dict[str, Json]:
         "inputmode": heard.mode,
         "interpretation": heard.interpretation,
     }
-    if heard.mark is not None:  # when it was passed is not known (VoiceXML 2.1, 3)
+    if heard.mark is not None:
         found["markname"] = heard.mark
+    if heard.marktime is not None:
+        found["marktime"] = heard.marktime
     return found

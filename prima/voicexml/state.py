@@ -40,7 +40,14 @@ class Heard:
     others: list[tuple[str, Json, float]] = field(default_factory=list)
     """Further results, best first, as utterance, interpretation and confidence."""
     mark: str | None = None
-    """The last mark of the prompts before it (VoiceXML 2.1, 3)."""
+    """The last mark passed before it; by devices that tell of none, the prompts' last mark."""
+    marktime: int | None = None
+    """How much (ms) was played from that mark on, if that is known (VoiceXML 2.1, 4)."""
+
+    def take_mark(self, data: Data) -> None:
+        """Take in what the device tells of marks, if it does (:class:`prima.messages.Heard`)."""
+        if "markname" in data:
+            self.mark, self.marktime = data["markname"], data.get("marktime")
 
 
 @dataclass(slots=True, eq=False)

@@ -145,6 +145,13 @@ VALUES = {
     "valuetype": "data ref",
     "transfer type": "bridge blind consultation",
     "fetchhint": "prefetch safe",
+    "break strength": "none x-weak weak medium strong x-strong",
+    "break size": "none small medium large",
+    "break time": _TIME,
+    "prosody duration": _TIME,
+    "prosody rate": "rate",
+    "emphasis level": "strong moderate none reduced",
+    "voice gender": "male female neutral",
     "count": "integer",
     "timeout": _TIME,
     "fetchtimeout": _TIME,
@@ -152,7 +159,8 @@ VALUES = {
     "finalsilence": _TIME,
     "connecttimeout": _TIME,
 }
-"""What attributes may say: words, a time, or a whole number from 1; an element's own come first."""
+"""What attributes may say: words, a time, a rate of speech, or a whole number from 1; an
+element's own come first."""
 EXPRESSIONS = frozenset(
     [
         "expr",

@@ -1,0 +1,134 @@
+"""What the markup of a prompt says of time: pauses, rates, set times and marks (SSML 1.0)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from prima.messages import Cue
+from prima.values import LONGEST_MS, read_value
+
+PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
+"""What a break of each strength takes, in ms (SSML 1.0, 2.2.3)."""
+SIZES = {"none": 0, "small": 250, "medium": 500, "large": 1000}
+"""The same for the sizes that VoiceXML 1.0 had."""
+RATES = {"x-slow": 0.5, "slow": 0.8, "medium": 1.0, "default": 1.0, "fast": 1.25, "x-fast": 2.0}
+"""Named rates, as multiples of the usual one (SSML 1.0, 2.2.4)."""
+SLOWEST, FASTEST = 0.1, 10.0
+"""The voice speaks neither slower nor faster, whatever a document says."""
+MAX_CUES = 1000
+"""How many pauses, rates and marks a prompt may have; further ones have no effect."""
+MAX_NAME = 200
+"""Characters of a mark's name that are kept."""
+STOPS = ".!?。！？"
+NUMBER = re.compile(r"([+-]?)([0-9]{1,9}(?:\.[0-9]{0,9})?|\.[0-9]{1,9})(%?)")
+
+
+def break_ms(time: str, strength: str, size: str) -> int:
+    """How long a break is: by its time, else its strength or size; medium with none of them."""
+    known = milliseconds(time)
+    if known is not None:
+        return known
+    return PAUSES.get(strength, SIZES.get(size, PAUSES["medium"]))
+
+
+def milliseconds(text: str) -> int | None:
+    """A time such as ``2s`` or ``500ms`` in ms; None if it is none."""
+    try:
+        value = read_value("duration", text.strip())
+    except ValueError:
+        return None
+    return min(int(value), LONGEST_MS) if isinstance(value, int) and value >= 0 else None
+
+
+def is_rate(text: str) -> bool:
+    """Whether a prosody element may have this rate."""
+    return text in RATES or NUMBER.fullmatch(text) is not None
+
+
+def rate_of(text: str, around: float) -> float:
+    """A rate as a multiple of the usual one; ``around`` is that of what stands around it.
+
+    A number or a percentage without a sign is of the usual rate; ``+10%`` is a tenth faster
+    than what stands around, and ``+0.5`` adds half the usual rate to it.
+    """
+    if text in RATES:
+        return RATES[text]
+    found = NUMBER.fullmatch(text)
+    if found is None:
+        return around
+    sign, digits, percent = found.groups()
+    number = float(digits) / (100 if percent else 1)
+    if sign:
+        number = -number if sign == "-" else number
+        number = around * (1 + number) if percent else around + number
+    return round(min(max(number, SLOWEST), FASTEST), 6)
+
+
+def fold(parts: Iterable[str | Cue]) -> tuple[str, tuple[Cue, ...]]:
+    """Pieces of text as one, its white space folded, and the cues among them in their places."""
+    said: list[str] = []
+    length, gap = 0, False
+    cues: list[Cue] = []
+    for part in parts:
+        if isinstance(part, Cue):
+            cues.append(Cue(length, part.kind, part.value))
+            continue
+        for index, word in enumerate(part.split()):
+            if length and (gap or index or part[0].isspace()):
+                said.append(" ")
+                length += 1
+            said.append(word)
+            length += len(word)
+            gap = False
+        gap = gap or part[-1:].isspace()
+    text = "".join(said)
+    return text, _tidy(text, cues) if cues else ()
+
+
+def _tidy(text: str, cues: list[Cue]) -> tuple[Cue, ...]:
+    """Leave out cues that change nothing, and set times that are not closed or hold no text."""
+    kept: list[Cue] = []
+    opened: list[int] = []
+    rate = 1.0
+    for cue in cues:
+        full = len(kept) >= MAX_CUES
+        match cue.kind:
+            case "lasts":
+                opened.append(-1 if full else len(kept))
+            case "end":
+                begun = opened.pop()
+                full = begun < 0
+                if not full and kept[begun].at == cue.at:
+                    marks = [one for one in kept[begun:] if one.kind == "mark"]
+                    kept[begun:] = [Cue(cue.at, "pause", kept[begun].value), *marks]
+                    continue
+            case "sentence":
+                full = full or not _wants_pause(text, cue.at, kept)
+            case "rate":
+                full = full or cue.value == rate
+                rate = rate if full else float(cue.value or 1.0)
+        if not full:
+            kept.append(cue)
+    for index in reversed([one for one in opened if one >= 0]):
+        del kept[index]
+    return tuple(kept)
+
+
+def _wants_pause(text: str, at: int, before: list[Cue]) -> bool:
+    """Whether the end of a sentence inside a text needs a pause that no stop makes."""
+    if not 0 < at < len(text) or text[at - 1] in STOPS:
+        return False
+    return not any(cue.kind == "sentence" and cue.at == at for cue in before[-3:])
+
+
+def clipped(cues: Iterable[Cue], length: int) -> tuple[Cue, ...]:
+    """Cues of a text that has been cut off at a length."""
+    return tuple(Cue(min(cue.at, length), cue.kind, cue.value) for cue in cues)
+
+
+def later(cues: Iterable[Cue], characters: int) -> tuple[Cue, ...]:
+    """The pauses and marks among cues where no text is, behind so many characters of another."""
+    return tuple(
+        Cue(characters, cue.kind, cue.value) for cue in cues if cue.kind in ("pause", "mark")
+    )
