@@ -136,6 +136,7 @@ def rehearse(
             "scenario": cast.scenario.id,
             "policy": name,
             "bound": bound,
+            "date": cast.scenario.date,
             "applications": [doc.id for doc in cast.documents],
             "files": loaded.files,
         },
@@ -193,7 +194,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
         UsageError: the scenario's files are not those of the transcript.
         DocumentError: documents are wrong.
     """
-    from prima.replay import replay_records
+    from prima.journal import replay_records
     from prima.transcript.lines import finished
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)

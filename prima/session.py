@@ -43,11 +43,13 @@ from prima.messages import (
     Sensed,
     Unloaded,
 )
+from prima.prelude import START
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.selection import Policy
+from prima.values import moment
 
 if TYPE_CHECKING:
     from prima.voicexml.application import VoiceInterpreter
@@ -69,9 +71,11 @@ class Session:
         policy: Policy,
         commands: Mapping[str, CommandType],
         bound: int | None = None,
+        date: str = START,
     ) -> None:
+        self._began = moment(date)
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {doc.id: interpreter_of(doc, own) for doc in documents}
+        self.apps = {doc.id: interpreter_of(doc, own, self._began) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound)
@@ -193,7 +197,7 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            app = self.apps[name] = interpreter_of(app.document, app.arguments)
+            app = self.apps[name] = interpreter_of(app.document, app.arguments, self._began)
         self._loaded.add(name)
         app.sensors.update(self._sensors)
         self.mediator.load(name, app.kind)
@@ -389,13 +393,19 @@ class Session:
         self.mediator.unload(app.name, action.reason)
 
 
-def interpreter_of(document: AnyDocument, arguments: Mapping[str, frozenset[str]]) -> App:
-    """The interpreter of a document, of whichever language it is."""
+def interpreter_of(
+    document: AnyDocument, arguments: Mapping[str, frozenset[str]], began: int
+) -> App:
+    """The interpreter of a document, of whichever language it is, in a run that began then."""
+    app: App
     if isinstance(document, Document):
-        return Interpreter(document, arguments)
-    from prima.voicexml.application import VoiceInterpreter
+        app = Interpreter(document, arguments)
+    else:
+        from prima.voicexml.application import VoiceInterpreter
 
-    return VoiceInterpreter(document, arguments)
+        app = VoiceInterpreter(document, arguments)
+    app.began = began
+    return app
 
 
 def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:

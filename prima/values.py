@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import UTC
 
 Value = str | int | float | bool
 
@@ -114,6 +115,29 @@ def _name_list(text: str) -> str:
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
+def _date(text: str) -> str:
+    from datetime import datetime  # costs a start some of its time, and is rarely needed
+
+    if re.fullmatch(r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?", text) is None:
+        raise ValueError('is not a date. Write it as "2005-03-01T10:00:00".')
+    try:
+        return datetime.fromisoformat(text).isoformat()
+    except ValueError:
+        raise ValueError("is a date that no calendar has.") from None
+
+
+def moment(date: str) -> int:
+    """A date as ``2005-03-01T10:00:00`` (UTC) in ms since 1970.
+
+    Raises:
+        ValueError: it is no date.
+    """
+    from datetime import datetime, timedelta
+
+    since = datetime.fromisoformat(date).replace(tzinfo=UTC)
+    return (since - datetime.fromtimestamp(0, UTC)) // timedelta(milliseconds=1)
+
+
 def _filled(text: str) -> str:
     if not text.strip(XML_SPACE):
         raise ValueError("is empty.")
@@ -189,6 +213,12 @@ KINDS: dict[str, Kind] = {
         "xs:string",
         r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
         "a language tag, as in en or ja",
+    ),
+    "date": Kind(
+        _date,
+        "xs:string",
+        r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?",
+        "a date and a time of day in UTC, as in 2005-03-01T10:00:00",
     ),
 }
 

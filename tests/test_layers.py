@@ -21,7 +21,7 @@ LAYERS = [
     {"interpreter", "scheduler"},
     {"voicexml"},
     {"session"},
-    {"sim", "replay"},
+    {"sim", "journal"},
     {"loading", "web"},
     {"api"},
     {"study"},

@@ -232,7 +232,7 @@ class Interpreter(Bounds):
     def _tick(self, now: int) -> None:
         if now != self._instant:
             self._instant = self.now = now
-            self.renew()
+            self.renew(now)
             if self._timed and not self.over:
                 self._guard(lambda: self.engine.clock(self.application, now / 1000))
 

@@ -8,6 +8,8 @@ from prima.interpreter.content import source
 from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
+from prima.prelude import START
+from prima.values import moment
 
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
@@ -22,13 +24,16 @@ class Bounds:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
+        self.began = moment(START)
+        """When the run began by its own calendar (ms since 1970, UTC)."""
         self.written = 0
         """Characters said, logged and sent since the start."""
         self._steps = 0
         self._output = 0
 
-    def renew(self) -> None:
-        """A new instant begins."""
+    def renew(self, now: int) -> None:
+        """A new instant begins, so many ms after the run began."""
+        self.engine.now = self.began + now
         self._steps = self._output = 0
         self.engine.spent = 0.0
 

@@ -57,7 +57,6 @@ MANY_STEPS = 200
 VARIABLES = frozenset({"event", "_event", "_message", "session", "sensor"})
 """What the language itself declares."""
 ABSENT = {
-    "Date": "session.time is the clock, in seconds.",
     "console": 'Write <log expr="..."/>.',
     "alert": 'Write <log expr="..."/>.',
     "setTimeout": 'Write <send event="..." delay="..."/> and handle the event.',

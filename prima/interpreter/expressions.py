@@ -3,7 +3,7 @@
 An expression is compiled once to a function of the scope objects it may see.
 The engine's limits on time, memory and stack hold for every call; built-ins
 that do not look at the time limit are replaced by ones that bound their work.
-``Date`` is absent and ``Math.random`` seeded, so that a run can be repeated.
+``Date`` has the run's clock and ``Math.random`` is seeded, so that a run can be repeated.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import _quickjs as quickjs
 
 from prima.interpreter.names import declared_names
 from prima.messages import Json
-from prima.prelude import MEMORY_LIMIT, PRELUDE, STACK_LIMIT
+from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that one evaluation may take."""
@@ -111,13 +111,20 @@ class Engine:
             name: context.eval(f"__h.{name}") for name in re.findall(r"(\w+): function", HELPERS)
         }
         context.eval("delete globalThis.__h")
+        self.now = self._told = 0
+        """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
+        self._tick = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
+        self._tick()
         context.eval("Object.preventExtensions(globalThis)")
 
     def _call(self, function: Any, *args: Any) -> Any:
         Engine.evaluations += 1
         began = perf_counter()
         try:
+            if self._told != self.now:
+                self._told = self.now
+                self._tick(float(self.now))
             return function(*args)
         except (quickjs.JSException, quickjs.StackOverflow, *ODD) as error:
             raise _script_error(error) from None
@@ -168,7 +175,8 @@ class Engine:
         """A Python value as one the engine takes."""
         if isinstance(value, dict | list | tuple):
             return self._call(self._context.parse_json, json.dumps(value))
-        return value
+        # The binding cuts whole numbers to 32 bits.
+        return float(value) if isinstance(value, int) and abs(value) >= 2**31 else value
 
     def set(self, scope: Scope, name: str, value: Json) -> None:
         """Give a variable of a scope a value from outside."""

@@ -62,6 +62,7 @@ GLOBALS = frozenset(
         "Number",
         "Boolean",
         "Math",
+        "Date",
         "JSON",
         "RegExp",
         "Error",

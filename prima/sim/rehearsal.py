@@ -98,7 +98,7 @@ class Rehearsal:
         self.robot = Robot(cast.robot, self.world, Routes(cast.world))
         self.person = Person(scenario, self.world, self.robot)
         self.services = Services(scenario.services, web)
-        self.session = Session(cast.documents, policy, cast.robot.commands, bound)
+        self.session = Session(cast.documents, policy, cast.robot.commands, bound, scenario.date)
         self._watching = any(
             doc.watches or any(form.watches for form in doc.forms.values())
             for doc in cast.documents

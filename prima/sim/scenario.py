@@ -13,6 +13,7 @@ from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
+from prima.prelude import START
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.values import outside, read_value, within
 
@@ -394,6 +395,8 @@ class Scenario:
     world: str
     robot: str
     until: int
+    date: str
+    """When the run begins by its own calendar, as ``2005-03-01T10:00:00`` (UTC)."""
     policy: str
     entrances: bool
     robot_at: str
@@ -440,6 +443,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         world=root.get("world"),
         robot=root.get("robot"),
         until=600_000 if (until := reader.get(root, "until")) is None else until,
+        date=reader.get(root, "date") or START,
         policy=root.get("policy", "prima"),
         entrances=root.get("entrances") == "open",
         robot_at=robots[0].get("at") if robots else "",

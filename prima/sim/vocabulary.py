@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from prima.markup.vocabulary import Element, Vocabulary, attribute
+from prima.prelude import START
 
 _VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
 _ID = attribute("id", "id", "its name", "required")
@@ -272,6 +273,12 @@ SCENARIO = Vocabulary(
                 attribute("robot", "path", "the robot's profile", "required"),
                 attribute(
                     "until", "duration", "when the run ends, if not by itself", default="600s"
+                ),
+                attribute(
+                    "date",
+                    "date",
+                    "when the run begins, for Date in documents; in UTC, as all times",
+                    default=START,
                 ),
                 attribute("policy", "text", "the mediator's policy", default="prima"),
                 attribute(

@@ -236,7 +236,7 @@ class VoiceInterpreter(Bounds):
     def _tick(self, now: int) -> None:
         if now != self._instant:
             self._instant = now
-            self.renew()
+            self.renew(now)
 
     def _drive(self, resume: Resume | None) -> None:
         assert self._flow is not None

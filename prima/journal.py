@@ -22,6 +22,7 @@ from prima.messages import (
     Sensed,
     Unloaded,
 )
+from prima.prelude import START
 from prima.scheduler.selection import policy_named
 from prima.session import AnyDocument, Session
 
@@ -71,7 +72,9 @@ def replay_records(
     held = list(records)
     head, settings = held[0], held[0]["data"]
     yield {**head, "time": round(head["time"] * 1000)}
-    session = Session(documents, policy_named(settings["policy"]), commands, settings.get("bound"))
+    date = settings.get("date", START)
+    policy = policy_named(settings["policy"])
+    session = Session(documents, policy, commands, settings.get("bound"), date)
     batches: dict[int, list[Inbound]] = {}
     for record in held:
         value = inbound_of(record)
