@@ -6,18 +6,20 @@ Their values are those that the appendix gives: ``true``, ``19990204``, ``USD10.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from urllib.parse import unquote
 
 from prima.grammar import moments
 from prima.grammar.model import BuiltIn
-from prima.grammar.numbers import cardinal, digits, number
+from prima.grammar.numbers import cardinal, dialled, digits, number
 from prima.grammar.text import fold
 from prima.messages import Json
 
 YES = {
-    "en": "yes|yeah|yep|yup|yes please|yes i do|yes it is|sure|of course|ok|okay|correct|right",
+    "en": "yes|yeah|yep|yup|yes please|yes i do|yes it is|yes sir|yes maam|yes thats right|sure"
+    "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
+    "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
     "ja": "はい|ええ|うん|そうです|お願いします|はいお願いします|もちろん",
     "fr": "oui|ouais|daccord|bien sûr",
     "de": "ja|jawohl|genau|natürlich|richtig",
@@ -25,7 +27,9 @@ YES = {
     "it": "sì|si|certo",
 }
 NO = {
-    "en": "no|nope|nah|no thanks|no thank you|no i dont|no it isnt|not now|wrong|incorrect",
+    "en": "no|nope|nah|no thanks|no thank you|no i dont|no i do not|no it isnt|no it is not|no sir"
+    "|no maam|not now|wrong|incorrect|thats wrong|thats not right|false|negative|no way|not really"
+    "|of course not|i dont|it isnt|never",
     "ja": "いいえ|いや|ううん|違います|結構です|いいえ結構です",
     "fr": "non|non merci",
     "de": "nein|nein danke|nee|falsch",
@@ -33,16 +37,43 @@ NO = {
     "it": "no|no grazie",
 }
 CURRENCIES = {
-    "$": "USD", "dollar": "USD", "dollars": "USD", "usd": "USD", "€": "EUR", "euro": "EUR",
-    "euros": "EUR", "eur": "EUR", "£": "GBP", "pound": "GBP", "pounds": "GBP", "gbp": "GBP",
-    "¥": "JPY", "yen": "JPY", "円": "JPY", "jpy": "JPY", "ドル": "USD", "ユーロ": "EUR",
+    "$": "USD", "dollar": "USD", "dollars": "USD", "buck": "USD", "bucks": "USD",
+    "€": "EUR", "euro": "EUR", "euros": "EUR", "£": "GBP", "pound": "GBP", "pounds": "GBP",
+    "pound sterling": "GBP", "pounds sterling": "GBP", "¥": "JPY", "yen": "JPY", "円": "JPY",
+    "ドル": "USD", "ユーロ": "EUR", "swiss franc": "CHF", "swiss francs": "CHF", "yuan": "CNY",
+    "rupee": "INR", "rupees": "INR", "indian rupees": "INR", "mexican peso": "MXN",
+    "mexican pesos": "MXN", "korean won": "KRW", "won": "KRW", "british pounds": "GBP",
 }  # fmt: skip
-PARTS = {"cent", "cents", "penny", "pence", "p", "セント"}
+"""Currencies by their signs and names, with their codes (ISO 4217)."""
+CURRENCIES |= {
+    f"{nation} {unit}": code
+    for nation, code in (
+        *(("us", "USD"), ("u s", "USD"), ("american", "USD"), ("canadian", "CAD")),
+        *(("australian", "AUD"), ("new zealand", "NZD"), ("hong kong", "HKD")),
+    )
+    for unit in ("dollar", "dollars")
+}
+CURRENCIES |= {code.lower(): code for code in CURRENCIES.values()}
+PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
+         "セント": ""}  # fmt: skip
+"""Hundredths, with the currency if they tell it."""
 TYPES = ("boolean", "currency", "date", "digits", "number", "phone", "time")
 LENGTHS = ("length", "minlength", "maxlength")
 _URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?", re.DOTALL)
-_EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|\bx(?=\d|\b)|内線) ?")
-_MONEY = re.compile(r"([$€£¥]|[A-Za-z]{3})?\s*([0-9][0-9,]*)(?:\.([0-9]{1,2}))?\s*([A-Za-z]{3})?")
+_EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|内線) ?")
+_JOINED = re.compile(r"(?<=\d)[.,:](?=\d)")
+"""A sign between digits of a telephone number."""
+_MONEY = re.compile(
+    r"([$€£¥]|[A-Za-z]{3})?\s*([0-9][0-9,]*)(?:\.([0-9]{1,2}))?\s*([$€£¥]|[A-Za-z]{3})?"
+)
+_UNIT = re.compile(
+    "|".join(
+        rf"\b{name}\b" if name.isascii() else name
+        for name in sorted(CURRENCIES, key=len, reverse=True)
+        if name.isalpha() or " " in name
+    )
+)
+_POINT_FIRST = re.compile(r"(?<![0-9])\.(?=[0-9])")
 
 Reader = Callable[[dict[str, str], str, str, str], Json]
 """Parameters, language, text and mode to value; None where it does not match."""
@@ -141,56 +172,85 @@ def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         if match is None or not (match[1] or match[2]):
             return None
         return f"{int(match[1] or '0')}{'.' + match[2] if match[2] else ''}"
-    plain = text.strip().replace("\u2212", "-")
+    plain = _POINT_FIRST.sub("0.", text.strip().replace("\u2212", "-"))
     sign = plain[0] if plain[:1] in ("-", "+") else ""
     return number(f"{sign}{fold(plain)}")
 
 
 def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
-        match = re.fullmatch(r"([0-9]+)(?:\*([0-9]{1,2}))?", _keys(text))
-        return f"{int(match[1])}.{(match[2] or ''):0<2}" if match else None
-    if match := _MONEY.fullmatch(text.strip(" !?")):
+        match = re.fullmatch(r"([0-9]*)(?:\*([0-9]{0,2}))?", _keys(text))
+        if match is None or not (match[1] or match[2]):
+            return None
+        return f"{int(match[1] or '0')}.{(match[2] or ''):0<2}"
+    plain = _POINT_FIRST.sub("0.", text.strip(" !?"))
+    if match := _MONEY.fullmatch(plain):
         unit = (match[1] or match[4] or "").lower()
         code = CURRENCIES.get(unit)
-        if unit and code is None:
+        if (unit and code is None) or (match[1] and match[4]):
             return None
         whole = int(match[2].replace(",", "")[:40])
         return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
-    return _spoken_money(fold(text))
+    return _spoken_money(fold(plain))
 
 
 def _spoken_money(said: str) -> str | None:
-    """``twelve dollars and fifty cents``, ``500円``."""
-    unit = next((word for word in CURRENCIES if word and _holds(said, word)), None)
+    """``twelve dollars and fifty cents``, ``500円``, ``twelve fifty``, ``fifty cents``."""
+    unit = _UNIT.search(said)
     if unit is None:
-        cents = _before(said, PARTS)
-        return None if cents is None or cents > 99 else f"0.{cents:02d}"
-    head, _, tail = said.partition(unit)
-    whole = number(head.strip())
-    if whole is None or whole[0] in "+-":
+        return _small_money(said) or _bare_money(said)
+    code, tail = CURRENCIES[unit[0]], said[unit.end() :].strip()
+    main, cents = _amount(said[: unit.start()].strip())
+    if main is None or cents is None:
         return None
-    main, _, part = whole.partition(".")
-    tail = tail.strip().removeprefix("and ").strip()
-    cents = int(f"{part:0<2}"[:2]) if part else 0
     if tail:
-        found = _before(tail, PARTS)
-        found = cardinal(tail) if found is None else found
-        if found is None or found > 99 or part:
+        found = _before(tail.removeprefix("and ").strip(), PARTS)
+        found = cardinal(tail.removeprefix("and ")) if found is None else found
+        if found is None or found > 99 or cents:
             return None
         cents = found
-    return f"{CURRENCIES[unit]}{main}.{cents:02d}"
+    return f"{code}{main}.{cents:02d}"
 
 
-def _holds(said: str, word: str) -> bool:
-    return word in said.split() or (not word.isascii() and word in said)
+def _amount(said: str) -> tuple[int | None, int | None]:
+    """A number before the name of a currency: what is whole, and hundredths."""
+    whole = "1" if said in ("a", "an") else number(said)
+    if whole is None or whole[0] in "+-":
+        return None, None
+    main, _, part = whole.partition(".")
+    return int(main), int(f"{part:0<2}") if len(part) <= 2 else None
 
 
-def _before(said: str, words: set[str]) -> int | None:
+def _small_money(said: str) -> str | None:
+    """``fifty cents``, ``twenty pence``."""
+    cents = _before(said, PARTS)
+    if cents is None:
+        return None
+    code = next(code for part, code in PARTS.items() if said.endswith(part))
+    return f"{code}{cents // 100}.{cents % 100:02d}"
+
+
+def _bare_money(said: str) -> str | None:
+    """``twelve``, ``twelve fifty``: no currency was said."""
+    main, cents = _amount(said)
+    words = said.split()
+    for at in range(1, len(words)):
+        if main is not None:
+            break
+        low = words[at:]
+        rest = cardinal(" ".join(low[1:] if low[0] in ("oh", "o") else low))
+        if rest is not None and (rest >= 10) == (low[0] not in ("oh", "o")) and rest <= 99:
+            main, cents = cardinal(" ".join(words[:at])), rest
+    return None if main is None or cents is None else f"{main}.{cents:02d}"
+
+
+def _before(said: str, words: Iterable[str]) -> int | None:
     """The number before one of the words, which ends the text."""
     for word in words:
         if said.endswith(word):
-            return cardinal(said.removesuffix(word).strip())
+            head = said.removesuffix(word)
+            if head.endswith(" ") or not word.isascii() or head.isdigit():
+                return 1 if head.strip() == "a" else cardinal(head.strip())
     return None
 
 
@@ -198,8 +258,8 @@ def _phone(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         match = re.fullmatch(r"[0-9]+(?:\*[0-9]+)?", _keys(text))
         return match[0].replace("*", "x") if match else None
-    parts = _EXTENSION.split(fold(text))
-    read = [digits(part.strip()) for part in parts]
+    parts = _EXTENSION.split(fold(_JOINED.sub(" ", text.lower())))
+    read = [digits(part.strip()) or dialled(part.strip()) for part in parts]
     if len(parts) > 2 or any(one is None for one in read):
         return None
     return "x".join(one for one in read if one)

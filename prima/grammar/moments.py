@@ -24,15 +24,23 @@ _FIGURES = (
 _JAPANESE = re.compile(
     r"(?:(?P<y>[^年月日時]{1,9})年)?(?:(?P<m>[^年月日時]{1,4})月)?(?:(?P<d>[^年月日時]{1,4})日)?"
 )
-_CLOCK = re.compile(
-    r"(?P<h>\d{1,2})(?:[:. ](?P<m>\d{2}))?(?: ?(?:oclock|hours|h))?(?: ?(?P<x>a m|p m|am|pm))?"
-)
+_CLOCK = re.compile(r"(?P<h>\d{1,2})(?:[:. ](?P<m>\d{2}))?(?: ?(?:oclock|h))?")
 _CLOCK_JA = re.compile(
     r"(?P<x>午前|午後)?(?P<h>[^時分半]{1,4})時(?:(?P<m>[^時分半]{1,4})分|(?P<half>半))?"
 )
 _PART = re.compile(
-    r"(?P<rest>.*?) ?(?P<x>\b(?:a ?m|p ?m)|in the (?:morning|afternoon|evening)|at night)"
+    r"(?P<rest>.*?) ?(?P<x>(?:\b|(?<=\d))(?:a ?m|p ?m)|(?:in the|this) (?:morning|afternoon|evening)"
+    r"|at night|tonight)"
 )
+_PARTS = {"am": "a", "a m": "a", "morning": "a", "at night": "night", "tonight": "night"}
+_LINKS = {"past": 1, "after": 1, "to": -1, "before": -1, "till": -1, "til": -1, "of": -1}
+_NOON = {"noon", "twelve noon", "12 noon", "twelve oclock noon", "正午"}
+_MIDNIGHT = {"midnight", "twelve midnight", "12 midnight", "twelve oclock midnight"}
+_PASSED_OVER = {"the", "of", "on", "in", "year"} | {
+    f"{day}day" for day in ("mon", "tues", "wednes", "thurs", "fri", "satur", "sun")
+}
+YEARS = range(1500, 3000)
+"""Years that are understood alone, without a month."""
 
 
 def date(text: str, folded: str) -> str | None:
@@ -55,14 +63,17 @@ def date(text: str, folded: str) -> str | None:
 
 
 def _english_date(words: list[str]) -> str | None:
-    """``march third two thousand four``, ``3 march``, ``the third of march``."""
-    words = [word for word in words if word not in ("the", "of")]
+    """``march third two thousand four``, ``3 march``, ``the third of march``, ``2004``."""
+    words = [word for word in words if word not in _PASSED_OVER]
     at = next((index for index, word in enumerate(words) if word in MONTHS), None)
     if at is None:
-        return None
+        return _without_month(words)
     month, before, after = MONTHS[words[at]], words[:at], words[at + 1 :]
     if before:
         day = ordinal(" ".join(before))
+        if day is None and (year := _year(before)) is not None:
+            day = ordinal(" ".join(after)) if after else None
+            return None if after and day is None else _written(year, month, day)
         year = _year(after) if after else None
         return None if day is None or (after and year is None) else _written(year, month, day)
     for size in (2, 1):  # the longest day first
@@ -76,16 +87,27 @@ def _english_date(words: list[str]) -> str | None:
     return None if after and year is None else _written(year, month, None)
 
 
+def _without_month(words: list[str]) -> str | None:
+    """A year alone, or a day: ``the fifth``."""
+    year = _year(words) if words else None
+    if year in YEARS:
+        return _written(year, None, None)
+    said = " ".join(words)
+    counted = cardinal(said) is not None  # "five" is no day, "fifth" is
+    day = None if counted or not words else ordinal(said)
+    return None if day is None else _written(None, None, day)
+
+
 def _year(words: list[str]) -> int | None:
     """``2004``, ``two thousand four``, ``nineteen ninety nine``."""
     value = cardinal(" ".join(words))
     if value is not None and 1000 <= value <= 9999:
         return value
     for split in (1, 2):
-        high, low = cardinal(" ".join(words[:split])), cardinal(" ".join(words[split:]))
-        if words[split : split + 1] in (["oh"], ["o"]):
-            low = cardinal(" ".join(words[split + 1 :]))
-        if high and low is not None and 10 <= high <= 99 and low <= 99:
+        high, rest = cardinal(" ".join(words[:split])), words[split:]
+        small = rest[:1] in (["oh"], ["o"]) or (len(rest) == 1 and rest[0][0] == "0")
+        low = cardinal(" ".join(rest).removeprefix("oh ").removeprefix("o "))
+        if high and low is not None and 10 <= high <= 99 and (0 if small else 10) <= low <= 99:
             return high * 100 + low
     return None
 
@@ -103,47 +125,58 @@ def _written(year: int | None, month: int | None, day: int | None) -> str | None
 
 def time(folded: str) -> str | None:
     """``hhmmx``: x is a, p, h for 24 hours, or ? where it was not said; or None."""
-    if folded in ("noon", "midnight", "正午"):
-        return "1200a" if folded == "midnight" else "1200p"
-    if match := _CLOCK.fullmatch(folded):
-        return _clock(int(match["h"]), int(match["m"] or 0), (match["x"] or "").replace(" ", ""))
+    folded = folded.removeprefix("at ")
+    if folded in _NOON or folded in _MIDNIGHT:
+        return "1200p" if folded in _NOON else "1200a"
+    if match := re.fullmatch(r"(\d{1,2})(\d{2})", folded):
+        return _clock(int(match[1]), int(match[2]), "")
     if match := _CLOCK_JA.fullmatch(folded):
         hour, minute = cardinal(match["h"]), cardinal(match["m"]) if match["m"] else 0
         if match["half"]:
             minute = 30
         if hour is None or minute is None:
             return None
-        part = {"午前": "am", "午後": "pm"}.get(match["x"] or "", "")
+        part = {"午前": "a", "午後": "p"}.get(match["x"] or "", "")
         return _clock(12 if part and hour == 0 else hour, minute, part)
-    part = ""
+    part = "h" if folded.endswith(" hours") else ""
+    folded = folded.removesuffix(" hours")
     if match := _PART.fullmatch(folded):
-        folded, said = match["rest"], match["x"].replace(" ", "")
-        part = "am" if said in ("am", "inthemorning") else "pm"
-        if clock := _CLOCK.fullmatch(folded):
-            return _clock(int(clock["h"]), int(clock["m"] or 0), part)
-    return _words(folded.removesuffix(" oclock").split(), part)
+        folded, said = match["rest"], match["x"].removeprefix("in the ").removeprefix("this ")
+        part = _PARTS.get(said, "p")
+    if match := _CLOCK.fullmatch(folded):
+        return _clock(int(match["h"]), int(match["m"] or 0), part)
+    words = folded.removesuffix(" oclock").split()
+    return _past(words, part) if _LINKS.keys() & set(words) else _words(words, part)
+
+
+def _past(words: list[str], part: str) -> str | None:
+    """``half past five``, ``a quarter to six``, ``ten minutes before noon``."""
+    at = next(index for index, word in enumerate(words) if word in _LINKS)
+    sign, named = _LINKS[words[at]], " ".join(words[at + 1 :])
+    minutes = _minutes([word for word in words[:at] if word not in ("a", "minute", "minutes")])
+    hour = 12 if named in _NOON | _MIDNIGHT else cardinal(named)
+    if minutes is None or not minutes or hour is None:
+        return None
+    if named in _NOON | _MIDNIGHT and not part:
+        part = "p" if (named in _NOON) == (sign > 0) else "a"
+    if sign < 0:
+        hour, minutes = hour - 1 or 12, 60 - minutes
+    return _clock(hour, minutes, part)
 
 
 def _words(words: list[str], part: str) -> str | None:
-    """``half past five``, ``quarter to six``, ``five thirty``."""
-    for link, sign in (("past", 1), ("after", 1), ("to", -1), ("before", -1)):
-        if link in words:
-            at = words.index(link)
-            minutes = _minutes([word for word in words[:at] if word not in ("a", "minutes")])
-            hour = cardinal(" ".join(words[at + 1 :]))
-            if minutes is None or hour is None:
-                return None
-            if sign < 0:
-                hour, minutes = hour - 1 or 12, 60 - minutes
-            return _clock(hour, minutes, part)
-    hour = cardinal(words[0]) if words else None
-    if hour is None and len(words) > 1:
+    """``five thirty``, ``oh five hundred``, ``seventeen forty five``."""
+    if words[:1] in (["oh"], ["o"], ["zero"]) and len(words) > 1 and words[1] != "hundred":
+        words = words[1:]
+        part = part or ("h" if words[-1] == "hundred" else "")
+    hour = cardinal("zero" if words[0] in ("oh", "o") else words[0]) if words else None
+    if hour is None:
         return None
     rest = words[1:]
-    if hour is not None and hour >= 20 and rest and (ones := cardinal(rest[0])) and ones < 4:
+    if hour >= 20 and rest and (ones := cardinal(rest[0])) and ones < 4:
         hour, rest = hour + ones, rest[1:]
     minutes = _minutes(rest) if rest else 0
-    return None if hour is None or minutes is None else _clock(hour, minutes, part)
+    return None if minutes is None else _clock(hour, minutes, part)
 
 
 def _minutes(words: list[str]) -> int | None:
@@ -157,8 +190,11 @@ def _minutes(words: list[str]) -> int | None:
 
 
 def _clock(hour: int, minute: int, part: str) -> str | None:
+    """A time as it is written; ``part`` is a, p, h, night, or empty where it was not said."""
     if not 0 <= minute < 60 or not 0 <= hour < 24:
         return None
-    if part:
-        return f"{hour:02d}{minute:02d}{part[0]}" if 1 <= hour <= 12 else None
-    return f"{hour:02d}{minute:02d}{'?' if 1 <= hour <= 12 else 'h'}"
+    if part == "night":
+        part = "a" if hour == 12 or hour < 5 else "p"
+    if part in ("a", "p") and not 1 <= hour <= 12:
+        return None
+    return f"{hour:02d}{minute:02d}{part or ('?' if 1 <= hour <= 12 else 'h')}"

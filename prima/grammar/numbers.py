@@ -17,8 +17,9 @@ TENS = {
     )
 }
 SCALES = {"thousand": 10**3, "million": 10**6, "billion": 10**9, "trillion": 10**12}
-DIGITS = {word: str(value) for word, value in ONES.items() if value < 10} | {"oh": "0", "o": "0"}
-TIMES = {"double": 2, "triple": 3}
+DIGITS = {word: str(value) for word, value in ONES.items() if value < 10}
+DIGITS |= dict.fromkeys(("oh", "o", "nought", "naught"), "0")
+TIMES = {"double": 2, "triple": 3, "quadruple": 4}
 KANJI = {letter: value for value, letter in enumerate("〇一二三四五六七八九")} | {"零": 0}
 _SMALL = {"十": 10, "百": 100, "千": 1000}
 _LARGE = {"万": 10**4, "億": 10**8, "兆": 10**12}
@@ -62,6 +63,30 @@ def digits(text: str) -> str | None:
         found.append((digit or match[0]) * times)
         times = 1
     return "".join(found) if found and times == 1 else None
+
+
+def dialled(text: str) -> str | None:
+    """Digits as telephone numbers are said: ``eight hundred five five twelve``; or None."""
+    found, words, at = "", text.split(), 0
+    while at < len(words):
+        read = None
+        for size in (3, 2, 1):
+            said = " ".join(words[at : at + size])
+            single = size == 1 or words[at] in TIMES
+            read = (digits(said) if single else None) or _dialled(said)
+            if at + size <= len(words) and read is not None:
+                found, at = found + read, at + size
+                break
+        if read is None:
+            return None
+    return found or None
+
+
+def _dialled(said: str) -> str | None:
+    """``twelve``, ``thirty four``, ``eight hundred``."""
+    value = cardinal(said)
+    whole = said.endswith((" hundred", " thousand")) and value is not None and value < 10_000
+    return str(value) if whole or (value is not None and 10 <= value <= 99) else None
 
 
 def cardinal(text: str) -> int | None:
@@ -154,6 +179,10 @@ def _fraction(text: str) -> tuple[str, str | None]:
         before, point, after = "", "point", text[6:]
     if not point and "点" in text:
         before, point, after = text.partition("点")
+    if not point and text.endswith(" and a half"):
+        return text.removesuffix(" and a half"), "5"
+    if point and digits(after) is None and 10 <= (tens := cardinal(after) or 0) <= 99:
+        return before.strip(), str(tens)
     return before.strip(), (digits(after) if point else "")
 
 
