@@ -33,7 +33,7 @@ from prima.interpreter import (
     handling,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
-from prima.markup import reader
+from prima.markup import build, reader
 from prima.markup.schema import XML_SCHEMA, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import failures, selector
@@ -198,9 +198,9 @@ def limits() -> str:
     mib = 1024 * 1024
     rows = (
         ("a file", f"{reader.MAX_BYTES:,} bytes", "`too-large`"),
-        ("elements in a file", f"{reader.MAX_ELEMENTS:,}", "`too-large`"),
-        ("attributes of an element", f"{reader.MAX_ATTRIBUTES}", "`too-large`"),
-        ("elements inside each other", f"{reader.MAX_DEPTH}", "`too-deep`"),
+        ("elements in a file", f"{build.MAX_ELEMENTS:,}", "`too-large`"),
+        ("attributes of an element", f"{build.MAX_ATTRIBUTES}", "`too-large`"),
+        ("elements inside each other", f"{build.MAX_DEPTH}", "`too-deep`"),
         ("a time in an attribute", f"{LONGEST_MS // 3_600_000} h", "`bad-value`"),
         (
             "one evaluation of an expression or script",

@@ -42,7 +42,7 @@ INSIDE = {
         {"mediator"},
         {"__init__"},
     ],
-    "markup": [{"vocabulary", "tree"}, {"check", "schema"}, {"reader"}, {"__init__"}],
+    "markup": [{"vocabulary", "tree"}, {"build", "check", "schema"}, {"reader"}, {"__init__"}],
     "grammar": [
         {"errors", "text", "numbers", "sandbox"},
         {"model", "moments"},

@@ -1,6 +1,6 @@
 """Hardened reading: bytes in, a tree of nodes or a list of problems out.
 
-This is the only module that knows lxml. What a stranger's file may do is
+This is the only module that knows lxml, which explains what is wrong. What a stranger's file may do is
 bounded before it is parsed: its size, its encoding, and its DOCTYPE, which may
 name an external identifier (never fetched) and nothing else.
 """
@@ -9,34 +9,34 @@ from __future__ import annotations
 
 import codecs
 import re
+from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from lxml import etree
-
 from prima.errors import DocumentError, Place, Problem
+from prima.markup.build import (
+    MAX_ATTRIBUTES,
+    MAX_DEPTH,
+    MAX_ELEMENTS,
+    MAX_NAME,
+    TooMuch,
+    Unclear,
+    build,
+)
 from prima.markup.check import check_root, check_tree
 from prima.markup.tree import Node, Source
 from prima.markup.vocabulary import Vocabulary
 
+if TYPE_CHECKING:
+    from lxml import etree
+
 MAX_BYTES = 2_000_000
-MAX_DEPTH = 100
-MAX_ELEMENTS = 200_000
-MAX_ATTRIBUTES = 64
-XML_NS = "http://www.w3.org/XML/1998/namespace"
-XSI_NS = "http://www.w3.org/2001/XMLSchema-instance"
 ENCODINGS = frozenset(
-    [
-        "utf-8",
-        "us-ascii",
-        "ascii",
-        "iso-8859-1",
-        "iso-8859-15",
-        "windows-1252",
-        "utf-16",
-        "shift_jis",
-        "euc-jp",
-    ]
+    ["utf-8", "ascii", "utf-16", "utf-16-le", "utf-16-be", "koi8-r", "koi8-u"]
+    + [f"iso8859-{number}" for number in range(1, 17) if number != 12]
+    + [f"cp{number}" for number in range(1250, 1259)]
+    + ["shift_jis", "cp932", "euc_jp", "iso2022_jp", "gb2312", "gbk", "gb18030", "big5", "euc_kr"]
 )
+"""Encodings that are read, by the names that :func:`codecs.lookup` gives them."""
 REMEDIES = (
     (r"Opening and ending tag mismatch: (\S+) line (\d+) and (\S+)",
      "The <{0}> of line {1} is still open here: write </{0}>."),
@@ -46,7 +46,7 @@ REMEDIES = (
     (r"invalid Char value|xmlParseCharRef", "Remove the control character."),
     (r"Premature end of data in tag (\S+) line (\d+)",
      "The <{0}> of line {1} is never closed: write </{0}>."),
-    (r"Start tag expected", "Begin with a root element, such as <prima>."),
+    (r"Start tag expected", "Begin with a root element, such as <prima> or <vxml>."),
     (r"Attribute (\S+) redefined", "Keep one of them."),
     (r"Unescaped '<' not allowed in attributes", "Write &lt; for <, or close the quote before."),
     (r"EntityRef|xmlParseEntityRef", "Write &amp; for &."),
@@ -68,7 +68,12 @@ BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
+    (b"<\0?\0", "utf-16-le"),
+    (b"\0<\0?", "utf-16-be"),
 )
+"""How files of some encodings begin (XML 1.0, appendix F)."""
+LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
+TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
 
 def _error(place: Place, code: str, message: str, remedy: str = "") -> DocumentError:
@@ -85,18 +90,26 @@ def decode(file: str, data: bytes) -> str:
     if len(data) > MAX_BYTES:
         raise too_large(file, len(data))
     encoding = next((name for bom, name in BOMS if data.startswith(bom)), "")
+    declared = ENCODING.match(data)
     if not encoding:
-        declared = ENCODING.match(data)
         encoding = declared[1].decode().lower() if declared else "utf-8"
+        if declared and _codec(encoding).startswith("utf-16"):
+            message = f'The file says encoding="{encoding}", but it is not in UTF-16.'
+            place = Place(file, 1, declared.start(1) + 1)
+            raise _error(place, "encoding", message, "Declare the encoding it has.")
     if data.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
         encoding = "utf-32"
-    if encoding not in ENCODINGS:
+    if _codec(encoding) not in ENCODINGS:
         raise _error(
             start, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
         )
     try:
         text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)
     except UnicodeDecodeError as error:
+        if LATE_DECLARATION.match(
+            data
+        ):  # its encoding counts for nothing there: told by the parser
+            return data.decode("iso-8859-1")
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(
             Place(file, line, error.start - data.rfind(b"\n", 0, error.start)),
@@ -105,6 +118,14 @@ def decode(file: str, data: bytes) -> str:
             "Save it as UTF-8, or declare the encoding it has.",
         ) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _codec(encoding: str) -> str:
+    """The name by which an encoding is known here; nothing for one that is not."""
+    try:
+        return codecs.lookup(encoding).name
+    except LookupError:
+        return ""
 
 
 def too_large(file: str, size: int) -> DocumentError:
@@ -156,6 +177,28 @@ def parse(file: str, data: bytes) -> Node:
     if declaration is not None:  # the text is what it is, whatever it declares
         text = " " * declaration.end() + text[declaration.end() :]
     source = Source(file, text)
+    try:
+        try:
+            return build(source)
+        except Unclear:
+            _explain(source)
+            return build(source, doctype=True)
+    except TooMuch as much:
+        raise _beyond(much) from None
+    except Unclear as unclear:  # names of the fifth edition of XML 1.0
+        message = "This is not well-formed XML: a name has a character that no name may have."
+        place = Place(file, unclear.line, unclear.column)
+        raise _error(place, "not-xml", message, "Take another name.") from None
+
+
+def _explain(source: Source) -> None:
+    """Tell what is wrong with a document, by the parser that has the better words.
+
+    Raises:
+        DocumentError: it is not well-formed, or its DOCTYPE declares something.
+    """
+    from lxml import etree  # most documents have nothing that needs explaining
+
     _check_prolog(source)
     parser = etree.XMLParser(
         resolve_entities="internal",  # type: ignore[arg-type]  # the stubs know True and False
@@ -167,13 +210,26 @@ def parse(file: str, data: bytes) -> Node:
         encoding="utf-8",
     )
     try:
-        root = etree.fromstring(text.encode(), parser)
+        root = etree.fromstring(source.text.encode(), parser)
     except etree.XMLSyntaxError as error:
         raise _syntax_error(source, error) from None
     dtd = root.getroottree().docinfo.internalDTD
     if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
-        raise _error(Place(file), "doctype", "A DOCTYPE may not declare anything itself.")
-    return _convert(root, source)
+        raise _error(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
+
+
+def _beyond(much: TooMuch) -> DocumentError:
+    place, tag = much.node.place, much.node.tag
+    if much.what == "depth":
+        return _too_deep(place)
+    if much.what == "name":
+        message = f"A name has more than {MAX_NAME:,} characters."
+        return _error(place, "too-large", message, "Take a shorter one.")
+    if much.what == "attributes":
+        message = f"<{tag}> has more than {MAX_ATTRIBUTES} attributes."
+        return _error(place, "too-large", message, "Remove some.")
+    message = f"The document has more than {MAX_ELEMENTS:,} elements."
+    return _error(place, "too-large", message, "Divide it.")
 
 
 def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
@@ -187,17 +243,19 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
         return _error(place, "not-xml", "This is JSON, not XML.", remedy)
     if "depth" in message.lower():
         return _too_deep(place)
-    if message.startswith("Entity"):
-        name = message.split("'")[1] if "'" in message else "?"
+    if message.startswith("Entity '"):
+        name = message.split("'")[1]
         return _error(
             place,
             "entity",
             f"The entity &{name}; is not known: documents declare none.",
             "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed.",
         )
-    return _error(
-        place, "not-xml", f"This is not well-formed XML: {message.rstrip('.')}.", _remedy(message)
-    )
+    remedy = _remedy(message)
+    if TEMPLATE.search(source.text):
+        remedy = "A server makes the document from this: run what it makes."
+    message = f"This is not well-formed XML: {message.rstrip('.')}."
+    return _error(place, "not-xml", message, remedy)
 
 
 def _remedy(message: str) -> str:
@@ -215,54 +273,6 @@ def _too_deep(place: Place) -> DocumentError:
         f"Elements are nested more than {MAX_DEPTH} deep.",
         "Divide the document into forms and subdialogs.",
     )
-
-
-def _prefixed(name: str) -> str:
-    """The name of an attribute of another namespace, as documents write it."""
-    return name.replace(f"{{{XML_NS}}}", "xml:").replace(f"{{{XSI_NS}}}", "xsi:")
-
-
-def _convert(root: etree._Element, source: Source) -> Node:
-    """lxml's tree as nodes, with the limits on depth, elements and attributes."""
-    nodes: list[Node] = []
-
-    def node_of(element: etree._Element) -> Node:
-        namespace, _, name = str(element.tag).rpartition("}")
-        attributes = {
-            str(key) if key[0] != "{" else _prefixed(str(key)): str(value)
-            for key, value in element.items()
-        }
-        node = Node(name, source, len(nodes), attributes, namespace=namespace[1:])
-        nodes.append(node)
-        if len(attributes) > MAX_ATTRIBUTES:
-            message = f"<{node.tag}> has more than {MAX_ATTRIBUTES} attributes."
-            raise _error(node.place, "too-large", message, "Remove some.")
-        if len(nodes) > MAX_ELEMENTS:
-            message = f"The document has more than {MAX_ELEMENTS:,} elements."
-            raise _error(node.place, "too-large", message, "Divide it.")
-        return node
-
-    top = node_of(root)
-    # Indices count elements in document order, so this walks depth first.
-    frames = [(iter(root), top, root)]
-    if root.text:
-        top.content.append(root.text)
-    while frames:
-        children, parent, _ = frames[-1]
-        child = next(children, None)
-        if child is None:
-            _, _, element = frames.pop()
-            if frames and element.tail:
-                frames[-1][1].content.append(element.tail)
-            continue
-        node = node_of(child)
-        parent.content.append(node)
-        if child.text:
-            node.content.append(child.text)
-        frames.append((iter(child), node, child))
-        if len(frames) > MAX_DEPTH:
-            raise _too_deep(node.place)
-    return top
 
 
 def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:
