@@ -45,6 +45,7 @@ JOBS: dict[str, tuple[str, list[Any]]] = {
         for system in ("prima", "sismic", "transitions")
         if (system, states) != ("sismic", 10_000)
     },
+    **{f"voicexml {system}": ("voicexml", [system, 260]) for system in ("prima", "lxml")},
     **{f"W4 {system}": ("many", [system, count]) for system, count in MANY.items()},
     **{f"mediator {n}": ("decisions", [n, 4_000 if n < 500 else 400]) for n in (2, 10, 100, 1_000)},
     "simulation": ("simulate", [5]),
@@ -152,6 +153,14 @@ def table(found: dict[str, list[Any]]) -> str:
             "≤ 3 × transitions",
             own <= 3 * peer,
         )
+    own, peer = made.value("voicexml prima"), made.value("voicexml lxml")
+    made.row(
+        "VoiceXML: a document of 100 KB, to its first question",
+        f"{own * 1000:.1f} ms ({made.spread('voicexml prima')})",
+        f"{own / peer:.1f} × lxml's parse and XSD ({peer * 1000:.1f} ms)",
+        "≤ 10 ×",
+        own <= 10 * peer,
+    )
     each = {system: made.value(f"W4 {system}") / count for system, count in MANY.items()}
     memory = median(one[1] for one in found["W4 prima"]) * 10_000 / MANY["prima"]
     made.row(
