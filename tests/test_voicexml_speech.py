@@ -6,6 +6,7 @@ import struct
 import wave
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -217,6 +218,17 @@ def test_a_question_of_a_pause_alone_listens_after_it(played: Played) -> None:
     assert [record["time"] for record in of(made, "listening")] == [2.0]
 
 
+def test_pauses_count_between_the_choices_of_an_enumerate(played: Played) -> None:
+    made = played(
+        """<menu><property name="timeout" value="1s"/><prompt><enumerate>Say <value expr="_prompt"/>
+        <break time="1s"/></enumerate></prompt><choice event="a">red</choice><choice event="b">blue
+        </choice><noinput><exit/></noinput></menu>"""
+    )
+    assert texts(made) == ["Say red Say blue"]
+    heard = plain("Say red Say blue") + 2000
+    assert [record["time"] for record in of(made, "listening")] == [heard / 1000]
+
+
 def test_pauses_count_in_what_a_command_says(played: Played) -> None:
     made = played(
         '<form xmlns:p="urn:prima:dialogue:1"><block><p:turn-and-speak angle="1">One'
@@ -224,6 +236,18 @@ def test_pauses_count_in_what_a_command_says(played: Played) -> None:
     )
     start, end = of(made, "start")[0], of(made, "end")[0]
     assert end["time"] - start["time"] == pytest.approx((plain("One two") + 3000) / 1000)
+
+
+def test_a_pause_before_a_command_goes_ahead_of_what_it_says(played: Played) -> None:
+    made = played(
+        """<form xmlns:p="urn:prima:dialogue:1"><block><prompt><break time="2s"/><p:speak>One <mark
+        name="a"/> two</p:speak></prompt><prompt>three</prompt></block></form>""",
+        policy="prima+x2",
+    )
+    assert takes(made) == [plain("One two") + 2000, plain("three")]
+    asked = of(made, "request")
+    assert [one.get("restartable") for one in asked] == [True, None]
+    assert asked[0]["cues"] == [{"at": 0, "pause": 2000}, {"at": 3, "mark": "a"}]
 
 
 def test_a_long_pause_is_no_failure_of_the_speaker(played: Played) -> None:  # E1
@@ -256,6 +280,41 @@ def test_cues_without_number_are_bounded() -> None:
 )
 def test_text_is_folded_as_one_piece(parts: list[str]) -> None:
     assert fold(parts) == (" ".join("".join(parts).split()), ())
+
+
+def pieces(chance: Random, deep: int) -> list[str | Cue]:
+    """Random words and cues, set times inside each other."""
+    made: list[str | Cue] = []
+    for _ in range(chance.randint(0, 5)):
+        match chance.randint(0, 6):
+            case 0 if deep:
+                inner = pieces(chance, deep - 1)
+                made += [Cue(0, "lasts", chance.choice([0, 1, 900])), *inner, Cue(0, "end")]
+            case 1:
+                made.append(Cue(0, "rate", chance.choice([0.1, 1.0, 10.0])))
+            case 2:
+                made.append(Cue(0, "pause", chance.choice([1, 5000])))
+            case 3:
+                made.append(Cue(0, "mark", f"m{len(made)}"))
+            case 4:
+                made.append(Cue(0, "sentence"))
+            case _:
+                made.append(chance.choice(["One. ", "two", " ", "...", "日本 "]))
+    return made
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_time_never_goes_back(seed: int) -> None:
+    made = pieces(Random(seed), 3)
+    text, cues = fold(made)
+    laid = timeline(text, "en", {}, cues)
+    assert text == " ".join("".join(one for one in made if isinstance(one, str)).split())
+    assert len(laid.ends) == len(text) and laid.heard(laid.total) == text
+    assert list(laid.ends) == sorted(laid.ends)
+    times = [time for time, _ in laid.marks]
+    assert times == sorted(times) and all(0 <= time <= laid.total for time in times)
+    named = [one.value for one in made if isinstance(one, Cue) and one.kind == "mark"]
+    assert [name for _, name in laid.marks] == named
 
 
 # Values that are none -------------------------------------------------------------------------

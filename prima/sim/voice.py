@@ -93,7 +93,7 @@ class Timeline:
 
     def heard(self, time: float) -> str:
         """What has been heard of the text after a time, in whole words."""
-        return whole_words(self.text, sum(1 for end in self.ends if end <= time))
+        return whole_words(self.text, sum(1 for end in self.ends if round(end) <= time))
 
     def passed(self, time: float) -> int:
         """How many marks have been passed after a time."""

@@ -17,6 +17,7 @@ from prima.voicexml.events import Events, thrown_of
 from prima.voicexml.fetching import Request, fetch, gathered
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
+from prima.voicexml.prompts import Speech
 from prima.voicexml.scopes import Documents
 from prima.voicexml.state import (
     Context,
@@ -135,20 +136,20 @@ class Machine:
         except ValueError:
             return default
 
-    def enumeration(self, node: Node, context: Context, local: Scope) -> str:
-        """What enumerate says: each choice, in its own words (2.2.4)."""
+    def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """Read what enumerate says: each choice, in its own words (2.2.4)."""
         owner = context.item if context.item is not None else context.form
         if owner is None:
-            return ""
+            return
         choices, keys = owner.all("choice", "option"), numbered(owner)
         if not node.content:
-            return "; ".join(filter(None, map(words_of, choices)))
-        said = []
+            speech.parts.append("; ".join(filter(None, map(words_of, choices))))
+            return
         for choice in choices:
             self.engine.set(local, "_prompt", words_of(choice))
             self.engine.set(local, "_dtmf", keys[choice.index])
-            said.append(self.content.inner(node, context, local))
-        return " ".join(said)
+            self.content.read_all(node, context, local, speech)
+            speech.parts.append(" " if choice is not choices[-1] else "")
 
     # Documents -----------------------------------------------------------------------
 

@@ -179,14 +179,12 @@ class Speaker:
         queue = self.owner.queue
         last = queue[-1] if queue and queue[-1].type == "speak" else None
         if last is not None and text:
-            last.cues, self.ahead = (*self.ahead, *cues), ()
-        elif last is not None:
-            last.cues += later(cues, len(last.text or ""))
+            cue_up(last, (*self.ahead, *cues))
+            self.ahead = ()
+        elif last is not None and cues:
+            cue_up(last, (*last.cues, *later(cues, len(last.text or ""))))
         else:
             self.ahead += later(cues, 0)
-        # The author has said from where a text with marks can go on (X2).
-        if last is not None:
-            last.restartable = any(cue.kind == "mark" for cue in last.cues)
 
     def question_cues(
         self, asked: Command | None, before: list[Command], hotword: bool
@@ -215,12 +213,6 @@ class Speaker:
         for item in [node] if node.tag in SPOKEN - {"prompt"} else node.content:
             self.read(item, context, local, speech)
         return speech
-
-    def inner(self, node: Node, context: Context, local: Scope) -> str:
-        """What an element's content says, as text alone."""
-        speech = Speech(self.lang(node, context), source(node))
-        self.read_all(node, context, local, speech)
-        return "".join(part for part in speech.parts if isinstance(part, str))
 
     def flush(self, speech: Speech) -> None:
         """Queue what has been read."""
@@ -271,7 +263,7 @@ class Speaker:
             case tag if tag in SILENT:
                 speech.parts.append(" ")
             case "enumerate":
-                speech.parts.append(self.owner.enumeration(node, context, local))
+                self.owner.enumeration(node, context, local, speech)
             case "foreach":
                 for element in self.elements(node, context, local):
                     self.engine.put(local, node.get("item"), element)
@@ -322,6 +314,12 @@ class Speaker:
             if uri is None:
                 return  # an undefined one is not said at all, nor is what it holds
             name = shown(uri)
+            ms = self.owner.items_of.recorder.lengths.get(name)
+            if ms is not None:  # what a record has taken is played back as its words (2.3.6)
+                opened = speech.open(ms)
+                speech.parts.append(f" {name} ")
+                speech.close(opened)
+                return
         ms = self.recording(context.page.base(), speech.base, name)
         speech.parts.append(" ")
         if node.text or node.nodes:
@@ -380,5 +378,14 @@ class Speaker:
         said, cues = speech.take()
         self.owner.count_output(len(said), node)
         made = Command(name, args, said or None, lang=lang or context.page.lang)
-        made.source, made.cues = source(node), cues if said else ()
+        made.source = source(node)
+        if said:
+            cue_up(made, (*self.ahead, *cues))
+            self.ahead = ()
         return made
+
+
+def cue_up(command: Command, cues: tuple[Cue, ...]) -> None:
+    """Give a Command its cues. By marks the author says from where it can go on (X2)."""
+    command.cues = cues
+    command.restartable = command.type == "speak" and any(cue.kind == "mark" for cue in cues)
