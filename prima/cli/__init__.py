@@ -1,0 +1,111 @@
+"""The command line: it alone prints, sets exit codes and catches everything.
+
+Exit codes: 0 fine; 1 problems found, or transcripts differ; 2 wrong usage or
+unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from typing import Any
+
+import click
+
+from prima import __version__
+from prima.cli.common import tell
+from prima.errors import DocumentError, RunError, UsageError, did_you_mean
+
+COMMANDS = ("validate", "run", "show", "diff", "replay", "explain", "study", "documents")
+"""Each is a module of this package, with a command of its name; in the order of the help."""
+
+
+class Commands(click.Group):
+    """Commands that are imported when they are wanted, with a suggestion for a misspelt one."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of all commands."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """A command by its name."""
+        if cmd_name not in COMMANDS:
+            return None
+        found = getattr(import_module(f"prima.cli.{cmd_name}"), cmd_name)
+        assert isinstance(found, click.Command)
+        return found
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find a command, or say which one was probably meant."""
+        name = args[0] if args else ""
+        if name and not name.startswith("-") and self.get_command(ctx, name) is None:
+            hint = did_you_mean(name, self.list_commands(ctx))
+            raise click.UsageError(f'There is no command "{name}". {hint}'.rstrip(), ctx)
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="prima")
+def cli() -> None:
+    """Mediate robot applications written as XML documents.
+
+    \b
+    prima validate documents/fa/follow.xml
+    prima run documents/scenarios/follow-during-navigation.xml
+    """
+
+
+def main() -> None:
+    """Run the command line; every way out has its exit code and no traceback."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    code: Any = 0
+    try:
+        code = cli.main(standalone_mode=False)
+        sys.stdout.flush()
+        code = code if isinstance(code, int) else 0
+    except SystemExit:
+        code = 0  # click's way of saying that nobody reads any more
+    except DocumentError as error:
+        for problem in error.problems:
+            tell(str(problem))
+        code = 1
+    except UsageError as error:
+        tell(f"prima: {error}")
+        code = 2
+    except RunError as error:
+        tell(f"prima: {error}")
+        code = 3
+    except click.ClickException as error:
+        context = getattr(error, "ctx", None)
+        usage = f"{context.get_usage()}\n" if context is not None else ""
+        tell(f"{usage}prima: {error.format_message()}")
+        code = 2
+    except (click.Abort, KeyboardInterrupt):
+        tell("prima: interrupted")
+        code = 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    except OSError as error:
+        tell(f"prima: cannot go on: {error.strerror}.")
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        code = 2
+    except MemoryError:
+        tell("prima: out of memory")
+        code = 3
+    except Exception as error:
+        if "PRIMA_DEBUG" in os.environ:
+            raise
+        click.echo(
+            f"prima: this is a defect of prima: {type(error).__name__}: {error}."
+            " Please report it; PRIMA_DEBUG=1 shows where.",
+            err=True,
+        )
+        code = 3
+    sys.exit(code)

@@ -1,0 +1,114 @@
+"""What the commands share: printing, options, and a guard against scripts that do not end."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from prima.errors import Problem, UsageError
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
+
+POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
+WATCHDOG_SECONDS = 5.0
+"""How long one evaluation of a document's script may hold the process up."""
+INSTANT_SECONDS = 20.0
+"""How long the scripts of one instant of a run may take together."""
+
+format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json"]),
+    default="text",
+    help="What to print.",
+)
+why_option = click.option(
+    "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
+)
+
+
+def coloured() -> bool:
+    """Whether to colour what goes to stdout."""
+    return sys.stdout.isatty() and "NO_COLOR" not in os.environ
+
+
+def clean(text: str) -> str:
+    """Text of a stranger's without control characters, which a terminal would obey."""
+    return "".join(
+        letter if letter.isprintable() or letter in "\n\t" else "\ufffd" for letter in text
+    )
+
+
+def put(text: str) -> None:
+    """Data, to stdout."""
+    click.echo(clean(text), nl=not text.endswith("\n"))
+
+
+def tell(text: str) -> None:
+    """A message, to stderr."""
+    click.echo(clean(text), err=True)
+
+
+def print_json(data: Any) -> None:
+    """Data as JSON, to stdout."""
+    import json
+
+    click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+
+
+def problem_data(problem: Problem) -> dict[str, Any]:
+    """A problem for a machine to read."""
+    return {
+        "file": problem.place.file,
+        "line": problem.place.line,
+        "column": problem.place.column,
+        "severity": problem.severity,
+        "code": problem.code,
+        "message": problem.message,
+        "remedy": problem.remedy,
+    }
+
+
+def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
+    """Run with the transcript written line by line, so that nothing is lost on the way."""
+    try:
+        with open(output, "w", encoding="utf-8", buffering=1) as stream:
+            return rehearse(stream.write)
+    except OSError as error:
+        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+
+
+def start_watchdog() -> None:
+    """End the process when a script escapes the engine's own limits (exit code 3).
+
+    The engine lets go of the interpreter lock while it evaluates, so this thread
+    runs even if an evaluation never comes back. What was written is on disk.
+    """
+    import threading
+    import time
+
+    from prima.interpreter.expressions import Engine
+    from prima.session import Session
+
+    def watch() -> None:
+        seen, since = -1, time.monotonic()
+        instant, began = -1, time.monotonic()
+        while True:
+            time.sleep(0.25)
+            count = Engine.evaluations
+            if Session.instants != instant:
+                instant, began = Session.instants, time.monotonic()
+            if count % 2 == 0 or count != seen:
+                seen, since = count, time.monotonic()
+            stuck = time.monotonic() - since > WATCHDOG_SECONDS
+            if stuck or (count % 2 and time.monotonic() - began > INSTANT_SECONDS):
+                message = "prima: a document's script does not come back; the run is ended.\n"
+                os.write(2, message.encode())
+                os._exit(3)
+
+    threading.Thread(target=watch, daemon=True).start()

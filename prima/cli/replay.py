@@ -1,0 +1,30 @@
+"""prima replay."""
+
+from __future__ import annotations
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import run_into, tell
+
+
+@click.command()
+@click.argument("transcript", type=click.Path())
+@click.argument("scenario", type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Write the replayed transcript here.")
+def replay(transcript: str, scenario: str, output: str | None) -> None:
+    """Run a transcript's inbound events again and check that the same comes out.
+
+    \b
+    prima replay mediated.jsonl documents/scenarios/follow-during-navigation.xml
+    """
+    from prima import api
+
+    original = api.read(transcript)
+    again = api.replay(original, scenario)
+    if output is not None:
+        run_into(output, lambda write: (write(again.dumps()), again)[1])
+    same = again.dumps() == original.dumps()
+    tell("the same, byte for byte" if same else "the replay differs")
+    if not same:
+        raise Exit(1)

@@ -1,0 +1,46 @@
+"""prima study."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from prima.cli.common import print_json, put, start_watchdog
+
+
+@click.command()
+@click.argument("scenarios", nargs=-1, type=click.Path())
+@click.option("--policy", "policies", multiple=True, help="Only this policy; may be repeated.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "csv"]),
+    default="text",
+    help="What to print.",
+)
+def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
+    """Run situations under every policy and measure what became of units, streams and channel.
+
+    Without SCENARIOS these are the ten situations of the thesis. docs/measures.md
+    says what the columns count. A "!" marks a run in which an application failed.
+
+    \b
+    prima study
+    prima study my-scenario.xml --policy prima --policy fifo --format csv
+    """
+    from prima.study import POLICIES as ALL
+    from prima.study import format_csv, format_table, result_data, situations
+    from prima.study import study as run_study
+
+    chosen, results = scenarios or tuple(map(str, situations())), []
+    total = len(chosen) * len(policies or ALL)
+    start_watchdog()
+    for result in run_study(chosen, policies or ALL):
+        results.append(result)
+        if sys.stderr.isatty():
+            click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
+    if form == "json":
+        print_json([result_data(result) for result in results])
+    else:
+        put(format_csv(results) if form == "csv" else format_table(results))
