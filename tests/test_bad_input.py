@@ -102,7 +102,7 @@ def prima(
 ) -> Prima:
     """The command line in this process, in the test's own folder."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "_start_watchdog", lambda: None, raising=False)
+    monkeypatch.setattr("prima.cli.run.start_watchdog", lambda: None)
 
     def call(*args: object) -> Result:
         monkeypatch.setattr(sys, "argv", ["prima", *map(str, args)])
@@ -683,7 +683,8 @@ def test_a_script_that_never_comes_back(tmp_path: Path) -> None:
         "import sys, time\n"
         "import prima.interpreter.expressions as expressions\n"
         "from prima import cli\n"
-        "cli.WATCHDOG_SECONDS = 0.5\n"
+        "from prima.cli import common\n"
+        "common.WATCHDOG_SECONDS = 0.5\n"
         "made = expressions.Engine.__init__\n"
         "def make(self):\n"
         "    made(self)\n"
