@@ -275,6 +275,13 @@ def test_cues_without_number_are_bounded() -> None:
     assert kinds.count("lasts") == kinds.count("end")
 
 
+def test_pauses_with_nothing_to_say_are_bounded(played: Played) -> None:
+    pauses = '<break time="1ms"/>' * 10
+    prompts = f"<prompt>{pauses}</prompt>" * 300
+    made = played(f"<form><block>{prompts}<prompt>One</prompt>{prompts}</block></form>")
+    assert takes(made)[0] <= plain("One") + 3 * MAX_CUES
+
+
 @pytest.mark.parametrize(
     "parts", [["a", "b"], [" a", "b "], ["a ", " b"], ["", "\n", "a"], ["a\tb", "", " c", "d"], []]
 )
@@ -592,6 +599,13 @@ def test_with_hotword_bargein_an_answer_ends_the_prompt(played: Played) -> None:
     made = played(HOT, (500, "what"), (1500, "yes"))
     assert (logs(made), of(made, "listening")) == (["yes"], [])
     assert of(made, "end")[-1]["time"] == pytest.approx(1.5 + plain("yes") / 1000, abs=0.1)
+
+
+def test_without_bargein_there_is_no_hotword(played: Played) -> None:
+    hot = HOT.replace("<prompt", '<prompt bargein="false"').replace(
+        "<log>no</log>", "<log>no</log><exit/>"
+    )
+    assert logs(played(hot, (500, "yes"), (4000, "what"))) == ["no"]
 
 
 def test_hotword_may_be_a_property(played: Played) -> None:  # 6.3.2

@@ -384,7 +384,7 @@ class Machine:
         lang = asked.lang if asked and asked.lang else own or context.page.lang
         text = asked.text if asked else None
         kind = prompt.get("bargeintype") if prompt is not None else ""
-        hotword = (kind or self.setting(context, "bargeintype")) == "hotword"
+        hotword = args["bargein"] and (kind or self.setting(context, "bargeintype")) == "hotword"
         cues = self.content.question_cues(asked, self.queue, hotword)
         return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
 

@@ -13,7 +13,16 @@ from prima.interpreter.expressions import Scope, ScriptError
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Json
 from prima.values import shown
-from prima.voicexml.cues import MAX_NAME, break_ms, clipped, fold, later, milliseconds, rate_of
+from prima.voicexml.cues import (
+    MAX_CUES,
+    MAX_NAME,
+    break_ms,
+    clipped,
+    fold,
+    later,
+    milliseconds,
+    rate_of,
+)
 from prima.voicexml.document import FetchError, join
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
@@ -181,9 +190,9 @@ class Speaker:
         if last is not None and text:
             cue_up(last, (*self.ahead, *cues))
             self.ahead = ()
-        elif last is not None and cues:
+        elif last is not None and cues and len(last.cues) < MAX_CUES:
             cue_up(last, (*last.cues, *later(cues, len(last.text or ""))))
-        else:
+        elif last is None and len(self.ahead) < MAX_CUES:
             self.ahead += later(cues, 0)
 
     def question_cues(
