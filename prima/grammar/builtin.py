@@ -54,6 +54,8 @@ CURRENCIES |= {
     for unit in ("dollar", "dollars")
 }
 CURRENCIES |= {code.lower(): code for code in CURRENCIES.values()}
+MOST_WORDS = 20
+"""A longer amount of money without its currency is none."""
 PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
          "セント": ""}  # fmt: skip
 """Hundredths, with the currency if they tell it."""
@@ -171,10 +173,15 @@ def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         match = re.fullmatch(r"([0-9]*)(?:\*([0-9]*))?", _keys(text))
         if match is None or not (match[1] or match[2]):
             return None
-        return f"{int(match[1] or '0')}{'.' + match[2] if match[2] else ''}"
+        return f"{_plain(match[1])}{'.' + match[2] if match[2] else ''}"
     plain = _POINT_FIRST.sub("0.", text.strip().replace("\u2212", "-"))
     sign = plain[0] if plain[:1] in ("-", "+") else ""
     return number(f"{sign}{fold(plain)}")
+
+
+def _plain(figures: str) -> str:
+    """Figures without needless zeros."""
+    return figures.lstrip("0") or "0"
 
 
 def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
@@ -182,14 +189,14 @@ def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         match = re.fullmatch(r"([0-9]*)(?:\*([0-9]{0,2}))?", _keys(text))
         if match is None or not (match[1] or match[2]):
             return None
-        return f"{int(match[1] or '0')}.{(match[2] or ''):0<2}"
+        return f"{_plain(match[1])}.{(match[2] or ''):0<2}"
     plain = _POINT_FIRST.sub("0.", text.strip(" !?"))
     if match := _MONEY.fullmatch(plain):
         unit = (match[1] or match[4] or "").lower()
         code = CURRENCIES.get(unit)
         if (unit and code is None) or (match[1] and match[4]):
             return None
-        whole = int(match[2].replace(",", "")[:40])
+        whole = _plain(match[2].replace(",", ""))
         return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
     return _spoken_money(fold(plain))
 
@@ -234,7 +241,7 @@ def _bare_money(said: str) -> str | None:
     """``twelve``, ``twelve fifty``: no currency was said."""
     main, cents = _amount(said)
     words = said.split()
-    for at in range(1, len(words)):
+    for at in range(1, min(len(words), MOST_WORDS)):
         if main is not None:
             break
         low = words[at:]

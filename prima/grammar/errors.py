@@ -37,9 +37,14 @@ class Problems:
         self.found: list[Problem] = []
         self.kind: type[GrammarError] = GrammarError
 
+    @property
+    def full(self) -> bool:
+        """Whether there are so many that no more are told."""
+        return len(self.found) >= MOST_PROBLEMS
+
     def note(self, where: Where, code: str, message: str, remedy: str = "") -> None:
         """Note one thing; after many, no more are looked at."""
-        if len(self.found) < MOST_PROBLEMS:
+        if not self.full:
             self.found.append(Problem(where(), "error", code, message, remedy))
 
     def unsupported(

@@ -10,12 +10,14 @@ from prima.grammar.chart import GARBAGE_COST, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.model import Document, Mode, Reference
 from prima.grammar.ranking import best, frames
-from prima.grammar.semantics import Failure, Interpreter, SemanticError
+from prima.grammar.semantics import Budget, Failure, Interpreter, SemanticError
 from prima.grammar.text import utterance
 from prima.messages import Json
 
 MOST_ANALYSES = 64
 """How many analyses of an utterance are looked at for different meanings."""
+MOST_WORK = 20_000
+"""How large those after the first may be together, in expansions that matched."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +106,13 @@ class Grammar:
             return []
         found: list[Match] = []
         looked_at = 1 if most == 1 else min(most * 4, MOST_ANALYSES)
+        work, budget = 0, Budget()
         for analysis in best(top, looked_at):
+            work += analysis.size
+            if found and (work > MOST_WORK or budget.over):
+                break
             frame, lost = frames(analysis, said)
-            reader = Interpreter(mode)
+            reader = Interpreter(mode, budget)
             value: Json = None
             error = None
             try:

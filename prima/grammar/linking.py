@@ -13,6 +13,7 @@ from prima.grammar.errors import (
     UnsupportedBuiltIn,
     UnsupportedFormat,
     Where,
+    refuse,
 )
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.model import Document, Reference, Rule
@@ -51,6 +52,8 @@ class Library:
             document = self._unlinked.pop(0)
             self._format(document)
             for reference in document.references:
+                if self.problems.full:
+                    return
                 reference.rule = self._resolve(document, reference)
 
     def fetch(self, uri: str, media: str, where: Where) -> Document | None:
@@ -112,7 +115,11 @@ class Library:
         if not uri:
             self.problems.note(reference.where, "bad-value", "The reference names no rule.")
             return None
-        where, name = urldefrag(urljoin(base_of(document), uri))
+        try:
+            where, name = urldefrag(joined(base_of(document), uri, reference.where))
+        except GrammarError as error:
+            self.problems.extend(error.problems)
+            return None
         name = unquote(name)
         if where == document.uri:
             found: Document | None = document
@@ -166,4 +173,17 @@ class Library:
 
 def base_of(document: Document) -> str:
     """What relative URIs of a document are relative to (SRGS 4.9)."""
-    return urljoin(document.uri, document.base) if document.base else document.uri
+    return joined(document.uri, document.base, document.where) if document.base else document.uri
+
+
+def joined(base: str, uri: str, where: Where) -> str:
+    """A URI as it is meant at a base.
+
+    Raises:
+        GrammarError: one of them is no URI.
+    """
+    try:
+        return urljoin(base, uri)
+    except ValueError as error:
+        message = f'"{uri[:80]}" is no URI: {error}.'
+        raise refuse(GrammarError, where(), "bad-value", message) from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import partial
-from urllib.parse import urldefrag, urljoin
+from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Place
 from prima.grammar.builtin import TYPES, built_in
@@ -17,13 +17,15 @@ from prima.grammar.errors import (
     refuse,
 )
 from prima.grammar.grammar import Grammar
-from prima.grammar.linking import Fetch, Library
+from prima.grammar.linking import Fetch, Library, joined
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
 from prima.markup.reader import MAX_BYTES, parse, too_large
 from prima.markup.tree import Node, Source
 
-XML_TYPES = frozenset(["application/srgs+xml", "application/grammar+xml"])
+XML_TYPES = frozenset(
+    ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
+)
 ABNF_TYPES = frozenset(["application/srgs", "application/grammar"])
 OPEN_TYPES = frozenset(
     ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
@@ -47,6 +49,7 @@ def load(
     type: str = "",
     rule: str = "",
     languages: Languages | None = None,
+    lenient: bool = False,
 ) -> Grammar:
     """Load a grammar.
 
@@ -60,6 +63,7 @@ def load(
         type: the media type, where it is known.
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
+        lenient: whether files without a namespace are taken for SRGS, as some voice browsers do.
 
     Raises:
         UnsupportedFormat: the media type, or the format of the tags, is not known.
@@ -67,16 +71,16 @@ def load(
         UnsupportedBuiltIn: there is no such built-in type.
         GrammarError: the grammar is no legal one.
     """
-    library = Library(fetch, partial(_document, lang))
+    library = Library(fetch, partial(_document, lang, lenient))
     if isinstance(source, str) and _NAMED.fullmatch(source.strip()):
         return _named(source.strip(), mode, lang)
     if isinstance(source, Node):
         document, rule = _element(library, source, base, lang, mode, type, rule)
     else:
-        data = source.encode() if isinstance(source, str) else source
+        data = source.encode(errors="surrogatepass") if isinstance(source, str) else source
         if isinstance(source, str) and "encoding" in source[:200]:
-            data = _DECLARED.sub(r"\1", source, count=1).encode()
-        document = _document(lang, library, base, data, type)
+            data = _DECLARED.sub(r"\1", source, count=1).encode(errors="surrogatepass")
+        document = _document(lang, lenient, library, base, data, type)
         library.add(document)
     _language(library, document, languages)
     library.link()
@@ -88,7 +92,8 @@ def load(
 
 
 def _language(library: Library, document: Document, languages: Languages | None) -> None:
-    if languages is not None and document.mode == "voice" and not languages(document.lang):
+    told = document.lang and document.mode == "voice"
+    if told and languages is not None and not languages(document.lang):
         message = f'Grammars in "{document.lang}" are not taken.'
         problems = library.problems
         problems.unsupported(UnsupportedLanguage, document.where, "language", message)
@@ -126,7 +131,8 @@ def _element(
 ) -> tuple[Document, str]:
     """A <grammar> element inside a document: rules, text in ABNF, or a reference by src."""
     media = _media(node.get("type") or type)
-    base = urljoin(base, node.get("xml:base")) if node.get("xml:base") else base
+    if node.get("xml:base"):
+        base = joined(base, node.get("xml:base"), partial(node.attribute_place, "xml:base"))
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
     where = partial(_place, node)
@@ -157,7 +163,7 @@ def _external(
     library: Library, node: Node, base: str, media: str, rule: str
 ) -> tuple[Document, str]:
     where = partial(node.attribute_place, "src")
-    uri, fragment = urldefrag(urljoin(base, node.get("src").strip()))
+    uri, fragment = urldefrag(joined(base, node.get("src").strip(), where))
     _known_type(media, where(), "")
     document = library.fetch(uri, media, where)
     library.problems.check()
@@ -176,7 +182,9 @@ def _external(
 # Files
 
 
-def _document(lang: str, library: Library, uri: str, data: bytes, type: str) -> Document:
+def _document(
+    lang: str, lenient: bool, library: Library, uri: str, data: bytes, type: str
+) -> Document:
     """The bytes of a whole file as a document; its language is its own."""
     media = _media(type)
     uri, file = urldefrag(uri)[0], uri or "grammar"
@@ -202,7 +210,7 @@ def _document(lang: str, library: Library, uri: str, data: bytes, type: str) -> 
     except DocumentError as error:
         raise GrammarError(error.problems) from None
     document.where = partial(_place, node)
-    read_xml(node, document, library.problems, inline=False)
+    read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
 
 

@@ -38,6 +38,8 @@ _ONE_DIGIT = re.compile(
         ]
     )
 )
+MOST_FIGURES = 100
+"""A longer number is none."""
 _FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
 _JAPANESE = re.compile(f"[0-9{''.join([*KANJI, *_SMALL, *_LARGE])}]+")
 
@@ -92,7 +94,7 @@ def _dialled(said: str) -> str | None:
 def cardinal(text: str) -> int | None:
     """A whole number in a folded text: figures, English or Japanese words; or None."""
     if _FIGURES.fullmatch(text):
-        return int(text.replace(",", "")[:40])
+        return int(text.replace(",", "")) if len(text) <= MOST_FIGURES else None
     if _JAPANESE.fullmatch(text):
         return _japanese(text)
     return _english(text.split())
@@ -130,7 +132,8 @@ def _english(words: list[str]) -> int | None:
 def _japanese(text: str) -> int | None:
     """``二百三``, ``3千``; digits alone are read one by one."""
     if not set(text) & (_SMALL.keys() | _LARGE.keys()):
-        return int("".join(str(KANJI.get(letter, letter)) for letter in text)[:40])
+        figures = "".join(str(KANJI.get(letter, letter)) for letter in text)
+        return int(figures) if len(figures) <= MOST_FIGURES else None
     total, group, number = 0, 0, ""
     for letter in text:
         if letter in _SMALL:

@@ -6,8 +6,9 @@ repeats that which takes more. Costs are those of weights, repeat probabilities 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 from prima.grammar.chart import Cell, Way
@@ -17,6 +18,9 @@ from prima.messages import Json
 
 MOST_CELLS = 200_000
 """How large an analysis may be; a few short rules can make one of any size out of nothing."""
+
+MOST_KNOWN = 100_000
+"""How many analyses are kept of all cells together; at least the best of each is."""
 
 
 class Analysis(NamedTuple):
@@ -51,28 +55,57 @@ def best(top: Cell, most: int) -> list[Analysis]:
     order, cyclic = _order(top, strict=False)
     if cyclic:  # keep to ways made of what was there before: every cell has one
         order, _ = _order(top, strict=True)
+    most = max(1, min(most, MOST_KNOWN // len(order)))
     known: dict[int, list[Analysis]] = {}
     for cell in order:
-        found: list[tuple[float, int, int, int, int, Analysis]] = []
-        for way in _ways(cell, cyclic):
-            for i, left in enumerate(_known(known, way.left)):
-                for j, right in enumerate(_known(known, way.right)):
-                    if (i + 1) * (j + 1) > most:
-                        break
-                    size = 1 + (left.size if left else 0) + (right.size if right else 0)
-                    if size > MOST_CELLS:
-                        continue
-                    cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
-                    end = way.left.end if way.left else 0
-                    one = Analysis(cost, cell, left, right, size)
-                    found.append((round(cost, 9), way.rank, -end, i, j, one))
-        found.sort(key=lambda item: item[:5])
-        known[cell.number] = [item[5] for item in found[:most]]
+        known[cell.number] = _best(cell, list(_ways(cell, cyclic)), known, most)
     return known[top.number]
 
 
-def _known(known: dict[int, list[Analysis]], cell: Cell | None) -> list[Analysis | None]:
-    return [None] if cell is None else list(known[cell.number])
+Candidate = tuple[float, int, int, int, int, int]
+"""Cost, rank of the way and where its last part begins; which analyses of its parts; which way."""
+
+
+def _best(
+    cell: Cell, ways: list[Way], known: dict[int, list[Analysis]], most: int
+) -> list[Analysis]:
+    """The best analyses of a cell by those of its parts, each made only when it is next.
+
+    What follows a candidate, the next analysis of one of its parts, is never better.
+    """
+    parts = [(_known(known, way.left), _known(known, way.right)) for way in ways]
+
+    def candidate(number: int, i: int, j: int) -> Candidate | None:
+        lefts, rights = parts[number]
+        if i >= len(lefts) or j >= len(rights):
+            return None
+        way, left, right = ways[number], lefts[i], rights[j]
+        cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
+        return round(cost, 9), way.rank, -(way.left.end if way.left else 0), i, j, number
+
+    first = [one for number in range(len(ways)) if (one := candidate(number, 0, 0))]
+    heapify(first)
+    found: list[Analysis] = []
+    seen: set[tuple[int, int, int]] = set()
+    while first and len(found) < most:
+        *_, i, j, number = heappop(first)
+        if (number, i, j) in seen:
+            continue
+        seen.add((number, i, j))
+        left, right = parts[number][0][i], parts[number][1][j]
+        size = 1 + (left.size if left else 0) + (right.size if right else 0)
+        if size <= MOST_CELLS:
+            cost = ways[number].cost + (left.cost if left else 0) + (right.cost if right else 0)
+            found.append(Analysis(cost, cell, left, right, size))
+        if most > 1:
+            for one in (candidate(number, i + 1, j), candidate(number, i, j + 1)):
+                if one is not None:
+                    heappush(first, one)
+    return found
+
+
+def _known(known: dict[int, list[Analysis]], cell: Cell | None) -> Sequence[Analysis | None]:
+    return (None,) if cell is None else known[cell.number]
 
 
 def _ways(cell: Cell, strict: bool) -> Iterator[Way]:

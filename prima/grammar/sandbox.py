@@ -12,11 +12,12 @@ from typing import Any
 
 import _quickjs as quickjs
 
+from prima.grammar.semantics import TIME_LIMIT, Budget
 from prima.messages import Json
 from prima.prelude import MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
-TIME_LIMIT = 0.5
-"""Seconds of processor time that the tags of one match may take."""
+DONE = 1_000_000
+"""What comes after a rule's last tag."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves the engine."""
 
@@ -59,7 +60,7 @@ class ScriptError(Exception):
 class Sandbox:
     """The ECMAScript of one grammar document while one utterance is interpreted."""
 
-    def __init__(self) -> None:
+    def __init__(self, budget: Budget) -> None:
         context = quickjs.Context()
         context.set_memory_limit(MEMORY_LIMIT)
         context.set_max_stack_size(STACK_LIMIT)
@@ -68,10 +69,10 @@ class Sandbox:
         self._context = context
         self._helpers = context.eval(HELPERS)
         self._functions: dict[str, Any] = {}
-        self._spent = 0.0
+        self._budget = budget
 
     def _call(self, function: Any, *given: Any) -> Any:
-        if self._spent > TIME_LIMIT:
+        if self._budget.over:
             raise ScriptError(f"the tags took longer than {TIME_LIMIT:g} s")
         began = perf_counter()
         try:
@@ -81,7 +82,7 @@ class Sandbox:
         except (TypeError, ValueError, OverflowError, MemoryError) as error:
             raise ScriptError(f"it gives what cannot be used: {error}") from None
         finally:
-            self._spent += perf_counter() - began
+            self._budget.spent += perf_counter() - began
 
     def run(self, code: str) -> None:
         """Run a script in the global scope (SISR 1.0: global tags)."""
@@ -103,10 +104,13 @@ class Sandbox:
         """Run the tags of a rule; ``$next(out)`` in them passes a rule that was referred to."""
         function = self._functions.get(code)
         if function is None:
-            body = f"(function (rules, meta, $next, out) {{\n{code}\nreturn {{ v: out }};\n}})"
+            body = f"(function (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
             function = self._functions[code] = self._call(self._context.eval, body)
         given = [self._member(environment, name) for name in ("rules", "meta", "next")]
-        return self._call(function, *given, self._call(self._context.eval, "({})"))
+        box = self._call(function, *given, self._call(self._context.eval, "({})"))
+        if self.reached(environment) != DONE:
+            raise ScriptError("return stands outside of a function")
+        return box
 
     def reached(self, environment: Any) -> int:
         """Which of a rule's tags was begun last."""

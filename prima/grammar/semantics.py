@@ -53,11 +53,28 @@ class _Result:
     """The value inside its document's engine, if it is there."""
 
 
+TIME_LIMIT = 0.5
+"""Seconds of processor time that the tags of one utterance may take."""
+
+
+@dataclass(slots=True)
+class Budget:
+    """The time that the tags of one utterance have taken, in all documents and analyses."""
+
+    spent: float = 0.0
+
+    @property
+    def over(self) -> bool:
+        """Whether it was all spent."""
+        return self.spent > TIME_LIMIT
+
+
 class Interpreter:
     """Interprets one analysis of an utterance."""
 
-    def __init__(self, mode: str) -> None:
+    def __init__(self, mode: str, budget: Budget) -> None:
         self.mode = mode
+        self.budget = budget
         self.tokens: list[str] = []
         self._sandboxes: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
@@ -183,7 +200,7 @@ class Interpreter:
         if found is None:
             from prima.grammar.sandbox import Sandbox, ScriptError
 
-            found = self._sandboxes[id(document)] = Sandbox()
+            found = self._sandboxes[id(document)] = Sandbox(self.budget)
             for tag in document.globals:
                 try:
                     found.run(tag.code)

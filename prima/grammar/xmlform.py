@@ -45,18 +45,24 @@ VOICEXML |= {"maxstale", "accept"}
 """What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
 
 
-def read_xml(node: Node, document: Document, problems: Problems, inline: bool) -> None:
-    """Read a <grammar> element into a document; ``inline`` where it stands in another one."""
-    _Reader(document, problems, inline).grammar(node)
+def read_xml(
+    node: Node, document: Document, problems: Problems, inline: bool, lenient: bool = False
+) -> None:
+    """Read a <grammar> element into a document; ``inline`` where it stands in another one.
+
+    ``lenient`` takes a file without a namespace for SRGS.
+    """
+    _Reader(document, problems, inline, lenient).grammar(node)
 
 
 class _Reader:
     """Reads one grammar; notes what is wrong and goes on."""
 
-    def __init__(self, document: Document, problems: Problems, inline: bool) -> None:
+    def __init__(self, document: Document, problems: Problems, inline: bool, lenient: bool) -> None:
         self.document = document
         self.problems = problems
         self.inline = inline
+        self.lenient = lenient
         self.space = SRGS
 
     def note(
@@ -67,7 +73,8 @@ class _Reader:
     # Header (section 4)
 
     def grammar(self, node: Node) -> None:
-        if node.tag != "grammar" or (not self.inline and node.namespace != SRGS):
+        spaces = (SRGS, "") if self.lenient else (SRGS,)
+        if node.tag != "grammar" or (not self.inline and node.namespace not in spaces):
             remedy = f'Begin with <grammar xmlns="{SRGS}" version="1.0" ...>.'
             self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
             return
@@ -333,7 +340,11 @@ class _Reader:
 
     def _no_text(self, node: Node) -> None:
         if node.text:
-            remedy = "Put it in a <rule>." if node.tag == "grammar" else "Put it in an <item>."
+            remedy = "Put it in an <item>."
+            if node.tag == "grammar":
+                remedy = "Put it in a <rule>."
+                if not node.nodes:
+                    remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
             self.note(node, "stray-text", f"Text cannot stand in <{node.tag}>.", remedy)
 
     def _no_elements(self, node: Node) -> None:
