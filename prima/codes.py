@@ -5,8 +5,9 @@ from __future__ import annotations
 CODES: dict[str, str] = {
     "not-xml": "The file is not well-formed XML: a tag is not closed, a quote is missing, or it is"
     " no XML at all. The place says where reading stopped; the mistake is there or before.",
-    "encoding": "Documents are read as UTF-8, UTF-16, ASCII, ISO-8859-1 or -15, Windows-1252,"
-    " Shift_JIS or EUC-JP. Save the file as UTF-8, which needs no declaration.",
+    "encoding": "Documents are read as UTF-8, UTF-16, ASCII, ISO-8859, Windows-125x, KOI8,"
+    " Shift_JIS, EUC-JP, ISO-2022-JP, GB 2312, GBK, GB 18030, Big5 or EUC-KR. Save the file as UTF-8,"
+    " which needs no declaration.",
     "too-large": "Files are read up to a limit on bytes, elements and attributes, so that nobody's"
     " file can exhaust the machine.",
     "too-deep": "Elements may be nested to a limit. Divide the document into forms and subdialogs.",
@@ -17,6 +18,8 @@ CODES: dict[str, str] = {
     "wrong-root": "The namespace is right but the root element is another one.",
     "wrong-namespace": "The namespace tells what kind of document it is. An application begins with"
     ' <prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="...">.',
+    "no-namespace": "A VoiceXML document whose elements are in no namespace is read as if they were in"
+    " VoiceXML's. Others may take it for no VoiceXML at all.",
     "unknown-element": "The language has no such element. Nothing in a document is silently ignored.",
     "misplaced-element": "The element exists, but not where it stands; the message says where it may.",
     "stray-text": "Text stands where the language has no place for it. What the robot is to say"

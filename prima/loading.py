@@ -22,7 +22,8 @@ from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.check import check_root
-from prima.markup.reader import MAX_BYTES, parse, too_large
+from prima.markup.limits import LIMITS
+from prima.markup.reader import parse, too_large
 
 if TYPE_CHECKING:
     from prima.markup.tree import Node
@@ -44,8 +45,8 @@ def read_file(path: str | Path) -> bytes:
         if Path(path).exists() and not Path(path).is_file():
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with Path(path).open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-            if len(data) > MAX_BYTES:
+            data = stream.read(LIMITS.bytes + 1)
+            if len(data) > LIMITS.bytes:
                 size = Path(path).stat().st_size
                 raise too_large(str(path), max(size, len(data)))
             return data
@@ -78,9 +79,20 @@ def read_application(
     return document, page.problems
 
 
+VOICEXML_ROOT = re.compile(
+    rb"(?:\xef\xbb\xbf|\xff\xfe|\xfe\xff)?"
+    rb"(?:\s++|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>)*+"
+    rb"<(?:[\w.-]+:)?vxml[\s>/]",
+    re.DOTALL,
+)
+"""All before a document's root element, and the beginning of VoiceXML's."""
+
+
 def is_voicexml(data: bytes) -> bool:
     """Whether a file's root element is VoiceXML's, as far as its beginning tells."""
-    return re.search(rb"<vxml[\s>/]", data[:8192]) is not None
+    if b"\0" in data[:4]:  # UTF-16
+        data = data.replace(b"\0", b"")
+    return VOICEXML_ROOT.match(data) is not None
 
 
 def _fetch(folder: Path, uri: str) -> bytes:

@@ -14,22 +14,19 @@ from xml.parsers import expat
 
 from prima.errors import DocumentError, Place, Problem
 from prima.markup.build import (
-    MAX_ATTRIBUTES,
-    MAX_DEPTH,
-    MAX_ELEMENTS,
     MAX_NAME,
     TooMuch,
     Unclear,
     build,
 )
 from prima.markup.check import check_root, check_tree
+from prima.markup.limits import LIMITS
 from prima.markup.tree import Node, Source
 from prima.markup.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from lxml import etree
 
-MAX_BYTES = 2_000_000
 ENCODINGS = frozenset(
     ["utf-8", "ascii", "utf-16", "utf-16-le", "utf-16-be", "koi8-r", "koi8-u"]
     + [f"iso8859-{number}" for number in range(1, 17) if number != 12]
@@ -87,7 +84,7 @@ def decode(file: str, data: bytes) -> str:
         DocumentError: too large, in an unlisted encoding, or not in the one declared.
     """
     start = Place(file)
-    if len(data) > MAX_BYTES:
+    if len(data) > LIMITS.bytes:
         raise too_large(file, len(data))
     encoding = next((name for bom, name in BOMS if data.startswith(bom)), "")
     declared = ENCODING.match(data)
@@ -133,7 +130,7 @@ def too_large(file: str, size: int) -> DocumentError:
     return _error(
         Place(file),
         "too-large",
-        f"The file has {size:,} bytes; at most {MAX_BYTES:,} are read.",
+        f"The file has {size:,} bytes; at most {LIMITS.bytes:,} are read.",
         "Divide it.",
     )
 
@@ -226,9 +223,9 @@ def _beyond(much: TooMuch) -> DocumentError:
         message = f"A name has more than {MAX_NAME:,} characters."
         return _error(place, "too-large", message, "Take a shorter one.")
     if much.what == "attributes":
-        message = f"<{tag}> has more than {MAX_ATTRIBUTES} attributes."
+        message = f"<{tag}> has more than {LIMITS.attributes} attributes."
         return _error(place, "too-large", message, "Remove some.")
-    message = f"The document has more than {MAX_ELEMENTS:,} elements."
+    message = f"The document has more than {LIMITS.elements:,} elements."
     return _error(place, "too-large", message, "Divide it.")
 
 
@@ -243,6 +240,9 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
         return _error(place, "not-xml", "This is JSON, not XML.", remedy)
     if "depth" in message.lower():
         return _too_deep(place)
+    if "Entity" in message:  # told where it ends
+        before = source.text.split("\n")[place.line - 1][: place.column]
+        place = place._replace(column=max(before.rfind("&") + 1, 1))
     if message.startswith("Entity '"):
         name = message.split("'")[1]
         return _error(
@@ -270,7 +270,7 @@ def _too_deep(place: Place) -> DocumentError:
     return _error(
         place,
         "too-deep",
-        f"Elements are nested more than {MAX_DEPTH} deep.",
+        f"Elements are nested more than {LIMITS.depth} deep.",
         "Divide the document into forms and subdialogs.",
     )
 

@@ -32,6 +32,8 @@ from prima.voicexml.vocabulary import (
 )
 
 VERSIONS = ("2.0", "2.1")
+MOST_ALIKE = 5
+"""Of problems that say the same, so many are told, each with its place."""
 INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
 FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
 SPEAKING = frozenset(
@@ -79,9 +81,10 @@ ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 def check_tree(root: Node) -> list[Problem]:
     """Give every node its key, take out what is of foreign namespaces, and tell what is wrong."""
-    problems: list[Problem] = []
-    _check_version(root, problems)
     root.key = "vxml"
+    if problem := _version_problem(root):
+        return [problem]  # of another version, what else seems wrong may be right
+    problems: list[Problem] = []
     stack = [root]
     while stack:
         node = stack.pop()
@@ -96,14 +99,39 @@ def check_tree(root: Node) -> list[Problem]:
             problems.append(Problem(node.place, "error", "stray-text", message))
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
-    return problems
+    return _most(problems)
 
 
-def _check_version(root: Node, problems: list[Problem]) -> None:
-    if "version" in root.attributes and root.get("version") not in VERSIONS:
-        message = f'version "{root.get("version")}" is not a version of VoiceXML that is run here.'
-        place = root.attribute_place("version")
-        problems.append(Problem(place, "error", "bad-value", message, "Write 2.0 or 2.1."))
+def _most(problems: list[Problem]) -> list[Problem]:
+    """The first of problems that say the same; the last of these tells how many there are."""
+    counts = Counter(problem[1:] for problem in problems)
+    if max(counts.values(), default=0) <= MOST_ALIKE:
+        return problems
+    told: Counter[tuple[str, ...]] = Counter()
+    kept: list[Problem] = []
+    for problem in sorted(problems):
+        alike = problem[1:]
+        told[alike] += 1
+        if told[alike] == MOST_ALIKE and counts[alike] > MOST_ALIKE:
+            more = f"So it is at {counts[alike] - MOST_ALIKE} more places."
+            problem = problem._replace(remedy=f"{problem.remedy} {more}".strip())
+        if told[alike] <= MOST_ALIKE:
+            kept.append(problem)
+    return kept
+
+
+def _version_problem(root: Node) -> Problem | None:
+    version = root.get("version").strip()
+    if "version" not in root.attributes:
+        message, remedy = '<vxml> needs the attribute "version".', 'Write version="2.0" or "2.1".'
+        return Problem(root.place, "error", "missing-attribute", message, remedy)
+    if version in VERSIONS:
+        return None
+    message = f'version "{version}" is not a version of VoiceXML that is run here.'
+    remedy = "Write 2.0 or 2.1."
+    if version == "1.0":
+        remedy = "Its elements are others in part: rewrite it in 2.0 or 2.1, and say so here."
+    return Problem(root.attribute_place("version"), "error", "bad-value", message, remedy)
 
 
 def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:

@@ -13,7 +13,7 @@ from prima.markup.reader import parse
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.check import check_code, check_tree
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE, VOICEXML
+from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 __all__ = [
     "PRIMA_NAMESPACE",
@@ -102,8 +102,9 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
         DocumentError: it is not well-formed, or no VoiceXML at all.
     """
     root = parse(file, data)
+    bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
-    page = Page(uri, root, problems=check_tree(root))
+    page = Page(uri, root, problems=[*bare, *check_tree(root)])
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:
@@ -112,6 +113,23 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
             page.problems.append(problem)
         page.dialogs.setdefault(name, node)
     return page
+
+
+def _without_namespace(root: Node) -> list[Problem]:
+    """Take a ``<vxml>`` without any namespace for VoiceXML's, with a warning.
+
+    So do the platforms for which such documents were written; their elements are no others'.
+    """
+    if root.tag != "vxml" or root.namespace:
+        return []
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        node.namespace = node.namespace or NAMESPACE
+        stack.extend(node.nodes)
+    message = "The root element <vxml> has no namespace: it is read as VoiceXML."
+    remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
+    return [Problem(root.place, "warning", "no-namespace", message, remedy)]
 
 
 @dataclass(slots=True)
