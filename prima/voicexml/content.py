@@ -11,22 +11,37 @@ from prima.interpreter.expressions import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Json, Say
-from prima.voicexml.dom import DATA, plain_tree
+from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.fetching import Request, decoded
 from prima.voicexml.prompts import SPOKEN, Speaker, Speech
-from prima.voicexml.state import Context, Flow, GoBack, GoDialog, GoItem, HungUp, Thrown
+from prima.voicexml.state import (
+    SCOPES,
+    Context,
+    Flow,
+    GoBack,
+    GoDialog,
+    GoItem,
+    HungUp,
+    Thrown,
+)
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 if TYPE_CHECKING:
-    pass
+    from prima.voicexml.machine import Machine
 
 ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
+INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
+"""Items that take input or a result; a block and an initial are control items (2.3)."""
 SERVICE = "service:"
 """How the URI of a scenario's service begins."""
 
 
 class Content(Speaker):
     """Runs executable content for one application; it takes time only where something is fetched."""
+
+    def __init__(self, owner: Machine) -> None:
+        super().__init__(owner)
+        self._maker: Scope | None = None
 
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
@@ -102,13 +117,19 @@ class Content(Speaker):
 
     def declare(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
         """Declare a variable in a scope (5.3.1)."""
+        self.check_name(node)
+        if "expr" not in node.attributes:
+            if not self.engine.has(scope, node.get("name")):  # one that is there keeps its value
+                self.engine.unset(scope, node.get("name"))
+            return
+        self.put(scope, node.get("name"), node, "expr", context, local)
+
+    @staticmethod
+    def check_name(node: Node) -> None:
+        """Refuse to declare a variable by a name that says its scope."""
         if "." in node.get("name"):
             message = f'{source(node)}: "{node.get("name")}" names a scope; declare it there'
             raise Thrown("error.semantic", message, source(node))
-        if "expr" not in node.attributes:
-            self.engine.unset(scope, node.get("name"))
-            return
-        self.put(scope, node.get("name"), node, "expr", context, local)
 
     def put(
         self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
@@ -134,14 +155,18 @@ class Content(Speaker):
             context.visited.discard(item.index)
             self.forget(item, context)
         for name in names:
+            prefix, _, rest = name.partition(".")
+            scopes = dict(zip(SCOPES, context.scopes(local), strict=True))
+            if rest and prefix in scopes:
+                scopes, name = {prefix: scopes[prefix]}, rest
             scope = next(
-                (one for one in reversed(context.scopes(local)) if self.engine.has(one, name)), None
+                (one for one in reversed(scopes.values()) if self.engine.has(one, name)), None
             )
             if scope is None:
                 message = f'{source(node)}: the variable "{name}" is not declared'
                 raise Thrown("error.semantic", message, source(node))
             self.engine.unset(scope, name)
-            for item in items:
+            for item in items if scope is scopes.get("dialog") else ():
                 if item.get("name") == name:
                     self.forget(item, context)
 
@@ -191,13 +216,14 @@ class Content(Speaker):
         if item:
             if all(one.get("name") != item for one in self.owner.items(context)):
                 message = f'{source(node)}: there is no form item "{item}"'
+                context.item = None  # it is handled in the dialog's scope
                 raise Thrown("error.badfetch", message, source(node))
             raise GoItem(item)
         yield from self.owner.go(context, self.word(node, "next", context, local), node)
 
     def submit(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for what values are answered with, or send them and go on (5.3.8)."""
-        inputs = [one.get("name") for one in self.owner.items(context) if one.tag != "block"]
+        inputs = [one.get("name") for one in self.owner.items(context) if one.tag in INPUTS]
         names = node.get("namelist").split() if "namelist" in node.attributes else inputs
         values = self.values(node, [name for name in names if name], context, local)
         uri = self.word(node, "next", context, local)
@@ -240,17 +266,32 @@ class Content(Speaker):
 
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
+        self.check_name(node)
         request = Request(node.get("method"), self.named(node, context, local))
         uri = context.page.resolve(self.word(node, "src", context, local), node)
         content = yield from self.owner.fetch(uri, node, request)
         if not node.get("name"):
             return
         held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
+        blank = self.engine.scope()
         try:
-            scopes = (*context.scopes(local)[:-1], held)
-            self.engine.assign(scope, node.get("name"), f"({DATA})(tree)", scopes)
+            self.engine.put(held, "dom", self._dom(context))
+            scopes = (blank, blank, blank, blank, held)
+            self.engine.assign(scope, node.get("name"), "dom.whole(tree)", scopes)
         except ScriptError as error:
             raise self.failure(error, node, "src") from None
+
+    def _dom(self, context: Context) -> Scope:
+        """What makes documents; its classes are there once there is a document (2.1, D)."""
+        if self._maker is None:
+            blank = self.engine.scope()
+            scopes = (blank, blank, blank, blank, blank)
+            self._maker = self.engine.raw(DOM, scopes)
+            maker = self.engine.scope()
+            self.engine.put(maker, "dom", self._maker)
+            for name in ("Node", "DOMException"):
+                self.engine.assign(context.session, name, f"dom.{name}", (*scopes[:-1], maker))
+        return self._maker
 
     def report(self, node: Node, context: Context, local: Scope) -> None:
         """What exit and disconnect give to whoever runs the application: told in the transcript."""
