@@ -20,6 +20,7 @@ from prima.messages import (
     Occurred,
     Record,
     Sensed,
+    Transferred,
     Unloaded,
 )
 from prima.prelude import START
@@ -47,6 +48,8 @@ def inbound_of(record: Record) -> Inbound | None:
             return Occurred(record["event"], record["actor"], data, record.get("app"))
         case "fetched":
             return Fetched(record["app"], **data)
+        case "transferred":
+            return Transferred(record["app"], record["serial"], data["uri"], record["outcome"])
         case "sensed":
             return Sensed(data)
         case "note":
@@ -55,7 +58,7 @@ def inbound_of(record: Record) -> Inbound | None:
             pressed = record["outcome"] == "pressed"
             return Emergency(pressed, bool(data.get("resume", True)))
         case "load":
-            return Loaded(record["app"], str(data.get("place", "")))
+            return Loaded(record["app"], str(data.get("place", "")), data.get("connection", {}))
         case "unload":
             return Unloaded(record["app"], str(data.get("place", "")))
     return None

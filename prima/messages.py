@@ -28,12 +28,26 @@ class Cue:
 
     at: int
     """How many characters of the text stand before it."""
-    kind: Literal["pause", "sentence", "rate", "lasts", "end", "mark", "earlier", "hotword"]
+    kind: Literal[
+        "pause",
+        "sentence",
+        "rate",
+        "lasts",
+        "end",
+        "mark",
+        "earlier",
+        "hotword",
+        "record",
+        "finalsilence",
+    ]
     """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
     ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
     ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
     ``earlier``: marks of what the application said just before count for this question.
-    ``hotword``: what the user says breaks off this question only if it is understood."""
+    ``hotword``: what the user says breaks off this question only if it is understood.
+    ``record``: the answer is a recording, of which the device tells how long it is; one of
+    ``value`` ms is the longest, and 0 is without end. ``finalsilence``: it is over after so many
+    ms of silence."""
     value: float | str | None = None
 
 
@@ -127,7 +141,9 @@ class Send:
     """A message to a named service, or to a URI that something is asked of.
 
     ``data`` has the values sent as ``params``, and where an answer is waited for as a
-    :class:`Fetched` the ``method``, ``get`` or ``post``.
+    :class:`Fetched` the ``method``, ``get`` or ``post``. A call to somebody else has its kind
+    as ``transfer`` (``bridge``, ``blind``, ``consultation``) and is told of by
+    :class:`Transferred`; ``over`` ends the one whose serial is ``call``.
     """
 
     service: str
@@ -209,7 +225,8 @@ class Heard:
     text: str
     data: Data = field(default_factory=dict)
     """Of a question with marks: ``markname``, the last one passed when the user began to speak,
-    or None, and ``marktime``, the ms that were played from there on."""
+    or None, and ``marktime``, the ms that were played from there on. Of a recording:
+    ``duration``, its ms, and ``maxtime``, whether it was cut off."""
 
 
 @dataclass(slots=True)
@@ -237,6 +254,20 @@ class Fetched:
     charset: Literal["utf-8", "latin-1"] = "utf-8"
     status: int = 0
     problem: str = ""
+
+
+@dataclass(slots=True)
+class Transferred:
+    """What has become of a call that an application makes (VoiceXML 2.0, 2.3.7).
+
+    ``serial`` is the :class:`Send`'s. ``outcome`` is ``answered``, after which another one tells
+    the call's end; how it has ended, as ``busy``; or the name of an event, as ``error.connection``.
+    """
+
+    app: str
+    serial: int
+    uri: str
+    outcome: str
 
 
 @dataclass(slots=True)
@@ -268,6 +299,8 @@ class Loaded:
 
     app: str
     place: str = ""
+    connection: Data = field(default_factory=dict)
+    """What is known of the user's connection: ``session.connection`` (VoiceXML 2.0, 5.1.4)."""
 
 
 @dataclass(slots=True)
@@ -286,6 +319,7 @@ Inbound = (
     | Heard
     | Occurred
     | Fetched
+    | Transferred
     | Sensed
     | Narrated
     | Emergency

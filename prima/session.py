@@ -41,6 +41,7 @@ from prima.messages import (
     Say,
     Send,
     Sensed,
+    Transferred,
     Unloaded,
 )
 from prima.prelude import START
@@ -168,7 +169,19 @@ class Session:
             case Occurred():
                 self._occurred(value)
             case Fetched():
-                self._fetched(value)
+                told = {key: one for key, one in asdict(value).items() if one and key != "app"}
+                self._record("fetched", "environment", app=value.app, data=told)
+                self._answered(value)
+            case Transferred():
+                self._record(
+                    "transferred",
+                    "environment",
+                    app=value.app,
+                    serial=value.serial,
+                    outcome=value.outcome,
+                    data={"uri": value.uri},
+                )
+                self._answered(value)
             case Sensed():
                 self._sensed(value)
             case Narrated():
@@ -200,6 +213,8 @@ class Session:
             app = self.apps[name] = interpreter_of(app.document, app.arguments, self._began)
         self._loaded.add(name)
         app.sensors.update(self._sensors)
+        if not isinstance(app, Interpreter):
+            app.connection = value.connection
         self.mediator.load(name, app.kind)
         app.start(self.chronicle.now)
         self._act(app)
@@ -281,12 +296,11 @@ class Session:
                 self._act(app)
         return taken
 
-    def _fetched(self, value: Fetched) -> None:
-        told = {key: one for key, one in asdict(value).items() if one and key != "app"}
-        self._record("fetched", "environment", app=value.app, data=told)
+    def _answered(self, value: Fetched | Transferred) -> None:
+        """An answer goes to the application that has asked."""
         app = self.apps.get(value.app)
         if app is not None and not isinstance(app, Interpreter) and value.app in self._loaded:
-            app.fetched(self.chronicle.now, value)
+            app.replied(self.chronicle.now, value)
             self._act(app)
             self._settle()
 
@@ -409,5 +423,8 @@ def interpreter_of(
 
 
 def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:
-    """What a record tells of an application that comes or goes with a place."""
-    return {"place": value.place} if value.place else None
+    """What a record tells of an application that comes or goes with a place, or has a caller."""
+    told: dict[str, Json] = {"place": value.place} if value.place else {}
+    if isinstance(value, Loaded) and value.connection:
+        told["connection"] = dict(value.connection)
+    return told or None

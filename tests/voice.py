@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from prima.messages import Ended, Fetched, Inbound
+from prima.sim.telephone import Telephone
 from prima.voicexml.document import FetchError, VoiceDocument, read_page
 from tests.robot import Bench
 
@@ -38,7 +39,11 @@ class Call(Bench):
     web: Mapping[str, str | int | None] = {}
     """Answers what is asked of URIs outside: a body, or a status; None does not answer."""
 
+    calls = True
+    """Whether the telephone answers at once; else the test tells what becomes of calls."""
+
     def __init__(self, text: str, *others: VoiceDocument, **files: str) -> None:
+        self.telephone = Telephone()
         super().__init__(voice(text, **files), *others)  # type: ignore[arg-type]
 
     def step(self, *inbound: Inbound, at: int | None = None) -> None:
@@ -52,6 +57,11 @@ class Call(Bench):
         ]
         for answer in filter(None, answers):
             self.step(answer)
+        for order in self.orders[before:] if self.calls else ():
+            if order.verb == "send" and "transfer" in order.data:
+                self.telephone.order(self.now, order)
+        if self.calls and (news := self.telephone.collect(self.now + 100)):
+            self.step(*news)
 
     def _answer(self, app: str, uri: str, serial: int) -> Fetched | None:
         found = self.web.get(uri, 0)

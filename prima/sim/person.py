@@ -22,6 +22,9 @@ from prima.sim.robot import Robot
 from prima.sim.scenario import Doing, Scenario, When
 from prima.sim.world import World, distance
 
+KEYS_THAT_END = "#*"
+"""Keys pressed at the end of what is recorded: there is no silence to wait for."""
+
 
 @dataclass(slots=True, order=True)
 class Script:
@@ -33,6 +36,10 @@ class Script:
     speaking: str = field(default="", compare=False)
     began: int = field(default=0, compare=False)
     """When the user began to speak."""
+    lasts: int = field(default=0, compare=False)
+    """How long (ms) he speaks."""
+    told: dict[str, Json] = field(default_factory=dict, compare=False)
+    """What is told of it where it is recorded."""
 
 
 class Person:
@@ -120,7 +127,8 @@ class Person:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
-                made.append(Heard(script.speaking, self.robot.marks_passed(script.began)))
+                told = {**self.robot.marks_passed(script.began), **script.told}
+                made.append(Heard(script.speaking, told))
                 script.speaking = ""
             if not script.left:
                 break
@@ -132,12 +140,9 @@ class Person:
         values = doing.values
         match doing.name:
             case "say":
-                self.robot.speech_begins(now)
-                script.began = now
-                script.speaking = doing.text
-                script.time = now + voice.duration(
-                    doing.text, voice.language(doing.text), self.robot.profile.voices
-                )
+                self._speak(doing.text, script, now)
+            case "hang-up":
+                return [self._hang_up(now)]
             case "touch":
                 sensor = values["sensor"]
                 return [Occurred(f"touch.{sensor}", "user", {"sensor": sensor})]
@@ -162,6 +167,38 @@ class Person:
             case _:
                 return self._happen(doing)
         return []
+
+    def _speak(self, text: str, script: Script, now: int) -> None:
+        """Begin to say something; what is recorded is over after a silence, or cut off."""
+        self.robot.speech_begins(now)
+        script.began, script.speaking, script.told = now, text, {}
+        bounds = self.robot.records()
+        said = self._timeline(text.rstrip(KEYS_THAT_END) if bounds is not None else text)
+        script.lasts, silence = said.total, 0
+        if bounds is not None:
+            longest, silence = bounds
+            script.told = {"duration": script.lasts}
+            if 0 < longest < script.lasts:
+                script.speaking, script.lasts, silence = _part(said, longest), longest, 0
+                script.told = {"duration": longest, "maxtime": True}
+            elif text.endswith(tuple(KEYS_THAT_END)):
+                silence = 0
+        script.time = now + script.lasts + silence
+
+    def _timeline(self, text: str) -> voice.Timeline:
+        return voice.timeline(text, voice.language(text), self.robot.profile.voices, ())
+
+    def _hang_up(self, now: int) -> Inbound:
+        """Hang up, and say nothing more; what is being recorded is told as far as it goes."""
+        data: dict[str, Json] = {}
+        for script in self._scripts:
+            spoken = min(now - script.began, script.lasts)
+            if script.speaking and script.told and spoken:
+                said = _part(self._timeline(script.speaking), spoken)
+                data = {"recorded": said, "duration": spoken}
+            if script.speaking:
+                script.speaking, script.time = "", now
+        return Occurred("connection.disconnect.hangup", "user", data)
 
     def _happen(self, doing: Doing) -> list[Inbound]:
         """What is none of the user's doing."""
@@ -212,6 +249,11 @@ class Person:
                 here[1] + (person[1] - here[1]) * share,
             )
             world.walk(goal, self._speed)
+
+
+def _part(said: voice.Timeline, ms: int) -> str:
+    """What has been said after a time: whole words, unless not even one is over."""
+    return said.heard(ms) or said.text[: max(sum(1 for end in said.ends if end <= ms), 1)]
 
 
 def _plain(text: str) -> Json:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from prima.errors import DocumentError, Problem, did_you_mean
-from prima.messages import Inbound, Loaded, Record, Unloaded
+from prima.interpreter.elements import Document
+from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.scheduler.selection import Policy
 from prima.session import AnyDocument, Session
 from prima.sim.person import Person
@@ -14,6 +15,7 @@ from prima.sim.robot import Robot
 from prima.sim.routes import Routes
 from prima.sim.scenario import Area, Map, Point, Profile, Scenario
 from prima.sim.services import Services, Web
+from prima.sim.telephone import Telephone
 from prima.sim.world import STEP_MS, World
 
 THRESHOLD = 0.5
@@ -98,6 +100,7 @@ class Rehearsal:
         self.robot = Robot(cast.robot, self.world, Routes(cast.world))
         self.person = Person(scenario, self.world, self.robot)
         self.services = Services(scenario.services, web)
+        self.telephone = Telephone(scenario.transfers)
         self.session = Session(cast.documents, policy, cast.robot.commands, bound, scenario.date)
         self._watching = any(
             doc.watches or any(form.watches for form in doc.forms.values())
@@ -109,6 +112,8 @@ class Rehearsal:
                 zip(scenario.applications, cast.documents, strict=False)
             )
         )
+        self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
+        """Applications of PRIMA's own language."""
         self._inside: set[str] = set()
         """Areas that the robot is in."""
         self.outcome = ""
@@ -144,23 +149,34 @@ class Rehearsal:
         world.advance(now)
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
-            inbound.append(Loaded(self._loads.pop(0)[2]))
+            inbound.append(self._loaded(self._loads.pop(0)[2]))
         inbound += self._cross()
         inbound += self.robot.collect(now)
         said = self.person.collect(now)
         inbound += said
         inbound += self.services.collect(now)
+        inbound += self.telephone.collect(now)
         if self._watching:
             inbound += self.robot.sense(self.person.sensors)
         for order in session.step(now, inbound):
-            target = self.services if order.verb == "send" else self.robot
-            target.order(now, order)
+            self._device(order).order(now, order)
         if said:
             self.robot.speech_over(now)
         records = session.drain()
         self.made += len(records)
         self.person.observe(now, records)
         return records
+
+    def _device(self, order: Order) -> Robot | Services | Telephone:
+        """Who carries out an order."""
+        if order.verb != "send":
+            return self.robot
+        return self.telephone if "transfer" in order.data else self.services
+
+    def _loaded(self, name: str, place: str = "") -> Loaded:
+        """An application starts; one of VoiceXML is told of the user's call."""
+        native = name in self._native
+        return Loaded(name, place, {} if native else self.cast.scenario.connection)
 
     def _cross(self) -> list[Inbound]:
         """Load what an area offers that the robot has come into, and unload what it has left."""
@@ -169,7 +185,7 @@ class Rehearsal:
             inside = area.id in self._inside
             if not inside and area.holds(self.world.position):
                 self._inside.add(area.id)
-                crossed.append(Loaded(name, area.title))
+                crossed.append(self._loaded(name, area.title))
             elif inside and not area.holds(self.world.position, THRESHOLD):
                 self._inside.discard(area.id)
                 crossed.append(Unloaded(name, area.title))
@@ -182,6 +198,7 @@ class Rehearsal:
             self.robot.due(),
             self.person.due(),
             self.services.due(),
+            self.telephone.due(),
             self.session.deadline(),
         ]
         if self.world.moving or self._has_controls():

@@ -587,6 +587,17 @@ class Robot:
         if bargein and task.listens is not None:
             task.listens, task.speech_ends = now + 1, now
 
+    def records(self) -> tuple[int, int] | None:
+        """Whether the answer is a recording: its longest time and its final silence, in ms.
+
+        As :class:`prima.messages.Cue` has them; 0 where there is no such bound.
+        """
+        task = self._question()
+        if task is None or not task.cued("record"):
+            return None
+        values = {cue.kind: int(cue.value or 0) for cue in task.command.cues if cue.at == 0}
+        return values["record"], values.get("finalsilence", 0)
+
     def marks_passed(self, began: int) -> dict[str, Json]:
         """The last mark that a question had passed when the user began to speak (2.1, 4).
 

@@ -386,6 +386,28 @@ class Service:
     replies: list[Reply]
 
 
+UNANSWERED = ("busy", "noanswer", "network_busy")
+"""How a call ends that nobody answers (VoiceXML 2.0, 2.3.7.2.2)."""
+ENDINGS = (
+    "far_end_disconnect",
+    "network_disconnect",
+    "near_end_disconnect",
+    "maxtime_disconnect",
+    "unknown",
+)
+"""How one ends that somebody has answered."""
+
+
+@dataclass(slots=True)
+class Transfer:
+    """How a call to a destination goes; times in ms."""
+
+    to: str
+    outcome: str
+    after: int
+    lasts: int
+
+
 @dataclass(slots=True)
 class Scenario:
     """A run's script. Paths are as written, relative to the scenario's file."""
@@ -407,6 +429,9 @@ class Scenario:
     applications: list[tuple[str, int, Node]]
     whens: list[When]
     services: list[Service]
+    connection: dict[str, Json]
+    """What is known of the user's call, as ``session.connection`` has it."""
+    transfers: list[Transfer]
     node: Node
 
 
@@ -422,7 +447,8 @@ def read_scenario(file: str, data: bytes) -> Scenario:
     reader = Reader(SCENARIO, file, data)
     root = reader.root
     robots, people = root.all("robot"), root.all("person")
-    for extra in (*robots[1:], *people[1:]):
+    connections = root.all("connection")
+    for extra in (*robots[1:], *people[1:], *connections[1:]):
         reader.problem(extra, "duplicate-element", f"There is a second <{extra.tag}>.")
     applications = [
         (node.get("src"), reader.get(node, "start") or 0, node) for node in root.all("application")
@@ -466,6 +492,8 @@ def read_scenario(file: str, data: bytes) -> Scenario:
             )
             for node in root.all("service")
         ],
+        connection=_connection(connections[0]) if connections else {},
+        transfers=[_transfer(reader, node) for node in root.all("transfer")],
         node=root,
     )
     reader.finish()
@@ -532,6 +560,40 @@ def _reply(reader: Reader, node: Node) -> Reply:
         status = reader.get(node, "status") or 0
         return Reply(after, error=reader.get(node, "reason") or "no answer", status=status)
     return Reply(after, _data(node), src=node.get("src"), node=node)
+
+
+def _connection(node: Node) -> dict[str, Json]:
+    """The user's call as ``session.connection`` has it (VoiceXML 2.0, 5.1.4)."""
+    given = node.attributes
+    found: dict[str, Json] = {
+        side: {"uri": given[side]} for side in ("remote", "local") if side in given
+    }
+    protocol = {
+        name: given[key] for name, key in (("name", "protocol"), ("version",) * 2) if key in given
+    }
+    redirects = [dict(child.attributes) for child in node.all("redirect")]
+    return (
+        found
+        | ({"protocol": protocol} if protocol else {})
+        | {name: given[name] for name in ("aai", "originator") if name in given}
+        | ({"redirect": redirects} if redirects else {})
+    )
+
+
+def _transfer(reader: Reader, node: Node) -> Transfer:
+    outcome = reader.get(node, "outcome") or ENDINGS[0]
+    if outcome not in (*UNANSWERED, *ENDINGS) and not outcome.startswith("error."):
+        message = f'A call does not end with "{outcome}".'
+        remedy = did_you_mean(outcome, {*UNANSWERED, *ENDINGS})
+        remedy = remedy or f"Write {', '.join((*UNANSWERED, *ENDINGS))}, or an error's event."
+        reader.problem(node, "bad-value", message, "outcome", remedy)
+    lasts = reader.get(node, "lasts")
+    return Transfer(
+        node.get("to"),
+        outcome,
+        max(reader.get(node, "after") or 0, 1),
+        max(10_000 if lasts is None else lasts, 1),
+    )
 
 
 def _data(node: Node) -> dict[str, Json]:

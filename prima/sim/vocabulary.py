@@ -245,7 +245,7 @@ ROBOT = Vocabulary(
 )
 
 _ACTIONS = (
-    *("say", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note"),
+    *("say", "hang-up", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note"),
     *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload"),
 )
 _TRIGGERS = (
@@ -289,7 +289,16 @@ SCENARIO = Vocabulary(
                     choices=("open", "closed"),
                 ),
             ),
-            ("robot", "person", "application", "answer", "when", "service"),
+            (
+                "robot",
+                "person",
+                "application",
+                "answer",
+                "when",
+                "service",
+                "connection",
+                "transfer",
+            ),
         ),
         Element(
             "robot",
@@ -348,6 +357,11 @@ SCENARIO = Vocabulary(
             _ACTIONS,
         ),
         Element("say", "The user says something.", text=True),
+        Element(
+            "hang-up",
+            "The user hangs up, in the middle of what he says if he speaks: the event"
+            " connection.disconnect.hangup.",
+        ),
         Element(
             "touch", "The user touches a sensor.", (attribute("sensor", "id", "which", "required"),)
         ),
@@ -463,6 +477,55 @@ SCENARIO = Vocabulary(
                 _AFTER,
                 attribute("reason", "text", "why", default="the service does not answer"),
                 attribute("status", "integer", "the status of HTTP that a fetch is answered with"),
+            ),
+        ),
+        Element(
+            "connection",
+            "What VoiceXML applications know of the user's call, as session.connection; without"
+            " it, or an attribute of it, that is undefined.",
+            (
+                attribute("remote", "text", "the URI of the user's telephone"),
+                attribute("local", "text", "the URI that he has called"),
+                attribute("protocol", "text", "the protocol's name, as sip"),
+                attribute("version", "text", "the protocol's version"),
+                attribute("aai", "text", "what came along with the call"),
+                attribute("originator", "text", "who has called", choices=("local", "remote")),
+            ),
+            ("redirect",),
+        ),
+        Element(
+            "redirect",
+            "A station that the call has been redirected from, the last one first.",
+            (
+                attribute("uri", "text", "its URI", "required"),
+                attribute("pi", "text", "the presentation information"),
+                attribute("si", "text", "the screening information"),
+                attribute("reason", "text", "why it was redirected"),
+            ),
+        ),
+        Element(
+            "transfer",
+            "How calls to a destination go that a VoiceXML application transfers the user to."
+            " Of several for a destination each is for one call, in order; the last repeats.",
+            (
+                attribute(
+                    "to", "text", "the destination's URI, or what it begins with", default=""
+                ),
+                attribute(
+                    "outcome",
+                    "text",
+                    "how it ends: busy, noanswer or network_busy before anybody answers;"
+                    " far_end_disconnect, network_disconnect, near_end_disconnect,"
+                    " maxtime_disconnect or unknown after it; or an event whose name begins with"
+                    " error",
+                    default="far_end_disconnect",
+                ),
+                attribute(
+                    "after", "duration", "how long until it is answered, or fails", default="0s"
+                ),
+                attribute(
+                    "lasts", "duration", "how long it lasts once it is answered", default="10s"
+                ),
             ),
         ),
     ),

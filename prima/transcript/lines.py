@@ -65,6 +65,8 @@ NEEDED = {
     "decision": ("winner", "rule", "losers", "losers_count"),
     "event": ("event",),
     "halted": ("behavior",),
+    "fetched": ("app", "data"),
+    "transferred": ("app", "serial", "outcome", "data"),
     "note": ("text",),
     "log": ("message",),
     "emergency": ("outcome",),

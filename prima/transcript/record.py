@@ -32,6 +32,8 @@ PHASES = [
     "halted",
     "substitute",
     "event",
+    "fetched",
+    "transferred",
     "sensed",
     "note",
     "send",
@@ -55,7 +57,7 @@ class Record(BaseModel):
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
         "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",
         "starve", "emergency", "listening",
-        "held", "interrupt", "halted", "substitute", "event", "sensed", "note", "send", "log", "error",
+        "held", "interrupt", "halted", "substitute", "event", "fetched", "transferred", "sensed", "note", "send", "log", "error",
         "over",
     ] = Field(description="What the record tells.")  # fmt: skip
     actor: Literal["robot", "user", "environment", "mediator"] = Field(

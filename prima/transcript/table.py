@@ -16,6 +16,19 @@ SMALL = frozenset({"a", "an", "and", "at", "by", "for", "of", "on", "the", "to",
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
+CALLS = {
+    "answered": "answers",
+    "busy": "is busy",
+    "noanswer": "does not answer",
+    "network_busy": "cannot be reached: the network is busy",
+    "far_end_disconnect": "hangs up",
+    "near_end_disconnect": "is hung up on",
+    "network_disconnect": "is cut off by the network",
+    "maxtime_disconnect": "is cut off after the longest time",
+    "unknown": "is on the line no more",
+}
+"""What becomes of a call, said of whom it is made to."""
+
 
 @dataclass(slots=True)
 class Row:
@@ -77,6 +90,10 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
             return _event_row(record, handled)
         case "fetched":
             return _fetched_row(record)
+        case "transferred":
+            return _call_row(record, record["data"]["uri"], record["outcome"])
+        case "send" if "transfer" in record["data"]:
+            return _transfer_row(record)
         case "note":
             letter = "U" if record["actor"] == "user" else "E"
             return Row(record["time"], letter, "", record["text"], kind="note")
@@ -219,6 +236,20 @@ def _fetched_row(record: Record) -> Row:
     return Row(record["time"], "E", record["app"], f"{data['uri']} {what}", event=True)
 
 
+def _transfer_row(record: Record) -> Row:
+    """An application calls somebody, or ends its call."""
+    data = record["data"]
+    if data["transfer"] == "over":
+        return _plain(record, f"ends the call to {data['to']}: {data['outcome']}", "call")
+    return _plain(record, f"transfers to {data['to']}", "call")
+
+
+def _call_row(record: Record, uri: str, outcome: str) -> Row:
+    """What becomes of a call."""
+    what = CALLS.get(outcome, f"fails: {outcome}")
+    return Row(record["time"], "E", record["app"], f"{uri} {what}", event=True, kind="call")
+
+
 def _event_row(record: Record, handled: set[int]) -> Row | None:
     name, data = record["event"], record.get("data") or {}
     if name == "speech":
@@ -237,6 +268,8 @@ def _event_row(record: Record, handled: set[int]) -> Row | None:
     elif name == "message":
         sender = f" from {data['from']}" if data.get("from") else ""
         what = f"a message{sender} arrives"
+    elif name == "connection.disconnect.hangup" and letter == "U":
+        what = "hangs up"
     elif name == "human.lost":
         what = "has lost the user"
     else:

@@ -26,10 +26,14 @@ from prima.messages import (
     Say,
     Send,
     Step,
+    Transferred,
 )
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
 from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
+
+Answer = Fetched | Transferred
+"""What is waited for outside: a resource, or what becomes of a call."""
 
 
 class VoiceInterpreter(Bounds):
@@ -57,9 +61,15 @@ class VoiceInterpreter(Bounds):
         self._marked: str | None = None
         self._instant = -1
         self._sends = count(1)
+        self.connection: Data = {}
+        """What is known of the user's connection (5.1.4)."""
         self._asked: int | None = None
-        """The serial of the fetch whose answer is waited for: the transitioning state."""
-        self._answer: Fetched | None = None
+        """The serial of what is asked for outside and waited for: the transitioning state."""
+        self._answer: Answer | None = None
+        self._late: Answer | None = None
+        """The answer when the deadline is over."""
+        self._calling = False
+        """Whether what is waited for is a call, which the user may hang up."""
         self._patient = False
         """Whether what is played now is played to its end, even with the answer there."""
         self._missed: deque[Event] = deque()
@@ -76,7 +86,7 @@ class VoiceInterpreter(Bounds):
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
-        if self._asked is not None:
+        if self._asked is not None and not (self._calling and _hangs_up(event)):
             self._missed.append(event)
         else:
             self._happened(event)
@@ -84,11 +94,10 @@ class VoiceInterpreter(Bounds):
 
     def _happened(self, event: Event) -> None:
         context = self._machine.context
-        if self.over or context is None or not self._run:
+        if self.over or context is None or not (self._run or self._calling):
             return
         thrown = Thrown(event.name, str(event.data.get("message", "")))
-        hangs_up = event.name.startswith("connection.disconnect")
-        if not hangs_up and not self._takes(thrown):
+        if not _hangs_up(event) and not self._takes(thrown):
             return
         self._cause = event.serial if event.reactive else None
         self._tell(event)
@@ -130,8 +139,8 @@ class VoiceInterpreter(Bounds):
             self._drive(Resume(notice.data))
         self._catch_up()
 
-    def fetched(self, now: int, answer: Fetched) -> None:
-        """The answer to a fetch; one that comes too late, or twice, is not heeded."""
+    def replied(self, now: int, answer: Answer) -> None:
+        """The answer to what was asked for; one that comes too late, or twice, is not heeded."""
         self._tick(now)
         if self.over or answer.serial != self._asked:
             return
@@ -166,6 +175,7 @@ class VoiceInterpreter(Bounds):
             return None  # told when the question was asked
         if self.heard is None and context.item is not None and context.item.tag == "record":
             self.heard = Heard(text, text, context.item, context.page)
+            self.heard.recognised = False
         if self.heard is None:
             return None
         self.heard.mark = self._marked
@@ -173,11 +183,10 @@ class VoiceInterpreter(Bounds):
         return found if found is not None else self.heard.utterance
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
-        """VoiceXML has no delayed events; but a fetch may take too long (6.1.1)."""
+        """VoiceXML has no delayed events; but a fetch or a call may take too long (6.1.1, 2.3.7)."""
         self._tick(now)
-        if self._asked is not None and self.deadline is not None and now >= self.deadline:
-            message = "no answer within its fetchtimeout"
-            self.fetched(now, Fetched(self.name, self._asked, "", problem=message))
+        if self._late is not None and self.deadline is not None and now >= self.deadline:
+            self.replied(now, self._late)
         return []
 
     def stop(self) -> None:
@@ -208,10 +217,39 @@ class VoiceInterpreter(Bounds):
         self.actions.append(Send(service, data, serial, source(node)))
         return serial
 
-    def ask(self, uri: str, method: str, values: Data, timeout: int, node: Node) -> None:
-        """Ask a URI for a resource; no more than ``timeout`` ms are waited for it."""
-        self._asked = self.send(uri, {"method": method, "params": values}, node)
-        self._answer, self.deadline = None, self._instant + timeout
+    @property
+    def now(self) -> int:
+        """The instant (ms)."""
+        return self._instant
+
+    def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
+        """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
+        late.serial = self.send(uri, data, node)
+        self.expect(late, timeout)
+
+    def expect(self, late: Answer, timeout: int | None) -> None:
+        """Wait for an answer to what has been asked; without a timeout, for ever."""
+        self._asked, self._answer, self._late = late.serial, None, late
+        self._calling = isinstance(late, Transferred)
+        self.deadline = None if timeout is None else self._instant + timeout
+
+    @property
+    def overdue(self) -> bool:
+        """Whether the answer is that none has come in time."""
+        return self._answer is not None and self._answer is self._late
+
+    def expect_nothing(self) -> None:
+        """Wait for no answer any more."""
+        self._asked = self._answer = self._late = self.deadline = None
+        self._calling = False
+
+    def answer_or_input(self, commands: list[Command]) -> Generator[None, Resume, Answer | Resume]:
+        """Wait for an answer or, with Commands, for the end of the last, whichever is first.
+
+        An event ends the wait as well.
+        """
+        resume = (yield from self.wait(commands)) if commands else (yield)
+        return self._answer or resume
 
     def pass_time(
         self, queued: list[Command], audio: list[Command]
@@ -222,9 +260,9 @@ class VoiceInterpreter(Bounds):
                 yield from self.wait(commands)
         self._patient = False
 
-    def answered(self) -> Generator[None, Resume, Fetched]:
+    def fetched(self) -> Generator[None, Resume, Fetched]:
         """Wait for the answer of a fetch."""
-        while self._answer is None:
+        while not isinstance(self._answer, Fetched):
             yield
         return self._answer
 
@@ -263,3 +301,7 @@ class VoiceInterpreter(Bounds):
         self.over = True
         self.actions.append(LeaveState(self._state))
         self.actions.append(Quit(reason, failed, place))
+
+
+def _hangs_up(event: Event) -> bool:
+    return event.name.startswith("connection.disconnect")

@@ -14,7 +14,7 @@ from urllib.parse import urldefrag, urlsplit
 from prima.errors import DocumentError
 from prima.interpreter.content import source
 from prima.markup.tree import Node
-from prima.messages import Command, Fetched, Json
+from prima.messages import Command, Data, Fetched, Json
 from prima.values import milliseconds
 from prima.voicexml.document import FetchError, Page, broken, read_page
 from prima.voicexml.state import Flow, Resume, Thrown
@@ -102,13 +102,15 @@ def _asked(
 ) -> Generator[None, Resume, Fetched]:
     """Ask for a resource, and play prompts and fetch audio until its answer is there (6.1.1)."""
     timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
-    owner.owner.ask(uri, request.method or "get", dict(request.values), timeout, node)
+    data: Data = {"method": request.method or "get", "params": dict(request.values)}
+    late = Fetched(owner.owner.name, 0, "", problem="no answer within its fetchtimeout")
+    owner.owner.ask(uri, data, late, timeout, node)
     audio = _setting(owner, node, "fetchaudio")
-    if audio:
+    if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
         queued, owner.queue = owner.queue, []
         yield from owner.owner.pass_time(queued, [said])
-    return (yield from owner.owner.answered())
+    return (yield from owner.owner.fetched())
 
 
 def _setting(owner: Machine, node: Node, name: str) -> str:

@@ -8,10 +8,12 @@ from urllib.parse import urldefrag
 from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Json
+from prima.voicexml.calls import Calls
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
+from prima.voicexml.recorder import Recorder
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Heard, HungUp, Thrown
+from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Heard, Thrown
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -26,6 +28,8 @@ class Items:
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
         self.engine = owner.engine
+        self.recorder = Recorder(owner)
+        self.calls = Calls(owner)
 
     # What the user said ---------------------------------------------------------------
 
@@ -165,22 +169,6 @@ class Items:
             else param.get("value")
             for param in item.all("param")
         }
-
-    def recorded(self, context: Context, item: Node, heard: Heard) -> Flow:
-        """A recording: in simulation, the words that were said (2.3.6)."""
-        size = len(heard.utterance.encode())
-        data: dict[str, Json] = {"duration": 100 * len(heard.utterance), "size": size}
-        self.fill(context, item, heard.utterance, {**data, "maxtime": False})
-        yield from self.run_filled(context, [item])
-
-    def transfer(self, context: Context, item: Node) -> Flow:
-        """A call to somebody else: this robot has no telephone (2.3.7)."""
-        if self.owner.queue:
-            yield from self.owner.play(context)
-        if item.get("bridge") != "true" and item.get("type") != "bridge":
-            raise HungUp("connection.disconnect.transfer", "", source(item))
-        self.fill(context, item, "noanswer", {"duration": 0})
-        yield from self.run_filled(context, [item])
 
 
 def _name(page: Page, dialog: Node) -> str:

@@ -26,9 +26,9 @@ from prima.voicexml.state import (
     GoDialog,
     GoItem,
     Heard,
-    HungUp,
     Resume,
     Thrown,
+    thrown_outside,
 )
 
 if TYPE_CHECKING:
@@ -315,7 +315,7 @@ class Machine:
                 message = f"{source(item)}: {name}"
                 raise Thrown("error.unsupported.objectname", message, source(item))
             case "transfer":
-                yield from self.items_of.transfer(context, item)
+                yield from self.items_of.calls.transfer(context, item)
             case _:
                 yield from self._listen(context, item)
 
@@ -352,7 +352,7 @@ class Machine:
         del context
         resume = yield from self._wait(self.queue)
         if resume.event is not None:
-            raise _outside(resume)
+            raise thrown_outside(resume)
 
     def _wait(self, commands: list[Command]) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
@@ -365,8 +365,12 @@ class Machine:
         """Play what is queued, then wait for the user (C4)."""
         # A grammar that cannot be used is told before anything is said.
         yield from gathered(self, lambda: list(self.inputs.active(context)))
+        if item.tag == "record":
+            self.items_of.recorder.check(item)
         asked = self.queue.pop() if self.queue and self.queue[-1].type == "speak" else None
         question = self._question(context, item, asked)
+        if item.tag == "record":
+            self.items_of.recorder.prepare(item, question)
         self.owner.heard = None
         resume = yield from self._wait([*self.queue, question])
         yield from self._answered(context, item, resume)
@@ -391,13 +395,15 @@ class Machine:
     def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
         """Process what has ended the wait."""
         if resume.event is not None:
-            raise _outside(resume)
+            if item.tag == "record":
+                self.items_of.recorder.broken_off(context, item, resume.event)
+            raise thrown_outside(resume)
         outcome = str(resume.data.get("outcome", "noinput"))
         heard = self.owner.heard
         if outcome == "filled" and heard is not None:
             heard.take_mark(resume.data)
             if heard.owner is item and item.tag == "record":
-                yield from self.items_of.recorded(context, item, heard)
+                yield from self.items_of.recorder.take(context, item, heard, resume.data)
             else:
                 yield from self.items_of.process(context, heard)
             return
@@ -417,12 +423,3 @@ def _least(piece: Node | str) -> int:
     """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
     count = "1" if isinstance(piece, str) else piece.get("count", "1")
     return int(count) if count.isdecimal() else 1
-
-
-def _outside(resume: Resume) -> Thrown:
-    """The event that has ended a wait."""
-    assert resume.event is not None
-    name, message = resume.event.name, str(resume.event.data.get("message", ""))
-    if name.startswith("connection.disconnect"):
-        return HungUp(name, message, outside=True)
-    return Thrown(name, message)

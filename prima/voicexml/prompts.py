@@ -323,6 +323,12 @@ class Speaker:
             if uri is None:
                 return  # an undefined one is not said at all, nor is what it holds
             name = shown(uri)
+            ms = self.owner.items_of.recorder.lengths.get(name)
+            if ms is not None:  # what a record has taken is played back as its words (2.3.6)
+                opened = speech.open(ms)
+                speech.parts.append(f" {name} ")
+                speech.close(opened)
+                return
         ms = self.recording(context.page.base(), speech.base, name)
         speech.parts.append(" ")
         if node.text or node.nodes:

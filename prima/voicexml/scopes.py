@@ -22,8 +22,12 @@ CONNECTION = """Object.defineProperty(session, 'connection', (function (held) {
     get: function () { return held; },
     set: function () { throw new TypeError('session variables are read only'); },
   };
-})({ local: {}, remote: {}, protocol: {} }))"""
-"""A robot has no telephone: what there is of ``session.connection`` is undefined (5.1.4)."""
+})((function (held) {
+  for (const name of ['local', 'remote', 'protocol']) held[name] = held[name] || {};
+  if (held.originator) held.originator = held[held.originator];
+  return held;
+})(given)))"""
+"""What is known of the user's connection; what is not is undefined (5.1.4)."""
 
 
 class Documents:
@@ -38,7 +42,8 @@ class Documents:
         session = self.engine.scope()
         self.engine.put(session, "session", session)
         blank = self.engine.scope()
-        self.engine.raw(CONNECTION, (session, blank, blank, blank, blank))
+        given = self.engine.scope(given=dict(self.owner.owner.connection))
+        self.engine.raw(CONNECTION, (session, blank, blank, blank, given))
         return session
 
     def enter(self, context: Context, page: Page) -> Flow:

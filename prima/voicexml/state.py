@@ -39,6 +39,8 @@ class Heard:
     mode: str = "voice"
     others: list[tuple[str, Json, float]] = field(default_factory=list)
     """Further results, best first, as utterance, interpretation and confidence."""
+    recognised: bool = True
+    """Whether a grammar has taken it, and not a record all that is said."""
     mark: str | None = None
     """The last mark passed before it; by devices that tell of none, the prompts' last mark."""
     marktime: int | None = None
@@ -94,6 +96,15 @@ class HungUp(Thrown):
     ) -> None:
         super().__init__(name, message, source)
         self.outside = outside
+
+
+def thrown_outside(resume: Resume) -> Thrown:
+    """The event that has ended a wait."""
+    assert resume.event is not None
+    name, message = resume.event.name, str(resume.event.data.get("message", ""))
+    if name.startswith("connection.disconnect"):
+        return HungUp(name, message, outside=True)
+    return Thrown(name, message)
 
 
 class Leave(Exception):

@@ -1,0 +1,72 @@
+"""The telephone of a scenario: how the calls go that applications transfer the user to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from heapq import heappop, heappush
+
+from prima.messages import Inbound, Order, Transferred
+from prima.sim.scenario import UNANSWERED, Transfer
+
+ANSWERED = "answered"
+NOBODY = Transfer("", "noanswer", 1, 1)
+"""How a bridged call goes where the scenario says nothing."""
+GIVEN_AWAY = Transfer("", "unknown", 1, 1)
+"""How other calls go there: somebody answers, and the user is gone."""
+
+
+class Telephone:
+    """Puts calls through as the scenario says, and tells what becomes of them."""
+
+    def __init__(self, transfers: Iterable[Transfer] = ()) -> None:
+        self._transfers = list(transfers)
+        self._made: dict[str, int] = {}
+        self._pending: list[tuple[int, int, Transferred]] = []
+        self._serial = 0
+
+    def order(self, now: int, order: Order) -> None:
+        """Make a call, or end one."""
+        serial = int(order.behavior.rpartition("!")[2])
+        if order.data["transfer"] == "over":
+            self._hang_up(order.app, order.data["call"])
+            return
+        uri, kind = str(order.data["to"]), order.data["transfer"]
+        call = self._of(uri) or (NOBODY if kind == "bridge" else GIVEN_AWAY)
+        first, then = call.outcome, ""
+        if call.outcome not in UNANSWERED and not call.outcome.startswith("error."):
+            first, then = ANSWERED, call.outcome
+        self._later(now + call.after, Transferred(order.app, serial, uri, first))
+        if then and kind == "bridge":
+            ends = now + call.after + call.lasts
+            self._later(ends, Transferred(order.app, serial, uri, then))
+
+    def _of(self, uri: str) -> Transfer | None:
+        """How the next call to a destination goes: by what says most of it, in order."""
+        fitting = [one for one in self._transfers if uri.startswith(one.to)]
+        if not fitting:
+            return None
+        longest = max(len(one.to) for one in fitting)
+        ways = [one for one in fitting if len(one.to) == longest]
+        made = self._made[ways[0].to] = self._made.get(ways[0].to, 0) + 1
+        return ways[min(made, len(ways)) - 1]
+
+    def _hang_up(self, app: str, serial: int) -> None:
+        """Nothing more comes of a call."""
+        self._pending = sorted(
+            one for one in self._pending if (one[2].app, one[2].serial) != (app, serial)
+        )
+
+    def _later(self, time: int, value: Transferred) -> None:
+        self._serial += 1
+        heappush(self._pending, (time, self._serial, value))
+
+    def due(self) -> int | None:
+        """When there is news of a call next, if ever."""
+        return self._pending[0][0] if self._pending else None
+
+    def collect(self, now: int) -> list[Inbound]:
+        """What becomes of calls at ``now``."""
+        arrived: list[Inbound] = []
+        while self._pending and self._pending[0][0] <= now:
+            arrived.append(heappop(self._pending)[2])
+        return arrived

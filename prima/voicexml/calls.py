@@ -1,0 +1,211 @@
+"""Calls to somebody else: transfers of the caller (VoiceXML 2.0, 2.3.7; 2.1, 7)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.interpreter.frame import GoOut
+from prima.markup.tree import Node
+from prima.messages import Command, Cue, Data, Json, Transferred
+from prima.values import milliseconds
+from prima.voicexml.fetching import gathered
+from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, Thrown, thrown_outside
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+CONNECT_MS = 60_000
+"""How long it may take until somebody answers where ``connecttimeout`` does not say."""
+LISTEN = "600s"
+"""How long a question can listen at most; during a call it is asked again and again."""
+ANSWERED, NEAR_END = "answered", "near_end_disconnect"
+TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
+ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
+
+
+@dataclass(slots=True)
+class Call:
+    """A call while it is made."""
+
+    item: Node
+    to: str
+    kind: str
+    """``bridge``, ``blind`` or ``consultation``."""
+    serial: int = 0
+    heard: Heard | None = None
+    """What the caller has said to end it."""
+    connected: int | None = None
+    """When somebody has answered (ms)."""
+    given_up: bool = False
+    """Whether a time of the transfer is over."""
+
+    @property
+    def listens(self) -> bool:
+        """Whether the caller may end it by something that a grammar of the transfer takes."""
+        return self.kind != "blind" and bool(self.item.all("grammar"))
+
+
+class Calls:
+    """Makes the calls of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self.app = owner.owner
+
+    def transfer(self, context: Context, item: Node) -> Flow:
+        """Visit a transfer: give its variable the call's outcome, or throw an event.
+
+        Raises:
+            Thrown: ``connection.disconnect.transfer`` where the caller is given away,
+                ``connection.disconnect.hangup`` where he hangs up, ``error.connection`` and
+                ``error.unsupported`` as the platform tells them (2.3.7.3).
+        """
+        content, local = self.owner.content, self.owner.local()
+        if self.owner.gone:
+            raise GoOut(self.owner.gone)
+        call = Call(item, content.word(item, "dest", context, local), kind_of(item))
+        aai = content.word(item, "aai", context, local)
+        check_destination(call.to, item)
+        if call.listens:
+            yield from gathered(self.owner, lambda: list(self.owner.inputs.active(context)))
+        yield from self._announce(context, call)
+        outcome = NEAR_END
+        if call.heard is None:
+            outcome = yield from self._connected(context, call, aai)
+        if outcome.startswith("error."):
+            raise Thrown(outcome, f"{source(item)}: {call.to}", source(item))
+        gives_away = call.kind == "blind" or (call.kind == "consultation" and outcome == ANSWERED)
+        if gives_away and call.heard is None:
+            raise HungUp("connection.disconnect.transfer", "", source(item))
+        yield from self._ended(context, call, outcome)
+
+    def _ended(self, context: Context, call: Call, outcome: str) -> Flow:
+        """Fill the item's variable (2.3.7.2.2)."""
+        lasted = 0 if call.connected is None else self.app.now - call.connected
+        shadow: dict[str, Json] = {"duration": lasted / 1000}
+        if call.heard is not None:
+            shadow |= {"inputmode": call.heard.mode, "utterance": call.heard.utterance}
+            self.owner.items_of.remember(context, call.heard)
+        self.owner.items_of.fill(context, call.item, outcome, shadow)
+        yield from self.owner.items_of.run_filled(context, [call.item])
+
+    # Before the call ------------------------------------------------------------------
+
+    def _announce(self, context: Context, call: Call) -> Flow:
+        """Play what is queued; what a grammar takes meanwhile means that no call is made."""
+        queue, self.owner.queue = self.owner.queue, []
+        if not queue:
+            return
+        if call.listens and queue[-1].type == "speak":
+            last = queue.pop()
+            queue.append(self._question(context, call, "1ms", last))
+        self.app.heard = None
+        resume = yield from self.app.wait(queue)
+        self._note(call, resume)
+
+    def _question(
+        self, context: Context, call: Call, timeout: str, said: Command | None = None
+    ) -> Command:
+        """A question that nothing but the transfer's own grammars end."""
+        cues = (Cue(0, "hotword"), *(said.cues if said is not None else ()))
+        return Command(
+            "q-and-a",
+            {"timeout": timeout, "bargein": True},
+            said.text if said is not None else None,
+            lang=said.lang if said is not None else context.page.lang,
+            source=source(call.item),
+            cues=cues,
+        )
+
+    def _note(self, call: Call, resume: Resume) -> None:
+        """See what has ended a wait: an event, or the caller's own words."""
+        if resume.event is not None:
+            raise thrown_outside(resume)
+        if resume.data.get("outcome") == "filled":
+            call.heard = self.app.heard
+
+    # The call -------------------------------------------------------------------------
+
+    def _connected(self, context: Context, call: Call, aai: str) -> Generator[None, Resume, str]:
+        """Make the call and wait for its end; gives its outcome."""
+        item = call.item
+        connect = milliseconds(item.get("connecttimeout"), CONNECT_MS)
+        longest = milliseconds(item.get("maxtime"), 0) if call.kind == "bridge" else 0
+        data: dict[str, Json] = {"transfer": call.kind, "params": {"aai": aai} if aai else {}}
+        late = Transferred(self.app.name, 0, call.to, "noanswer")
+        self.app.ask(call.to, data, late, connect, item)
+        call.serial = late.serial
+        try:
+            outcome = yield from self._wait(context, call, self._audio(context, call))
+            if outcome == ANSWERED and call.kind == "bridge" and call.heard is None:
+                call.connected = self.app.now
+                late = Transferred(self.app.name, call.serial, call.to, "maxtime_disconnect")
+                self.app.expect(late, longest or None)
+                outcome = yield from self._wait(context, call, None)
+        except Thrown as thrown:
+            self._over(call, thrown.name)
+            raise
+        finally:
+            self.app.expect_nothing()
+        if call.heard is not None or (call.given_up and call.kind != "blind"):
+            self._over(call, outcome)
+        return outcome
+
+    def _over(self, call: Call, outcome: str) -> None:
+        """Tell that the call is over: this side has ended it."""
+        data: Data = {"transfer": "over", "call": call.serial, "outcome": outcome}
+        self.app.send(call.to, data, call.item)
+
+    def _audio(self, context: Context, call: Call) -> Command | None:
+        """What the caller hears until somebody answers."""
+        name = call.item.get("transferaudio")
+        if not name or call.kind == "blind":
+            return None
+        text = f"[{name.rpartition('/')[2]}]"
+        self.app.count_output(len(text), call.item)
+        return Command("speak", text=text, lang=context.page.lang, source=source(call.item))
+
+    def _wait(
+        self, context: Context, call: Call, audio: Command | None
+    ) -> Generator[None, Resume, str]:
+        """Wait for news of the call, or for what the caller says to end it."""
+        while True:
+            commands = [audio] if audio is not None else []
+            if call.listens:
+                commands = [self._question(context, call, LISTEN, audio)]
+            self.app.heard, audio = None, None
+            found = yield from self.app.answer_or_input(commands)
+            if isinstance(found, Transferred):
+                call.given_up = self.app.overdue
+                return found.outcome
+            if isinstance(found, Resume):
+                self._note(call, found)
+            if call.heard is not None:
+                return NEAR_END
+
+
+def kind_of(item: Node) -> str:
+    """The type of a transfer, by its newer or its older attribute; blind without one."""
+    return item.get("type") or ("bridge" if item.get("bridge") == "true" else "blind")
+
+
+def check_destination(uri: str, item: Node) -> None:
+    """Refuse what cannot be called (2.3.7.3).
+
+    Raises:
+        Thrown: ``error.unsupported.uri`` for a scheme that is none of a telephone's,
+            ``error.connection.baddestination`` for what is none of its scheme.
+    """
+    place, scheme = source(item), uri.partition(":")[0].lower()
+    known = scheme in ("tel", "sip", "sips")
+    if ":" in uri and not known:
+        message = f'{place}: "{uri}" is called by nobody; write "tel:", "sip:" or "sips:"'
+        raise Thrown("error.unsupported.uri", message, place)
+    form = TELEPHONE if scheme == "tel" else ADDRESS
+    if not known or form.fullmatch(scheme + uri[len(scheme) :]) is None:
+        message = f'{place}: "{uri}" is no number to call; write it as "tel:+1-555-1234"'
+        raise Thrown("error.connection.baddestination", message, place)

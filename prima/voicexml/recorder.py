@@ -1,0 +1,112 @@
+"""Recordings of the user: in simulation, the words that he has said (VoiceXML 2.0, 2.3.6)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.content import source
+from prima.markup.tree import Node
+from prima.messages import Command, Cue, Data, Event, Json
+from prima.values import milliseconds
+from prima.voicexml.matching import KEYS
+from prima.voicexml.state import Context, Flow, Heard, Thrown
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
+"""Formats that every platform records in (appendix E)."""
+BEEP, BEEP_MS = "[beep]", 500
+END_KEYS = "#*"
+"""Keys that may end what is said in words; other keys would be taken for its last word."""
+MS_A_LETTER = 100
+"""How long a letter is guessed to take where the device does not tell how long it heard."""
+MAX_KNOWN = 1000
+"""Recordings that are known as such when they are played back."""
+
+
+class Recorder:
+    """Fills the record items of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self.lengths: dict[str, int] = {}
+        """What has been recorded, and how long it was (ms)."""
+
+    def check(self, item: Node) -> None:
+        """Refuse a format in which nothing can be recorded.
+
+        Raises:
+            Thrown: ``error.unsupported.format``.
+        """
+        name = item.get("type").partition(";")[0].strip().lower()
+        if name and name not in FORMATS:
+            message = f'{source(item)}: nothing is recorded as "{name}"'
+            raise Thrown("error.unsupported.format", message, source(item))
+
+    def prepare(self, item: Node, question: Command) -> None:
+        """Make a question ask for a recording: a beep at its end, and its bounds as cues."""
+        if item.get("beep") == "true":
+            said = f"{question.text} " if question.text else ""
+            beep = (Cue(len(said), "lasts", BEEP_MS), Cue(len(said) + len(BEEP), "end"))
+            question.text = said + BEEP
+            question.cues = (*question.cues, *beep)
+        silence = milliseconds(item.get("finalsilence"), 0)
+        bounds = (
+            Cue(0, "record", milliseconds(item.get("maxtime"), 0)),
+            *((Cue(0, "finalsilence", silence),) if silence else ()),
+        )
+        question.cues = (*bounds, *question.cues)
+
+    def take(self, context: Context, item: Node, heard: Heard, data: Data) -> Flow:
+        """Fill a record with what was said.
+
+        Keys alone end it before anything has been recorded: its variable stays as it is, and
+        the keys are found in ``application.lastresult$``.
+        """
+        items = self.owner.items_of
+        said, key = divided(heard, item)
+        if key:
+            items.remember(context, Heard(key, key, item, context.page, 1.0, "dtmf"))
+        elif heard.recognised:
+            items.remember(context, heard)
+        if not said:
+            return
+        more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
+        if key and item.get("dtmfterm") != "false":
+            more["termchar"] = key
+        if not key and heard.recognised:
+            more |= {"utterance": heard.utterance, "confidence": heard.confidence}
+        self._fill(context, item, said, data, more)
+        yield from items.run_filled(context, [item])
+
+    def broken_off(self, context: Context, item: Node, event: Event) -> None:
+        """Keep what was recorded until the user hung up."""
+        said = str(event.data.get("recorded", ""))
+        if said:
+            self._fill(context, item, said, event.data, {"maxtime": False})
+
+    def _fill(
+        self, context: Context, item: Node, said: str, data: Data, more: dict[str, Json]
+    ) -> None:
+        ms = int(data.get("duration", MS_A_LETTER * len(said)))
+        while len(self.lengths) >= MAX_KNOWN:
+            self.lengths.pop(next(iter(self.lengths)))
+        self.lengths[said] = ms
+        shadow = {"duration": ms, "size": len(said.encode()), **more}
+        self.owner.items_of.fill(context, item, said, shadow)
+
+
+def divided(heard: Heard, item: Node) -> tuple[str, str]:
+    """What was said as the words that are recorded, and the keys that ended them."""
+    text = heard.utterance.strip()
+    ends = item.get("dtmfterm") != "false"
+    if heard.recognised and heard.mode == "dtmf":
+        return "", text
+    if heard.recognised or not ends:
+        return text, ""
+    if set(text) <= KEYS:
+        return "", text[:1]
+    if text[-1:] in END_KEYS:
+        return text[:-1].strip(), text[-1]
+    return text, ""
