@@ -348,3 +348,48 @@ def test_what_no_parser_takes(
     [problem] = problems(tmp_path, data)
     assert f"{problem.place.line}:{problem.place.column}" == place
     assert problem.code == code and remedy in problem.remedy
+
+
+# Scripts of the third edition ------------------------------------------------------------------
+
+SCRIPT = """<![CDATA[
+<!-- hidden from what knows no scripts
+counter = 0;
+for (i = 0; i < 4; i++) counter += i;
+for (key in { one: 1 }) found = key;
+function Person(name) { this.name = name; }
+Person.prototype.greet = function () { return 'Hi ' + this.name; };
+function sum() { total = 0; for (var i = 0; i < arguments.length; i++) total += arguments[i]; return total; }
+outer: for (var j = 0; j < 3; j++) { while (true) { if (j == 1) break outer; continue outer; } }
+with (Math) { var three = floor(PI); }
+try { throw new Error('boom'); } catch (error) { var message = error.message; }
+hours = 010;
+var words = escape('a b') + unescape('%21') + String.fromCharCode(65) + 'hello'.substr(1, 2);
+// -->
+]]>"""
+FOUND = [
+    ("counter", "6"), ("found", "one"), ("new Person('Bob').greet()", "Hi Bob"), ("sum(1, 2)", "3"),
+    ("(sum(3), total)", "3"), ("j + ' ' + three + ' ' + message", "1 3 boom"), ("hours", "8"),
+    ("document.hours", "8"), ("application.counter", "6"), ("words", "a%20b!Ael"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("code", "value"), FOUND)
+def test_old_scripts(tmp_path: Path, code: str, value: str) -> None:
+    """What they assign without declaring it is a variable of the scope that they stand in."""
+    variables = '<var name="hours" expr="1"/>'
+    body = f'{variables}<script>{SCRIPT}</script><form><block><value expr="{code}"/></block></form>'
+    assert said(run(tmp_path, body)) == [f'"{value}"']
+    assert problems(tmp_path, f"{HEAD}{body}</vxml>") == []
+
+
+def test_what_a_script_assigns_goes_no_further_than_its_scope(tmp_path: Path) -> None:
+    """That of a block is not there in the next one; a declared variable stays where it is."""
+    body = (
+        '<form><var name="kept" expr="1"/><block><script>own = 2; kept = 3;</script>'
+        '<value expr="own + kept"/></block><block><value expr="kept"/></block>'
+        '<block><value expr="own"/></block></form>'
+    )
+    made = run(tmp_path, body)
+    assert [row.what for row in made.rows() if row.what.startswith('"')] == ['"5"', '"3"']
+    assert "own is not defined" in made.failures[0]

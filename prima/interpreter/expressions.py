@@ -15,7 +15,7 @@ from typing import Any
 
 import _quickjs as quickjs
 
-from prima.interpreter.names import declared_names
+from prima.interpreter.names import assigned_names, declared_names
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
@@ -274,11 +274,17 @@ class Engine:
         key = f"script\n{code}"
         function = self._compiled.get(key)
         if function is None:
+            # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
+            # scope, which here is the script's own (VoiceXML 5.3.12).
+            loose = "".join(
+                f"if(typeof {name}==='undefined'&&!({self._has(name)}))$$.{name}=undefined;"
+                for name in sorted(assigned_names(code))
+            )
             names = sorted(declared_names(code))
             exports = "".join(f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in names)
             check_script(self._context, code)
             inner = f"(function(){{\n{code}\n;{exports}}})()"
-            body = f"(function({self._names},$$){{{self._withs}{{{inner}}}}})"
+            body = f"(function({self._names},$$){{{self._withs}{{{loose}{inner}}}}})"
             function = self._compiled[key] = self._call(self._context.eval, body)
         try:
             self._call(function, *scopes, scope)
@@ -286,6 +292,10 @@ class Engine:
             if len(error.places) > 1:  # the outermost function is ours
                 error.line, error.column = error.places[-2]
             raise
+
+    def _has(self, name: str) -> str:
+        """Code that tells whether any scope has a variable."""
+        return "||".join(f"{json.dumps(name)} in {_short(scope)}" for scope in self._scopes)
 
     @staticmethod
     def _bounded(text: str) -> str:

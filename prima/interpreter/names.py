@@ -164,6 +164,19 @@ def declared_names(code: str) -> set[str]:
     return _Reader(code).declared() if DECLARES.search(code) else set()
 
 
+def assigned_names(code: str) -> set[str]:
+    """Names that code gives a value, and loops theirs, without declaring them.
+
+    Some that the code declares outside of functions are among them.
+    """
+    if not ASSIGNS.search(code):
+        return set()
+    reader = _Reader(code)
+    outside, inside = reader.assigned()
+    return (outside | inside - reader.declared() - reader.parameters()) - GLOBALS
+
+
+ASSIGNS = re.compile(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
 DECLARES = re.compile(r"\b(?:var|let|const|function|class)\b")
 
 
@@ -206,6 +219,28 @@ class _Reader:
             elif self._is_name(token.text) and index not in members and self._reads(index):
                 found.setdefault(token.text, token.start)
         return found
+
+    def assigned(self) -> tuple[set[str], set[str]]:
+        """Names before ``=``, and those of ``for (NAME in ...)``: outside of functions, and inside."""
+        outside: set[str] = set()
+        inside: set[str] = set()
+        members = self._members()
+        end = 0
+        """Where the outermost function ends."""
+        for index, text in enumerate(self.texts):
+            if text == "function" and index >= end:
+                end = self._function_end(index)
+            after, before = self._text(index + 1), self._text(index - 1)
+            loops = after in ("in", "of") and self._text(index - 2) == "for"
+            takes = (after == "=" or loops) and before not in (".", "?.")
+            if takes and self._is_name(text) and index not in members:
+                (inside if index < end else outside).add(text)
+        return outside, inside
+
+    def _function_end(self, index: int) -> int:
+        """Where a function ends that begins at an index."""
+        opening = next((at for at in range(index, index + 4) if self._text(at) == "("), index)
+        return self.ends.get(self.ends.get(opening, opening) + 1, index)
 
     def _reads(self, index: int) -> bool:
         """Whether a name at an index is neither a member's nor a label's."""
