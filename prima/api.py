@@ -246,6 +246,8 @@ def explain_row(transcript: Transcript, number: int) -> str:
     Raises:
         UsageError: there is no such row.
     """
+    from prima.transcript.why import Reasons
+
     rows = transcript.rows()
     if not rows:
         raise UsageError(f"{transcript.name}: the transcript has no rows.")
@@ -257,49 +259,10 @@ def explain_row(transcript: Transcript, number: int) -> str:
         lines.append(f"Requested at {row.source}.")
     if row.actor != "R":
         lines.append("It came from outside; no rule decided when.")
-    for record in transcript.records:
-        if record["time"] > row.time:
-            break
-        line = _reason(record, row)
-        if line:
-            lines.append(f"{record['time']:.3f} s: {line}")
+    lines += [
+        f"{reason.time:.3f} s: {reason.text}" for reason in Reasons(transcript.records).of(row)
+    ]
     return "\n".join(lines)
-
-
-def _reason(record: Record, row: Row) -> str:
-    """What a record has to do with when a row came, if it has; or with the unit around it."""
-    phase = record["phase"]
-    base = row.behavior.partition(".")[0]
-    if not base:
-        return ""
-    if phase == "decision" and record.get("winner") in (row.behavior, row.unit):
-        unit = f"the unit {row.unit} is " if record["winner"] == row.unit else ""
-        lost, count = ", ".join(record["losers"]), record["losers_count"]
-        before = f"before {lost} ({count} in all)" if lost else "; nothing competed with it"
-        return f"{unit}selected by rule {record['rule']} {before}.".replace(" ;", ";")
-    about = (record.get("behavior") or "").partition(".")[0]
-    if about not in (base, row.unit) or not about:
-        return ""
-    it = f"the unit {about} is " if about == row.unit else ""
-    match phase:
-        case "request" if record.get("inserted") and not it:
-            return f"put in before {record['before']} (rule {record['inserted']})."
-        case "interrupt":
-            return f"{it or 'it '}gives way to {record['by']} (rule X2).".replace(
-                "is gives", "gives"
-            )
-        case "request":
-            flag = ", reactive" if record.get("reactive") else ""
-            asked = f"{it}requested" if it else f"requested as {base}"
-            return f"{asked} ({record['priority']} priority{flag})."
-        case "hold":
-            return f"{it}held back by {record['by']} (rule {record['rule']})."
-        case "resume":
-            stream = f"the stream of {about}" if it else f"its stream {record['tree']}"
-            return f"{stream} resumes (rule C2)."
-        case "start" if not it and record.get("unit"):
-            return f"started inside the unit {record['unit']} (rule {record.get('rule')})."
-    return ""
 
 
 __all__ = [

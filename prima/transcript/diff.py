@@ -199,28 +199,29 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
         text = (
             f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {printable(row.what)}"
         )
-        text += _remark(change)
+        text += f"  ({told})" if (told := remark(change)) else ""
         if colour and change.kind != "same":
             text = f"\x1b[{codes[change.kind]}m{text}\x1b[0m"
         lines.append(text)
     return "\n".join([*lines, summary_line(difference), ""])
 
 
-def _remark(change: Change) -> str:
+def remark(change: Change) -> str:
+    """In what way a row changed, in words; empty where its kind says all."""
     before = change.before
     match change.kind:
         case "moved":
             assert before is not None
-            return f"  (moved: was row {before.number}, at {before.time:.2f} s)"
+            return f"moved: was row {before.number}, at {before.time:.2f} s"
         case "changed":
             assert before is not None
-            return f"  (was: {printable(before.what)})"
+            return f"was: {printable(before.what)}"
         case "delayed":
-            return f"  ({'later' if change.delay > 0 else 'earlier'} by {abs(change.delay):.2f} s)"
+            return f"{'later' if change.delay > 0 else 'earlier'} by {abs(change.delay):.2f} s"
         case "split":
-            return "  (split: goes on here)"
+            return "split: goes on here"
         case "joined":
-            return "  (no longer split here)"
+            return "no longer split here"
     return ""
 
 

@@ -1,0 +1,43 @@
+"""The rules that records name, each in a few words (docs/mediation.md has them whole)."""
+
+from __future__ import annotations
+
+RULES = {
+    "S1": "an AB starts when no running AB occupies one of its devices",
+    "S2a": "of those that compete, the higher priority goes first",
+    "S2b": "then a reaction, the latest event's first",
+    "S2c": "then what follows an AB that has ended in this instant",
+    "S2d": "then the stream suspended last",
+    "S2e": "then the earlier request",
+    "S2f": "then the application declared first",
+    "S3": "a waiting reaction holds its devices back from what it outranks",
+    "S4": "ABs that share no device run at the same time",
+    "F1": "when a reaction starts, its stream takes the floor, and the others' streams are suspended",
+    "F2": "while a stream holds the floor, only another reaction or a higher priority may start",
+    "F3": "the floor falls back to the stream beneath when its holder ends",
+    "F5": "a body that nobody moves on is stopped",
+    "K1": "a Command that leaves the user waits while another application is engaged with the user",
+    "C1": "a stream ends when nothing of it is left and no window is open",
+    "C2": "a suspended stream resumes from what was not started",
+    "C3": "while an application handles the end of its Command, its stream stays open",
+    "O2": "an AB is cancelled by its own application's Command wanted now",
+    "O3": "an AB is given up because its state was left",
+    "U4": "an AB belongs to a unit: around Commands, around form items",
+    "U5": "an AB belongs to a unit: around Commands, around form items",
+    "E1": "a device has failed",
+    "E2": "the application has ended",
+    "E3": "a bad Command is refused",
+    "E4": "an endless feedback Command starves another",
+    "E5": "the emergency stop",
+    "X1": "what a stream relies on is restored before it resumes",
+    "X2": "a restartable AB gives way to a reaction",
+    "X3": "a stream is held while its application waits for an event",
+    "X4": "the robot turns to the user before the first word",
+    "X5": "a motion free in its path and one faithful to its own run together",
+    "X6": "another Command takes the place of one that the robot lacks",
+    "fifo": "the baseline policy of that name",
+    "fair": "the baseline policy of that name",
+    "fixed": "the baseline policy of that name",
+    "none": "the baseline policy of that name",
+}
+"""A rule's number, as in a record's ``rule``, with what it says."""
