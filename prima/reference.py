@@ -33,7 +33,7 @@ from prima.interpreter import (
     handling,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
-from prima.markup import build, reader
+from prima.markup.limits import LIMITS
 from prima.markup.schema import XML_SCHEMA, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import failures, selector
@@ -197,10 +197,10 @@ def limits() -> str:
     """What a document and a run may take of the machine."""
     mib = 1024 * 1024
     rows = (
-        ("a file", f"{reader.MAX_BYTES:,} bytes", "`too-large`"),
-        ("elements in a file", f"{build.MAX_ELEMENTS:,}", "`too-large`"),
-        ("attributes of an element", f"{build.MAX_ATTRIBUTES}", "`too-large`"),
-        ("elements inside each other", f"{build.MAX_DEPTH}", "`too-deep`"),
+        ("a file", f"{LIMITS.bytes:,} bytes", "`too-large`"),
+        ("elements in a file", f"{LIMITS.elements:,}", "`too-large`"),
+        ("attributes of an element", f"{LIMITS.attributes}", "`too-large`"),
+        ("elements inside each other", f"{LIMITS.depth}", "`too-deep`"),
         ("a time in an attribute", f"{LONGEST_MS // 3_600_000} h", "`bad-value`"),
         (
             "one evaluation of an expression or script",

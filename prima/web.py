@@ -10,7 +10,7 @@ from urllib.error import HTTPError, URLError
 from urllib.parse import urlencode, urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, Request, build_opener
 
-from prima.markup.reader import MAX_BYTES
+from prima.markup.limits import LIMITS
 from prima.messages import Data, Fetched
 from prima.sim.services import Web, answer, host_of, not_allowed
 from prima.values import shown
@@ -92,7 +92,7 @@ def _request(uri: str, method: str, values: Data) -> Request:
 
 def _body(opener: OpenerDirector, request: Request) -> bytes:
     with opener.open(request, timeout=REAL_SECONDS) as response:
-        data: bytes = response.read(MAX_BYTES + 1)
-    if len(data) > MAX_BYTES:
-        _refuse(f"it is larger than {MAX_BYTES // 1024 // 1024} MB")
+        data: bytes = response.read(LIMITS.bytes + 1)
+    if len(data) > LIMITS.bytes:
+        _refuse(f"it is larger than {LIMITS.bytes // 1024 // 1024} MB")
     return data

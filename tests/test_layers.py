@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
     {"errors"},
+    {"diagnostics"},
     {"values"},
     {"commands", "prelude"},
     {"messages"},
@@ -42,7 +43,7 @@ INSIDE = {
         {"mediator"},
         {"__init__"},
     ],
-    "markup": [{"vocabulary", "tree"}, {"build", "check", "schema"}, {"reader"}, {"__init__"}],
+    "markup": [{"limits", "vocabulary", "tree"}, {"build", "check", "schema"}, {"reader"}, {"__init__"}],
     "grammar": [
         {"errors", "text", "numbers", "sandbox"},
         {"model", "moments"},

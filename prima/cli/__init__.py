@@ -14,7 +14,7 @@ from typing import Any
 import click
 
 from prima import __version__
-from prima.cli.common import tell
+from prima.cli.common import SourceLines, tell
 from prima.errors import DocumentError, RunError, UsageError, did_you_mean
 
 COMMANDS = ("validate", "run", "show", "diff", "replay", "explain", "study", "documents")
@@ -72,8 +72,11 @@ def main() -> None:
     except SystemExit:
         code = 0  # click's way of saying that nobody reads any more
     except DocumentError as error:
+        from prima.diagnostics import render
+
+        lines = SourceLines()
         for problem in error.problems:
-            tell(str(problem))
+            tell(render(problem, lines))
         code = 1
     except UsageError as error:
         tell(f"prima: {error}")

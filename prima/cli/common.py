@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from prima.errors import Problem, UsageError
+from prima.errors import UsageError
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -26,6 +26,13 @@ format_option = click.option(
     type=click.Choice(["text", "json"]),
     default="text",
     help="What to print.",
+)
+limit_option = click.option(
+    "--limit",
+    "limits",
+    metavar="NAME=NUMBER",
+    multiple=True,
+    help="Raise a limit on documents: bytes, elements, attributes or depth.",
 )
 why_option = click.option(
     "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
@@ -61,17 +68,45 @@ def print_json(data: Any) -> None:
     click.echo(json.dumps(data, ensure_ascii=False, indent=2))
 
 
-def problem_data(problem: Problem) -> dict[str, Any]:
-    """A problem for a machine to read."""
-    return {
-        "file": problem.place.file,
-        "line": problem.place.line,
-        "column": problem.place.column,
-        "severity": problem.severity,
-        "code": problem.code,
-        "message": problem.message,
-        "remedy": problem.remedy,
-    }
+def raise_limits(given: tuple[str, ...]) -> None:
+    """Raise the limits on documents, as ``NAME=NUMBER``.
+
+    Raises:
+        UsageError: there is no such limit, or it cannot be that high.
+    """
+    from prima.errors import did_you_mean, one_of
+    from prima.markup.limits import HIGHEST, LIMITS
+
+    names = ("bytes", "elements", "attributes", "depth")
+    for text in given:
+        name, _, number = text.partition("=")
+        if name not in names:
+            hint = did_you_mean(name, names) or f"Write {one_of(names)}."
+            raise UsageError(f'There is no limit "{name}". {hint}')
+        most = getattr(HIGHEST, name)
+        if not (number.isascii() and number.isdigit() and 0 < int(number[:12]) <= most):
+            raise UsageError(f'--limit {text}: write a whole number up to {most}, as "{name}=200".')
+        setattr(LIMITS, name, int(number))
+
+
+class SourceLines:
+    """The lines of files, each file read once, for the source line of a problem."""
+
+    def __init__(self) -> None:
+        self._held: dict[str, list[str]] = {}
+
+    def __call__(self, file: str) -> list[str]:
+        """A file's lines; none where it cannot be read."""
+        if file not in self._held:
+            from prima.errors import DocumentError
+            from prima.loading import read_file
+            from prima.markup.reader import decode
+
+            try:
+                self._held[file] = decode(file, read_file(file)).split("\n")
+            except (DocumentError, UsageError):
+                self._held[file] = []
+        return self._held[file]
 
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:

@@ -12,7 +12,9 @@ from click.exceptions import Exit
 from prima.cli.common import (
     POLICIES,
     format_option,
+    limit_option,
     put,
+    raise_limits,
     run_into,
     start_watchdog,
     tell,
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     multiple=True,
     help="Let VoiceXML documents fetch from this host; without, no network is used.",
 )
+@limit_option
 @format_option
 def run(
     scenario: str | None,
@@ -53,6 +56,7 @@ def run(
     bound: int | None,
     why: bool,
     hosts: tuple[str, ...],
+    limits: tuple[str, ...],
     form: str,
 ) -> None:
     """Run a scenario in simulation and print the mediated transcript.
@@ -69,6 +73,7 @@ def run(
     """
     from prima import api
 
+    raise_limits(limits)
     if (scenario is None) == (not fas and not eas):
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
     if scenario is not None and says:

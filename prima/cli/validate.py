@@ -2,46 +2,158 @@
 
 from __future__ import annotations
 
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import format_option, print_json, problem_data, put, tell
+from prima.cli.common import (
+    SourceLines,
+    coloured,
+    limit_option,
+    print_json,
+    put,
+    raise_limits,
+    tell,
+)
 from prima.errors import Problem, UsageError
+
+KINDS = (".xml", ".vxml")
+"""How the names of documents in a folder end."""
+WATCH_SECONDS = 0.3
+MANY = 50
+"""From so many files on, a terminal is told how far it is."""
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path())
-@format_option
-def validate(files: tuple[str, ...], form: str) -> None:
-    """Check documents of any kind: applications, worlds, robots, scenarios.
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "short", "json", "sarif"]),
+    default="text",
+    help="What to print; short leaves out the source lines.",
+)
+@click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
+@click.option("--notes", is_flag=True, help="Print notes too: what holds and units cost others.")
+@limit_option
+def validate(
+    files: tuple[str, ...], form: str, watch: bool, notes: bool, limits: tuple[str, ...]
+) -> None:
+    """Check documents of any kind: applications, worlds, robots, scenarios, VoiceXML.
 
-    All problems of every file are printed, each with its place and what to write
-    instead. Exit code 1 if any is an error, 2 if a file cannot be read.
+    All problems of every file are printed, each with its place, its source line and
+    what to write instead. A folder stands for all documents in it. Exit code 1 if any
+    problem is an error, 2 if a file cannot be read.
 
     \b
-    prima validate documents/fa/*.xml documents/ea/*.xml
+    prima validate documents/fa/follow.xml documents/ea
+    prima validate documents --format sarif > problems.sarif
+    prima validate my-guide.xml --watch
     """
+    raise_limits(limits)
+    if watch:
+        _watch(files, form, notes)
+    unread, errors = _check(files, form, notes)
+    if unread or errors:
+        raise Exit(2 if unread else 1)
+
+
+def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int]:
+    """Check and print; gives how many files could not be read, and how many errors there are."""
     from prima import api
 
     problems: list[Problem] = []
     unread: list[str] = []
-    for name in files:
+    names = list(_expanded(files))
+    for index, name in enumerate(names, 1):
         try:
             problems += api.validate([name])
         except UsageError as error:
             unread.append(str(error))
-    if form == "json":
-        print_json([problem_data(one) for one in problems])
-    else:
-        for problem in problems:
-            put(str(problem))
+        if len(names) >= MANY and sys.stderr.isatty():
+            click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
+    problems = list(dict.fromkeys(problems))
+    _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell(f"prima: {message}")
     errors = sum(problem.severity == "error" for problem in problems)
-    if form == "text" and not unread:
-        notes = sum(problem.severity == "note" for problem in problems)
-        warnings = len(problems) - errors - notes
+    if form in ("text", "short") and not unread:
+        warnings = sum(problem.severity == "warning" for problem in problems)
         counts = f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
-        tell(f"files: {len(files)}; {counts}" + (f", notes: {notes}" if notes else ""))
-    if unread or errors:
-        raise Exit(2 if unread else 1)
+        tell(f"files: {len(names)}; {counts}")
+    return len(unread), errors
+
+
+def _expanded(files: tuple[str, ...]) -> Iterator[str]:
+    """The files named, with all documents of folders among them.
+
+    Raises:
+        UsageError: a folder holds no document.
+    """
+    for name in files:
+        if not os.path.isdir(name):
+            yield name
+            continue
+        found = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
+        if not found:
+            raise UsageError(
+                f"{name}: holds no documents (files whose names end in .xml or .vxml)."
+            )
+        yield from found
+
+
+def _show(problems: list[Problem], form: str) -> None:
+    if form == "json":
+        from prima.diagnostics import problem_data
+
+        print_json([problem_data(one) for one in problems])
+    elif form == "sarif":
+        from prima import __version__
+        from prima.codes import CODES
+        from prima.diagnostics import sarif
+
+        print_json(sarif(problems, __version__, CODES))
+    elif problems and form == "text":
+        from prima.diagnostics import render
+
+        lines = SourceLines()
+        for problem in problems:
+            click.echo(render(problem, lines, coloured()), color=coloured())
+    else:
+        for problem in problems:
+            put(str(problem))
+
+
+def _watch(files: tuple[str, ...], form: str, notes: bool) -> None:
+    """Check now and after every change, until somebody interrupts."""
+    import time
+
+    seen: dict[str, float] = {}
+    while True:
+        now = _changes(files)
+        if now != seen:
+            seen = now
+            if sys.stdout.isatty():
+                click.clear()
+            tell(time.strftime("%H:%M:%S"))
+            _check(files, form, notes)
+            sys.stdout.flush()
+        time.sleep(WATCH_SECONDS)
+
+
+def _changes(files: tuple[str, ...]) -> dict[str, float]:
+    """When each document in the folders of the files was changed: a scenario names others."""
+    folders = {name if os.path.isdir(name) else os.path.dirname(name) or "." for name in files}
+    found: dict[str, float] = {}
+    for folder in folders:
+        for path in Path(folder).rglob("*"):
+            if path.suffix in KINDS:
+                try:
+                    found[str(path)] = path.stat().st_mtime_ns
+                except OSError:
+                    continue
+    return found

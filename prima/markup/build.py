@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Any
 from xml.parsers import expat
 
+from prima.markup.limits import LIMITS
 from prima.markup.tree import Node, Source
 
-MAX_DEPTH = 100
-MAX_ELEMENTS = 200_000
-MAX_ATTRIBUTES = 64
 MAX_NAME = 1_000
 PREFIXES = {
     "http://www.w3.org/XML/1998/namespace": "xml:",
@@ -74,11 +72,11 @@ class _Builder:
         self.count += 1
         if len(tag) > MAX_NAME:
             raise TooMuch(node, "name")
-        if len(attributes) > MAX_ATTRIBUTES:
+        if len(attributes) > LIMITS.attributes:
             raise TooMuch(node, "attributes")
-        if self.count > MAX_ELEMENTS:
+        if self.count > LIMITS.elements:
             raise TooMuch(node, "elements")
-        if len(self.open) > MAX_DEPTH + 1:
+        if len(self.open) > LIMITS.depth + 1:
             raise TooMuch(node, "depth")
 
     def end(self, _tag: str) -> None:

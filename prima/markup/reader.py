@@ -131,7 +131,7 @@ def too_large(file: str, size: int) -> DocumentError:
         Place(file),
         "too-large",
         f"The file has {size:,} bytes; at most {LIMITS.bytes:,} are read.",
-        "Divide it.",
+        f"Divide it, or raise the limit: --limit bytes={size}.",
     )
 
 
@@ -226,7 +226,8 @@ def _beyond(much: TooMuch) -> DocumentError:
         message = f"<{tag}> has more than {LIMITS.attributes} attributes."
         return _error(place, "too-large", message, "Remove some.")
     message = f"The document has more than {LIMITS.elements:,} elements."
-    return _error(place, "too-large", message, "Divide it.")
+    remedy = f"Divide it, or raise the limit: --limit elements={10 * LIMITS.elements}."
+    return _error(place, "too-large", message, remedy)
 
 
 def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:

@@ -1,0 +1,134 @@
+"""Problems as authors and machines read them: with their source line, or as SARIF 2.1.0."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from prima.errors import Problem, Severity
+
+WIDEST = 100
+"""Columns of a source line that are shown."""
+COLOURS: dict[Severity, str] = {"error": "31", "warning": "33", "note": "36"}
+LEVELS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "note"}
+TOKEN = re.compile(r"""<[^\s/>]*|"[^"]*"?|'[^']*'?|[^\s<>"'=]+|\S""")
+SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+
+Lines = Callable[[str], list[str]]
+"""Gives the lines of a file, or none where it cannot be read."""
+
+
+def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
+    """A problem with its source line and a caret under what is wrong."""
+    place, severity, code, message, remedy = problem
+
+    def paint(text: str, style: str) -> str:
+        return f"\033[{style}m{text}\033[0m" if colour else text
+
+    told = _plain(f"{message} {remedy}" if remedy else message)
+    head = (
+        f"{paint(_plain(str(place)), '1')}: {paint(severity, '1;' + COLOURS[severity])}: {told}"
+        f" {paint(f'[{code}]', '2')}"
+    )
+    held = lines(place.file)
+    if not 1 <= place.line <= len(held) or not held[place.line - 1].strip():
+        return head
+    shown, under = excerpt(held[place.line - 1], place.column)
+    number = f"{place.line:>5}"
+    mark = paint(under, "1;" + COLOURS[severity])
+    return f"{head}\n{number} | {shown}\n{' ' * len(number)} | {mark}".rstrip()
+
+
+def excerpt(line: str, column: int) -> tuple[str, str]:
+    """A source line, cut around a column, and what marks the token there under it."""
+    start = min(max(column - 1, 0), len(line))
+    token = TOKEN.match(line, start)
+    length = len(token[0]) if token else 1
+    cut = 0
+    if len(line) > WIDEST and start > WIDEST // 2:
+        cut = start - WIDEST // 2
+    shown = line[cut : cut + WIDEST]
+    before = "".join(map(_blank, shown[: start - cut]))
+    marked = sum(_width(letter) for letter in shown[start - cut : start - cut + length])
+    head, tail = "..." if cut else "", "..." if cut + WIDEST < len(line) else ""
+    return f"{head}{_plain(shown)}{tail}", f"{' ' * len(head)}{before}^{'~' * (max(marked, 1) - 1)}"
+
+
+def _plain(text: str) -> str:
+    """Text without control characters, which a terminal would obey."""
+    return "".join(one if one.isprintable() or one in "\t\n" else "\ufffd" for one in text)
+
+
+def _width(letter: str) -> int:
+    """How many columns of a terminal a character takes."""
+    if unicodedata.combining(letter):
+        return 0
+    return 2 if unicodedata.east_asian_width(letter) in "WF" else 1
+
+
+def _blank(letter: str) -> str:
+    """What stands under a character so that the columns stay: a tab under a tab."""
+    return "\t" if letter == "\t" else " " * _width(letter)
+
+
+def problem_data(problem: Problem) -> dict[str, Any]:
+    """A problem as plain data."""
+    return {
+        "file": problem.place.file,
+        "line": problem.place.line,
+        "column": problem.place.column,
+        "severity": problem.severity,
+        "code": problem.code,
+        "message": problem.message,
+        "remedy": problem.remedy,
+    }
+
+
+def sarif(problems: Iterable[Problem], version: str, codes: dict[str, str]) -> dict[str, Any]:
+    """Problems as a SARIF 2.1.0 log; ``codes`` explains each code."""
+    held = list(problems)
+    used = sorted({problem.code for problem in held})
+    rules = [
+        {
+            "id": code,
+            "shortDescription": {"text": code.replace("-", " ")},
+            "fullDescription": {"text": codes.get(code, code)},
+        }
+        for code in used
+    ]
+    results = [
+        {
+            "ruleId": problem.code,
+            "ruleIndex": used.index(problem.code),
+            "level": LEVELS[problem.severity],
+            "message": {"text": f"{problem.message} {problem.remedy}".strip()},
+            "locations": [
+                {
+                    "physicalLocation": {
+                        "artifactLocation": {"uri": _uri(problem.place.file)},
+                        "region": {
+                            "startLine": problem.place.line,
+                            "startColumn": problem.place.column,
+                        },
+                    }
+                }
+            ],
+        }
+        for problem in held
+    ]
+    driver = {"name": "prima", "version": version, "rules": rules}
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "results": results,
+    }
+    return {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _uri(path: str) -> str:
+    """A file's name as a URI reference: relative if it is."""
+    from urllib.parse import quote
+
+    return ("file://" if path.startswith("/") else "") + quote(path.replace("\\", "/"))

@@ -1,0 +1,175 @@
+"""prima validate: source lines, formats, folders, limits, watching."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from prima.diagnostics import excerpt, render, sarif
+from prima.errors import Place, Problem
+
+ROOT = Path(__file__).parent.parent
+BAD = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">
+  <form id="f">
+    <block><speek>Hi.</speek><exit/></block>
+  </form>
+</prima>
+"""
+GOOD = BAD.replace("speek", "speak")
+
+
+def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "prima", *map(str, args)],
+        capture_output=True, text=True, timeout=60, cwd=cwd, check=False,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "marked"),
+    [
+        ('  <goto next="#g"/>', 15, "#g"),
+        ("  <speek>x", 3, "<speek"),
+        ('<a b="c"', 4, "b"),
+        ('<a b="c d"', 6, '"c d"'),
+        ("x", 9, "x"),
+        ("a + undefinedThing + b", 5, "undefinedThing"),
+    ],
+)
+def test_the_token_under_the_place_is_marked(line: str, column: int, marked: str) -> None:
+    shown, under = excerpt(line, column)
+    assert shown == line
+    start = under.index("^")
+    if column <= len(line):
+        assert line[start : start + len(under.strip())] == marked
+
+
+def test_tabs_and_wide_letters_keep_their_columns() -> None:
+    assert excerpt("\t日本<x", 4) == ("\t日本<x", "\t    ^~")
+    assert excerpt("日本x", 1)[1] == "^" + "~" * 4
+
+
+def test_a_long_line_is_cut_around_its_place() -> None:
+    shown, under = excerpt("a " * 500 + "<wrong/>" + " b" * 500, 1001)
+    assert len(shown) <= 110
+    assert shown[under.index("^") :].startswith("<wrong")
+
+
+def test_control_characters_of_a_document_never_reach_a_terminal() -> None:
+    problem = Problem(Place("a\x1b.xml", 1, 1), "error", "x", "m\x1b[2J", "r\x07")
+    text = render(problem, lambda _: ["<a \x1b[2J>"])
+    assert "\x1b" not in text and "\x07" not in text
+
+
+def test_a_place_beyond_the_file_has_no_source_line() -> None:
+    problem = Problem(Place("a.xml", 7, 1), "error", "x", "wrong")
+    assert render(problem, lambda _: ["one"]) == "a.xml:7:1: error: wrong [x]"
+
+
+def test_text_has_the_source_line_and_short_has_not(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(BAD)
+    done = prima("validate", "a.xml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stdout.splitlines() == [
+        'a.xml:3:12: error: There is no <speek>. Did you mean "speak"? [unknown-element]',
+        "    3 |     <block><speek>Hi.</speek><exit/></block>",
+        "      |            ^~~~~~",
+    ]
+    done = prima("validate", "a.xml", "--format", "short", cwd=tmp_path)
+    assert len(done.stdout.splitlines()) == 1
+
+
+def test_errors_of_a_run_have_their_source_line(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(BAD)
+    done = prima("run", "--fa", "a.xml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "      |            ^~~~~~" in done.stderr
+
+
+def test_sarif_is_complete(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(BAD)
+    done = prima("validate", "a.xml", "--format", "sarif", cwd=tmp_path)
+    assert done.returncode == 1
+    run = json.loads(done.stdout)["runs"][0]
+    (result,) = run["results"]
+    rule = run["tool"]["driver"]["rules"][result["ruleIndex"]]
+    assert rule["id"] == result["ruleId"] == "unknown-element"
+    assert result["locations"][0]["physicalLocation"]["region"] == {
+        "startLine": 3,
+        "startColumn": 12,
+    }
+
+
+def test_sarif_names_files_as_uris() -> None:
+    problems = [Problem(Place(name), "note", "x", "m") for name in ("/a b.xml", "c/d.xml")]
+    results = sarif(problems, "1", {})["runs"][0]["results"]
+    uris = [one["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] for one in results]
+    assert uris == ["file:///a%20b.xml", "c/d.xml"]
+
+
+def test_a_folder_stands_for_its_documents(tmp_path: Path) -> None:
+    (tmp_path / "d" / "e").mkdir(parents=True)
+    (tmp_path / "d" / "a.xml").write_text(GOOD)
+    (tmp_path / "d" / "e" / "b.xml").write_text(BAD)
+    (tmp_path / "d" / "notes.txt").write_text("no document")
+    done = prima("validate", "d", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stdout.startswith("d/e/b.xml:3:12") and "files: 2; errors: 1" in done.stderr
+
+
+def test_all_documents_that_come_along_are_clean() -> None:
+    done = prima("validate", "documents", cwd=ROOT)
+    assert (done.returncode, done.stdout) == (0, "")
+
+
+def test_a_limit_can_be_raised_and_lowered(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(GOOD)
+    (tmp_path / "long.xml").write_text(GOOD + " " * 2_000_000)
+    assert prima("validate", "a.xml", "--limit", "elements=3", cwd=tmp_path).returncode == 1
+    done = prima("validate", "long.xml", cwd=tmp_path)
+    assert done.returncode == 1 and "--limit bytes=" in done.stdout
+    remedy = done.stdout.split("--limit ")[1].split(". [")[0]
+    assert prima("validate", "long.xml", "--limit", remedy, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["elments=3", "bytes", "bytes=", "bytes=-1", "bytes=1e9", "depth=100000", "=3", "bytes=٣"],
+)
+def test_a_limit_that_is_none(tmp_path: Path, given: str) -> None:
+    (tmp_path / "a.xml").write_text(GOOD)
+    done = prima("validate", "a.xml", "--limit", given, cwd=tmp_path)
+    assert done.returncode == 2 and done.stderr.startswith("prima: ")
+
+
+def test_watching_tells_of_every_change_until_it_is_interrupted(tmp_path: Path) -> None:
+    file = tmp_path / "a.xml"
+    file.write_text(BAD)
+    watching = subprocess.Popen(
+        [sys.executable, "-m", "prima", "validate", "a.xml", "--watch", "--format", "short"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert watching.stdout is not None
+    os.set_blocking(watching.stdout.fileno(), True)
+    assert "unknown-element" in watching.stdout.readline()
+    file.write_text(BAD.replace("<speek>", "<speak>"))
+    assert "not-xml" in watching.stdout.readline()
+    time.sleep(0.1)
+    watching.send_signal(signal.SIGINT)
+    _, told = watching.communicate(timeout=20)
+    assert watching.returncode == 130 and "errors: 1" in told
+
+
+def test_a_thousand_files_in_one_call(tmp_path: Path) -> None:
+    for number in range(1000):
+        (tmp_path / f"{number}.xml").write_text(GOOD)
+    done = prima("validate", ".", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "")
+    assert "files: 1000; no problems" in done.stderr
