@@ -237,8 +237,8 @@ def test_no_namespace_in_a_later_document(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_another_version(tmp_path: Path, head: str, told: str) -> None:
     """One error tells it, whatever else that version has that this one has not."""
-    found = problems(tmp_path, f"{head}<form><field name='a'><dtmf>1</dtmf></field></form></vxml>")
-    [error] = [problem for problem in found if problem.severity == "error"]
+    text = f"{head}<form><field name='a'><dtmf>1</dtmf></field></form></vxml>"
+    [error] = problems(tmp_path, text)
     assert str(error).startswith(f"{tmp_path}/app.vxml:{told}")
 
 
@@ -393,3 +393,19 @@ def test_what_a_script_assigns_goes_no_further_than_its_scope(tmp_path: Path) ->
     made = run(tmp_path, body)
     assert [row.what for row in made.rows() if row.what.startswith('"')] == ['"5"', '"3"']
     assert "own is not defined" in made.failures[0]
+
+
+# Others --------------------------------------------------------------------------------------
+
+
+def test_the_telephone_of_old_documents(tmp_path: Path) -> None:
+    """It is there, and knows what the connection knows: here nothing."""
+    body = '<var name="ani" expr="session.telephone.ani"/><form><block>From <value expr="ani"/></block></form>'
+    assert said(run(tmp_path, body)) == ['"From undefined"']
+
+
+def test_a_document_without_dialogs_tells_where(tmp_path: Path) -> None:
+    made = run(tmp_path, '\n<var name="a"/>', head=f"\n{HEAD}")
+    [failure] = made.failures
+    told = "error.badfetch: app.vxml:2: the document has no dialog: add a <form> or <menu>"
+    assert failure == f"app: {told}"

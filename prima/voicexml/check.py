@@ -82,7 +82,7 @@ ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 def check_tree(root: Node) -> list[Problem]:
     """Give every node its key, take out what is of foreign namespaces, and tell what is wrong."""
     root.key = "vxml"
-    if problem := _version_problem(root):
+    if problem := version_problem(root):
         return [problem]  # of another version, what else seems wrong may be right
     problems: list[Problem] = []
     stack = [root]
@@ -120,7 +120,8 @@ def _most(problems: list[Problem]) -> list[Problem]:
     return kept
 
 
-def _version_problem(root: Node) -> Problem | None:
+def version_problem(root: Node) -> Problem | None:
+    """What is wrong with a document's version, if it is none that is run (1.5)."""
     version = root.get("version").strip()
     if "version" not in root.attributes:
         message, remedy = '<vxml> needs the attribute "version".', 'Write version="2.0" or "2.1".'

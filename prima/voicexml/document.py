@@ -12,7 +12,7 @@ from prima.markup.check import check_root
 from prima.markup.reader import parse
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.check import check_code, check_tree, version_problem
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 __all__ = [
@@ -127,6 +127,8 @@ def _without_namespace(root: Node) -> list[Problem]:
         node = stack.pop()
         node.namespace = node.namespace or NAMESPACE
         stack.extend(node.nodes)
+    if version_problem(root):
+        return []  # a document of VoiceXML 1.0 has no namespace
     message = "The root element <vxml> has no namespace: it is read as VoiceXML."
     remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
     return [Problem(root.place, "warning", "no-namespace", message, remedy)]

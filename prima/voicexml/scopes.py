@@ -28,6 +28,9 @@ CONNECTION = """Object.defineProperty(session, 'connection', (function (held) {
   return held;
 })(given)))"""
 """What is known of the user's connection; what is not is undefined (5.1.4)."""
+TELEPHONE = """session.telephone =
+  { ani: session.connection.remote.uri, dnis: session.connection.local.uri }"""
+"""What VoiceXML 1.0 had instead, and many platforms after it."""
 
 
 class Documents:
@@ -43,7 +46,8 @@ class Documents:
         self.engine.put(session, "session", session)
         blank = self.engine.scope()
         given = self.engine.scope(given=dict(self.owner.owner.connection))
-        self.engine.raw(CONNECTION, (session, blank, blank, blank, given))
+        for code in (CONNECTION, TELEPHONE):
+            self.engine.raw(code, (session, blank, blank, blank, given))
         return session
 
     def enter(self, context: Context, page: Page) -> Flow:
