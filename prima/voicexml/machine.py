@@ -190,8 +190,9 @@ class Machine:
                     yield from self._enter(context, page)
                 node = page.dialog(dialog)
                 if node is None:
-                    message = f'there is no dialog "{dialog}" in {page.uri}'
-                    raise Thrown("error.badfetch", message)
+                    where = source(page.root)
+                    message = f"{where}: the document has no dialog: add a <form> or <menu>"
+                    raise Thrown("error.badfetch", message, where)
                 yield from self.dialog(context, node, heard)
                 raise GoOut
             except GoDialog as go:
