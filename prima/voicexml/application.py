@@ -10,7 +10,6 @@ from prima.interpreter.bounds import Bounds
 from prima.interpreter.content import source
 from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
-from prima.interpreter.selection import prefixes
 from prima.markup.tree import Node
 from prima.messages import (
     Action,
@@ -97,7 +96,7 @@ class VoiceInterpreter(Bounds):
         if self.over or context is None or not (self._run or self._calling):
             return
         thrown = Thrown(event.name, str(event.data.get("message", "")))
-        if not _hangs_up(event) and not self._takes(thrown):
+        if not _hangs_up(event) and not self._machine.events.takes(context, thrown):
             return
         self._cause = event.serial if event.reactive else None
         self._tell(event)
@@ -110,21 +109,6 @@ class VoiceInterpreter(Bounds):
         context = self._machine.context
         assert context is not None
         self.engine.set(context.session, "event", {"name": event.name, "data": dict(event.data)})
-
-    def _takes(self, thrown: Thrown) -> bool:
-        """Whether a handler is there, counting the event as it would be."""
-        context = self._machine.context
-        assert context is not None
-        held = dict(context.counters)
-        where = context.item.index if context.item is not None else -1
-        for key in prefixes(thrown.name):
-            context.counters[where, key] = context.counters.get((where, key), 0) + 1
-        try:
-            return self._machine.find(context, thrown) is not None
-        except Thrown:
-            return True
-        finally:
-            context.counters = held
 
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""

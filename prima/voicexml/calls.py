@@ -71,7 +71,7 @@ class Calls:
         aai = content.word(item, "aai", context, local)
         check_destination(call.to, item)
         if call.listens:
-            yield from gathered(self.owner, lambda: list(self.owner.inputs.active(context)))
+            yield from gathered(self.owner, lambda: self.owner.inputs.activate(context))
         yield from self._announce(context, call)
         outcome = NEAR_END
         if call.heard is None:

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from prima.interpreter.expressions import Scope, ScriptError
 from prima.interpreter.frame import GoOut
-from prima.interpreter.selection import prefixes, takes
+from prima.interpreter.selection import takes
 from prima.markup.tree import Node
-from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoItem, HungUp, Thrown
+from prima.voicexml.state import (
+    MAX_DEPTH,
+    Context,
+    Flow,
+    GoBack,
+    GoItem,
+    HungUp,
+    Thrown,
+    Unasked,
+)
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -47,18 +57,26 @@ class Events:
     def find(self, context: Context, thrown: Thrown) -> Node | None:
         """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
         local = self._scope(thrown)
-        item = context.item if context.item is not context.form else None
-        root = context.root.root if context.root else None
         fitting: list[tuple[int, Node]] = []
-        for node in (item, context.form, context.page.root, root):
-            for handler in node.all(*HANDLERS) if node is not None else ():
-                least = _number(handler)
-                if least <= self._seen(context, handler, thrown.name) and self.owner.content.holds(
-                    handler, context, local
-                ):
-                    fitting.append((least, handler))
+        for handler in _handlers(context):
+            least = _number(handler)
+            if least <= self._seen(context, handler, thrown.name) and self.owner.content.holds(
+                handler, context, local
+            ):
+                fitting.append((least, handler))
         highest = max((least for least, _ in fitting), default=0)
         return next((handler for least, handler in fitting if least == highest), None)
+
+    def takes(self, context: Context, thrown: Thrown) -> bool:
+        """Whether a handler is there for an event that has not been counted; it is not then."""
+        held = dict(context.counters)
+        self._count(context, thrown)
+        try:
+            return self.find(context, thrown) is not None
+        except Thrown:
+            return True
+        finally:
+            context.counters = held
 
     def unhandled(self, context: Context, thrown: Thrown) -> Flow:
         """Say what is queued, and end the application with an event that nothing takes."""
@@ -69,17 +87,19 @@ class Events:
         raise GoOut(f"{thrown.name}: {message}", True, place)
 
     def _count(self, context: Context, thrown: Thrown) -> None:
-        """Count an event, under its name and all prefixes, where it was thrown (5.2.2)."""
+        """Count an event where it was thrown, under its name and all prefixes (5.2.2).
+
+        Only those that a handler names make a difference.
+        """
         where = _place(context)
-        for name in prefixes(thrown.name):
-            context.counters[where, name] = context.counters.get((where, name), 0) + 1
+        named = {name for handler in _handlers(context) for name in _names(handler)}
+        for name in named:
+            if takes(name, thrown.name):
+                context.counters[where, name] = context.counters.get((where, name), 0) + 1
 
     def _seen(self, context: Context, handler: Node, event: str) -> int:
         """How often a handler's event has been counted; 0 where it does not take this one."""
-        names = [handler.tag]
-        if handler.tag == "catch":
-            names = [name.rstrip(".") for name in handler.get("event").split()] or [""]
-        where = _place(context)
+        where, names = _place(context), _names(handler)
         counts = [context.counters.get((where, one), 0) for one in names if takes(one, event)]
         return max(counts, default=0)
 
@@ -116,10 +136,28 @@ class Events:
             context.quiet = False
         elif takes("cancel", thrown.name):
             context.quiet = True
+        elif isinstance(thrown, Unasked):
+            raise GoBack({}, thrown.name, thrown.message)
         elif takes("exit", thrown.name) or takes("connection.disconnect", thrown.name):
             raise GoOut(thrown.name)
         else:
             yield from self.unhandled(context, thrown)
+
+
+def _handlers(context: Context) -> Iterator[Node]:
+    """The handlers in scope, innermost first and each scope's in document order (5.2.4)."""
+    item = context.item if context.item is not context.form else None
+    root = context.root.root if context.root else None
+    for node in (item, context.form, context.page.root, root):
+        if node is not None:
+            yield from node.all(*HANDLERS)
+
+
+def _names(handler: Node) -> list[str]:
+    """The events that a handler takes; the empty name is for all."""
+    if handler.tag != "catch":
+        return [handler.tag]
+    return [name.rstrip(".") for name in handler.get("event").split()] or [""]
 
 
 def _place(context: Context) -> int:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 REMOTE = frozenset(["http", "https", "service"])
 """Schemes of URIs that are asked for outside the application."""
+STEP_BYTES = 200
+"""Bytes of a resource that count as one step."""
 FETCH_TIMEOUT = 10_000
 """How long an answer is waited for (ms) where ``fetchtimeout`` does not say."""
 
@@ -89,12 +91,19 @@ def fetch(
     """
     whole = urldefrag(uri)[0]
     if not remote(whole):
-        return _file(owner, whole, node)
+        return _weighed(owner, _file(owner, whole, node), node)
     answer = yield from _asked(owner, whole, node, request or Request())
     if answer.problem:
         name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
         raise Thrown(name, f"{source(node)}: {whole}: {answer.problem}", source(node))
-    return answer.body.encode(answer.charset)
+    return _weighed(owner, answer.body.encode(answer.charset), node)
+
+
+def _weighed(owner: Machine, data: bytes, node: Node) -> bytes:
+    """Count what is to be read as steps: to read much, again and again, is a loop as well."""
+    for _ in range(len(data) // STEP_BYTES):
+        owner.count_step(node)
+    return data
 
 
 def _asked(

@@ -11,14 +11,16 @@ from prima.markup.tree import Node
 from prima.messages import Json, Say
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held
-from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase
-from prima.voicexml.state import Context, Heard
+from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
+from prima.voicexml.state import Context, Heard, Thrown
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 """Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
+DEAF = frozenset(["record", "transfer"])
+"""Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
 BUILT_IN = frozenset(["boolean", "currency", "date", "digits", "number", "phone", "time"])
 
@@ -40,22 +42,44 @@ class Inputs:
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
         self._loaded: dict[tuple[str, int, str], Matcher] = {}
+        self._active: list[Active] = []
+        """What listens in the wait that there is."""
 
     # Hearing ------------------------------------------------------------------------
 
+    def activate(self, context: Context) -> None:
+        """Load all that listens now; it does until what was waited for has come (3.1.4).
+
+        Raises:
+            Thrown: for a grammar that cannot be used; ``error.semantic`` where none listens.
+        """
+        self._active = list(self.active(context))
+        item = context.item
+        if not self._active and item is not None and item.tag not in DEAF:
+            message = f"{source(item)}: no grammar listens here"
+            raise Thrown("error.semantic", message, source(item))
+
     def hear(self, context: Context, text: str) -> Heard | None:
         """What the most specific grammars take of an utterance, or None (3.1.4)."""
+        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        for said, mode in ways(text, self.owner.setting(context, "termchar")):
+            heard = self._best(context, said, mode) if mode in modes else None
+            if heard is not None:
+                return heard
+        return None
+
+    def _best(self, context: Context, said: str, mode: str) -> Heard | None:
+        """The best results of the first scope in which a grammar takes what was said."""
         wanted = self.owner.number(context, "maxnbest", 1)
         most = int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
         least = self.owner.number(context, "confidencelevel", 0.5)
-        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
         first: Active | None = None
         results: list[Found] = []
-        for active in self.active(context):
+        for active in self._active:
             if first is not None and (active.level is not first.level or len(results) >= most):
                 break
-            for one in active.match(text, most):
-                fits = one.mode in modes and one.confidence >= least
+            for one in active.match(said, mode, most):
+                fits = one.confidence >= least
                 if fits and all(one.means != other.means for other in results):
                     results.append(one)
                     first = first or active
@@ -80,9 +104,9 @@ class Inputs:
         item, form, page = context.item, context.form, context.page
         if item is not None:
             yield from self._of(context, item, page)
+            yield from self._links(context, item, page)
             if item.get("modal", str(item.tag in ("record", "transfer")).lower()) == "true":
                 return
-            yield from self._links(context, item, page)
         if form is not None and form is not item:
             yield from self._of(context, form, page)
             yield from self._links(context, form, page)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from urllib.parse import urldefrag
 
 from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.calls import Calls
+from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
 from prima.voicexml.recorder import Recorder
@@ -17,9 +17,6 @@ from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Hea
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
-
-INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
-"""Items that take input or a result; a block and an initial are control items (2.3)."""
 
 
 class Items:
@@ -37,30 +34,31 @@ class Items:
         """What the user said goes to the item, form, link or choice that has taken it."""
         owner = heard.owner
         self.remember(context, heard)
-        if owner.tag in ("link", "choice"):
-            yield from self._follow(context, owner, heard)
-        if owner.tag in ("form", "menu") and owner is not context.form:
+        dialog = _dialog_of(heard.page, owner)
+        if dialog is not None and dialog is not context.form:
             page = heard.page if heard.page is not context.page else None
-            raise GoDialog(page, _name(heard.page, owner), heard)
+            raise GoDialog(page, _name(heard.page, dialog), heard)
+        if owner.tag in ("link", "choice"):
+            yield from self._follow(context, owner)
         filled = self._fill(context, heard)
         if not filled:
-            raise Thrown("nomatch", "", source(owner))
+            return  # the algorithm just goes on (C)
         for item in self.owner.items(context):
             if item.tag == "initial":
                 self.mark(context, item)
         yield from self.run_filled(context, filled)
 
-    def _follow(self, context: Context, node: Node, heard: Heard) -> Flow:
-        """A link's or choice's target: a dialog, or an event (2.2, 2.5)."""
+    def _follow(self, context: Context, node: Node) -> Flow:
+        """A link's or choice's target: a dialog, or an event (2.2, 2.5).
+
+        What a link's attributes say is of the place where it was heard, not of its own.
+        """
         content, local = self.owner.content, self.owner.local()
         event = content.word(node, "event", context, local)
         if event:
             raise Thrown(event, content.word(node, "message", context, local), source(node))
         uri = content.word(node, "next", context, local)
-        base = heard.page if urldefrag(uri)[0] else None
-        if heard.page is not context.page and base is None:
-            uri, base = heard.page.uri.rpartition("/")[2] + uri, heard.page
-        yield from self.owner.go(context, uri, node, None, base)
+        yield from self.owner.go(context, uri, node)
 
     def remember(self, context: Context, heard: Heard) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""
@@ -169,6 +167,14 @@ class Items:
             else param.get("value")
             for param in item.all("param")
         }
+
+
+def _dialog_of(page: Page, owner: Node) -> Node | None:
+    """The dialog whose grammar it was: a form or menu of its own, or that of a choice."""
+    if owner.tag in ("form", "menu"):
+        return owner
+    menus = page.dialogs.values() if owner.tag == "choice" else ()
+    return next((menu for menu in menus if owner in menu.nodes), None)
 
 
 def _name(page: Page, dialog: Node) -> str:

@@ -28,13 +28,14 @@ from prima.voicexml.state import (
     Heard,
     Resume,
     Thrown,
+    Unasked,
     thrown_outside,
 )
 
 if TYPE_CHECKING:
     from prima.voicexml.application import VoiceInterpreter
 
-DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1"}
+DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"}
 
 
 class Machine:
@@ -139,9 +140,11 @@ class Machine:
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read what enumerate says: each choice, in its own words (2.2.4)."""
         owner = context.item if context.item is not None else context.form
-        if owner is None:
-            return
-        choices, keys = owner.all("choice", "option"), numbered(owner)
+        choices = owner.all("choice", "option") if owner is not None else []
+        if owner is None or not choices or _holds_enumerate(node):
+            message = f"{source(node)}: there are no choices here to enumerate"
+            raise Thrown("error.semantic", message, source(node))
+        keys = numbered(owner)
         if not node.content:
             speech.parts.append("; ".join(filter(None, map(words_of, choices))))
             return
@@ -226,6 +229,7 @@ class Machine:
             try:
                 if heard is not None:
                     taken, heard = heard, None
+                    context.item = form if form.tag == "menu" else None
                     yield from self.items_of.process(context, taken)
                     continue
                 item = self.select(context, wanted)
@@ -262,7 +266,7 @@ class Machine:
                 self._declare_item(context, node)
         for name in params:
             message = f'{source(form)}: no variable of the form is the parameter "{name}"'
-            raise Thrown("error.semantic", message, source(form))
+            raise Unasked("error.semantic", message, source(form))
 
     def _set(self, context: Context, name: str, value: Json) -> None:
         """Give a variable of the dialog a value, which may be undefined."""
@@ -365,7 +369,7 @@ class Machine:
     def _listen(self, context: Context, item: Node) -> Flow:
         """Play what is queued, then wait for the user (C4)."""
         # A grammar that cannot be used is told before anything is said.
-        yield from gathered(self, lambda: list(self.inputs.active(context)))
+        yield from gathered(self, lambda: self.inputs.activate(context))
         if item.tag == "record":
             self.items_of.recorder.check(item)
         asked = self.queue.pop() if self.queue and self.queue[-1].type == "speak" else None
@@ -418,6 +422,10 @@ class Machine:
 
 def _is_spoken(piece: Node | str) -> bool:
     return isinstance(piece, str) or piece.tag in ("prompt", "audio", "value", "enumerate")
+
+
+def _holds_enumerate(node: Node) -> bool:
+    return any(one.tag == "enumerate" or _holds_enumerate(one) for one in node.nodes)
 
 
 def _least(piece: Node | str) -> int:

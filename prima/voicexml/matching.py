@@ -45,7 +45,8 @@ class Found:
         return json.dumps(self.interpretation, sort_keys=True, default=str)
 
 
-Matcher = Callable[[str, int], list[Found]]
+Matcher = Callable[[str, str, int], list[Found]]
+"""Gives the ways in which a grammar takes what was said in a mode, at most so many."""
 Fetch = Callable[[str], bytes]
 Tell = Callable[[Node, str], None]
 
@@ -59,30 +60,27 @@ def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Match
     """
     grammar = _loaded(node, page, uri, fetch)
 
-    def match(text: str, most: int) -> list[Found]:
+    def match(said: str, mode: str, most: int) -> list[Found]:
         found: list[Found] = []
-        for said, mode in _ways(text):
-            for one in grammar.match(said, mode=mode, most=most):
-                if one.error is not None:
-                    tell(node, f"{source(node)}: {one.error}")
-                    continue
-                found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
-            if found:
-                break
+        for one in grammar.match(said, mode=cast(Literal["dtmf", "voice"], mode), most=most):
+            if one.error is not None:
+                tell(node, f"{source(node)}: {one.error}")
+                continue
+            found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
         return found[:most]
 
     return match
 
 
-def _ways(text: str) -> list[tuple[str, str]]:
-    """An utterance as keys, with and without the key that ends it, and as speech."""
+def ways(text: str, end: str) -> list[tuple[str, str]]:
+    """An utterance as keys, with and without the key that ends it, or as speech (6.3.3)."""
     if not text.strip() or not set(text) <= KEYS:
         return [(text, "voice")]
     typed = text.replace(" ", "")
-    ways = [(typed, "dtmf"), (text, "voice")]
-    if typed.endswith("#") and len(typed) > 1:
-        ways.insert(1, (typed[:-1], "dtmf"))
-    return ways
+    found = [(typed, "dtmf")]
+    if end and typed.endswith(end) and typed != end:
+        found.append((typed.removesuffix(end), "dtmf"))
+    return found if set(typed) & set("*#") else [*found, (text, "voice")]
 
 
 def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
@@ -118,6 +116,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
             type=kind,
             rule=rule,
             languages=lambda tag: LANGUAGE.fullmatch(tag) is not None,
+            lenient=True,
         )
         if not made.root:
             raise Thrown("error.grammar", f"{place}: the grammar names no root rule", place)
@@ -144,11 +143,11 @@ def phrase(text: str, value: Json, approximate: bool) -> Matcher:
     """A matcher of one phrase; approximately, of some of its words in their order (2.2.5)."""
     wanted = fold(text).split()
 
-    def match(said: str, _most: int) -> list[Found]:
+    def match(said: str, mode: str, _most: int) -> list[Found]:
         words = fold(said).split()
         rest = iter(wanted)
         near = approximate and bool(words) and all(word in rest for word in words)
-        return [Found(said, value)] if words == wanted or near else []
+        return [Found(said, value)] if mode == "voice" and (words == wanted or near) else []
 
     return match
 
@@ -157,9 +156,8 @@ def keys(dtmf: str, value: Json) -> Matcher:
     """A matcher of a sequence of keys."""
     wanted = dtmf.replace(" ", "")
 
-    def match(said: str, _most: int) -> list[Found]:
-        typed = said.replace(" ", "")
-        ends = typed == wanted or (typed.endswith("#") and typed[:-1] == wanted)
-        return [Found(wanted, value, 1.0, "dtmf")] if ends else []
+    def match(said: str, mode: str, _most: int) -> list[Found]:
+        typed = mode == "dtmf" and said == wanted
+        return [Found(wanted, value, 1.0, "dtmf")] if typed else []
 
     return match

@@ -107,6 +107,10 @@ def thrown_outside(resume: Resume) -> Thrown:
     return Thrown(name, message)
 
 
+class Unasked(Thrown):
+    """A parameter for which a subdialog has no variable: what it does not handle is its caller's."""
+
+
 class Leave(Exception):
     """Control leaves what runs."""
 
