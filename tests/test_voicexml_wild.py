@@ -409,3 +409,23 @@ def test_a_document_without_dialogs_tells_where(tmp_path: Path) -> None:
     [failure] = made.failures
     told = "error.badfetch: app.vxml:2: the document has no dialog: add a <form> or <menu>"
     assert failure == f"app: {told}"
+
+
+@pytest.mark.parametrize("uri", ["http://[x", "http://[x#y", "http://[x]:a/b?c=d#e", "//\u2100/x"])
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form><block><goto next="{}"/></block></form>',
+        "<form><block><submit expr=\"'{}'\"/></block></form>",
+        '<form><subdialog src="{}"/></form>',
+        '<form><block><data name="d" src="{}"/></block></form>',
+        '<form><block><script src="{}"/></block></form>',
+        '<form xml:base="{0}"><block><audio src="{0}"/><goto next="x.vxml"/></block></form>',
+        '<form><field name="f"><grammar src="{}"/></field></form>',
+    ],
+)
+def test_a_uri_that_is_none(tmp_path: Path, body: str, uri: str) -> None:
+    """It cannot be fetched, whoever names it."""
+    transcript = run(tmp_path, body.format(uri))
+    [failure] = transcript.failures
+    assert "app: error." in failure and "app.vxml:1" in failure

@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from urllib.parse import urldefrag, urljoin, urlsplit
+from urllib.parse import quote, urldefrag, urljoin, urlsplit
 
 from prima.errors import DocumentError, Problem
 from prima.markup.check import check_root
@@ -81,10 +81,20 @@ class Page:
         return check_code(self.root, set(self.dialogs))
 
 
+def legal(uri: str) -> str:
+    """A URI as it is; one that nothing can be found under, such as ``http://[``, made harmless."""
+    try:
+        urlsplit(uri)
+    except ValueError:
+        return quote(uri, safe="%/?#:=&")
+    return uri
+
+
 def join(base: str, uri: str) -> str:
     """A URI seen from its base; one that leads out of the folder begins with ``..``."""
     if not uri:
         return base
+    uri = legal(uri)
     if urlsplit(base).scheme or urlsplit(uri).scheme or uri.startswith(("#", "?", "/")):
         return urljoin(base, uri)
     path, mark, rest = uri.partition("#")

@@ -9,7 +9,7 @@ from urllib.parse import urldefrag
 from prima.interpreter.content import source
 from prima.interpreter.expressions import Scope
 from prima.markup.tree import Node
-from prima.voicexml.document import Page
+from prima.voicexml.document import Page, legal
 from prima.voicexml.fetching import Request, load_page
 from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown
 
@@ -144,7 +144,7 @@ class Documents:
         """
         if not uri:
             raise Thrown("error.badfetch", f"{source(node)}: there is no URI", source(node))
-        target, fragment = urldefrag(uri)
+        target, fragment = urldefrag(legal(uri))
         page = None
         if target or request is not None:
             whole = urldefrag((base or context.page).resolve(uri, node))[0]
