@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import posixpath
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
@@ -34,6 +36,35 @@ if TYPE_CHECKING:
 # What one use needs and another does not is imported where it is used: most commands are short.
 
 
+_texts: ContextVar[Mapping[Path, bytes] | None] = ContextVar("texts", default=None)
+"""What counts in place of files on the disk, by resolved paths."""
+
+
+@contextmanager
+def in_place_of_files(texts: Mapping[Path, bytes]) -> Iterator[None]:
+    """Let the bytes of documents that lie open in an editor count in place of their files.
+
+    Args:
+        texts: the bytes by resolved paths.
+    """
+    token = _texts.set(texts)
+    try:
+        yield
+    finally:
+        _texts.reset(token)
+
+
+def _open_text(path: str | Path) -> bytes | None:
+    """What counts in place of a file, if anything does."""
+    texts = _texts.get()
+    if not texts:
+        return None
+    try:
+        return texts.get(Path(path).resolve())
+    except (OSError, ValueError, RuntimeError):
+        return None
+
+
 def read_file(path: str | Path) -> bytes:
     """Read a document's bytes, up to the limit.
 
@@ -41,6 +72,11 @@ def read_file(path: str | Path) -> bytes:
         DocumentError: the file is larger than any document may be.
         UsageError: it cannot be read.
     """
+    text = _open_text(path)
+    if text is not None:
+        if len(text) > LIMITS.bytes:
+            raise too_large(str(path), len(text))
+        return text
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise UsageError(f"{path}: cannot be read: it is not a file.")
