@@ -581,6 +581,55 @@ def test_ten_thousand_alternatives_in_ten_milliseconds(form: str) -> None:
     assert min(took) < 0.01
 
 
+@pytest.mark.parametrize(
+    ("one", "said"),
+    [
+        ("[the] w{0} now", "the w5 now"),
+        ("(a | the) w{0}", "the w5"),
+        ("{{{0}}} [go] to w{0}<1->", "to w5 w5"),
+        ("$x{0}", "please w5"),
+        ("$GARBAGE w{0}", "w5"),
+        ("駅{0}番 [まで]", "駅5番まで"),
+    ],
+)
+def test_however_ten_thousand_alternatives_begin(one: str, said: str) -> None:
+    count = 10_000 if "GARBAGE" not in one else 100  # what begins with any words is tried
+    rules = "".join(f"$x{number} = [please] w{number};" for number in range(count))
+    alternatives = "|".join(one.format(number) for number in range(count))
+    grammar = load(f"{ABNF}{rules if '$x' in one else ''}$r = {alternatives};")
+    took = []
+    for _ in range(5):
+        began = perf_counter()
+        assert grammar.match(said)
+        took.append(perf_counter() - began)
+    assert not grammar.match(f"{said} w5 z")
+    assert min(took) < 0.01
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "$r = " + "a {b} " * 50_000 + "| c;",
+        "$r = " + "[a] " * 20_000 + "| c;",
+        "$r = "
+        + "(" * 90
+        + "a | c"
+        + ")" * 90
+        + " | " * 1
+        + "|".join("[a] [b] c" for _ in range(9))
+        + ";",
+        "$r = $r0 | c;"
+        + "".join(f"$r{i} = $r{i + 1} a | $r{i + 1};" for i in range(2000))
+        + "$r2000 = b;",
+        "$r = $r | $r a | [$r] [$r] c;",
+    ],
+)
+def test_beginnings_are_looked_for_in_bounded_time(body: str) -> None:
+    began = process_time()
+    assert load(ABNF + body).match("c")
+    assert process_time() - began < 10
+
+
 def test_loading_takes_time_in_proportion() -> None:
     def spent(count: int) -> float:
         text = xml('<rule id="r"><one-of>' + "<item>a b</item>" * count + "</one-of></rule>")

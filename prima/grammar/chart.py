@@ -187,6 +187,7 @@ class Chart:
         start, said = spot.start, self.said
         index = part.index
         left = len(said) - start
+        tried = set(index.others)
         for length in index.lengths:
             if length > left:
                 if self._prefixes:
@@ -195,11 +196,10 @@ class Chart:
                 break
             found = index.by_lead.get(said[start : start + length])
             if found is not None and self.utterance.edges[start + length]:
-                for number in found:
-                    self._call(part.parts[number], start, Waiting(spot, number, None))
-        for number in index.others:
+                tried.update(found)
+        for number in sorted(tried):
             self._call(part.parts[number], start, Waiting(spot, number, None))
-        self.steps_left -= len(index.lengths) + len(index.others)
+        self.steps_left -= len(index.lengths) + len(tried)
 
     def _go_on(self, spot: Spot, done: int, end: int, way: Way) -> None:
         """So many parts of a sequence have matched."""

@@ -6,11 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from prima.grammar.budget import Budget
 from prima.grammar.chart import GARBAGE_COST, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.model import Document, Mode, Reference
 from prima.grammar.ranking import best, frames
-from prima.grammar.semantics import Budget, Failure, Interpreter, SemanticError
+from prima.grammar.semantics import Failure, Interpreter, SemanticError
 from prima.grammar.text import utterance
 from prima.messages import Json
 

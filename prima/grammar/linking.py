@@ -15,6 +15,7 @@ from prima.grammar.errors import (
     Where,
     refuse,
 )
+from prima.grammar.leads import index_choices
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.model import Document, Reference, Rule
 
@@ -39,6 +40,7 @@ class Library:
         self._read = read
         self._bytes = 0
         self._unlinked: list[Document] = []
+        self._linked: list[Document] = []
 
     def add(self, document: Document) -> None:
         """Add a document whose references are to be resolved."""
@@ -50,11 +52,14 @@ class Library:
         """Resolve all references, and those of the documents that they lead to."""
         while self._unlinked:
             document = self._unlinked.pop(0)
+            self._linked.append(document)
             self._format(document)
             for reference in document.references:
                 if self.problems.full:
                     return
                 reference.rule = self._resolve(document, reference)
+        if not self.problems.found:
+            index_choices(self._linked)
 
     def fetch(self, uri: str, media: str, where: Where) -> Document | None:
         """The document of a URI, fetched the first time; what is wrong is noted."""

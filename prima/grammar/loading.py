@@ -20,7 +20,8 @@ from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, joined
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
-from prima.markup.reader import MAX_BYTES, parse, too_large
+from prima.markup.limits import LIMITS
+from prima.markup.reader import parse, too_large
 from prima.markup.tree import Node, Source
 
 XML_TYPES = frozenset(
@@ -188,7 +189,7 @@ def _document(
     """The bytes of a whole file as a document; its language is its own."""
     media = _media(type)
     uri, file = urldefrag(uri)[0], uri or "grammar"
-    if len(data) > MAX_BYTES:
+    if len(data) > LIMITS.bytes:
         raise GrammarError(too_large(file, len(data)).problems)
     begin = _beginning(data)
     _known_type(media, Place(file), begin)

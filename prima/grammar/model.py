@@ -92,7 +92,7 @@ Part = Words | Sequence | Choice | Repeat | Reference | Special | Tag | BuiltIn
 
 @dataclass(slots=True)
 class LeadIndex:
-    """The alternatives of a choice by the words that they begin with."""
+    """The alternatives of a choice by the words that they begin with, each under all of its own."""
 
     by_lead: dict[str, list[int]]
     lengths: list[int]
@@ -132,30 +132,3 @@ class Document:
     """How tags are read: ``script``, ``literals`` or ``legacy``."""
     merges: bool = False
     """Whether slots that referenced rules fill are those of the rule that refers."""
-
-
-def lead(part: Part) -> str:
-    """The words that every match of an expansion begins with, as far as is plain."""
-    while True:
-        match part:
-            case Words(folded):
-                return folded
-            case Repeat(inner, low) if low >= 1:
-                part = inner
-            case Sequence(parts):
-                first = next((one for one in parts if not isinstance(one, Tag)), None)
-                if first is None:
-                    return ""
-                part = first
-            case _:
-                return ""
-
-
-def lead_index(parts: list[Part]) -> LeadIndex:
-    """The index of some alternatives."""
-    by_lead: dict[str, list[int]] = {}
-    others: list[int] = []
-    for number, part in enumerate(parts):
-        words = lead(part)
-        (by_lead.setdefault(words, []) if words else others).append(number)
-    return LeadIndex(by_lead, sorted({len(words) for words in by_lead}), others)

@@ -12,7 +12,7 @@ from typing import Any
 
 import _quickjs as quickjs
 
-from prima.grammar.semantics import TIME_LIMIT, Budget
+from prima.grammar.budget import TIME_LIMIT, Budget
 from prima.messages import Json
 from prima.prelude import MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from prima.errors import Place
+from prima.grammar.budget import Budget
 from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Tag, Words
 from prima.grammar.ranking import Frame, Value
@@ -51,22 +52,6 @@ class _Result:
     value: Json = None
     box: Any = None
     """The value inside its document's engine, if it is there."""
-
-
-TIME_LIMIT = 0.5
-"""Seconds of processor time that the tags of one utterance may take."""
-
-
-@dataclass(slots=True)
-class Budget:
-    """The time that the tags of one utterance have taken, in all documents and analyses."""
-
-    spent: float = 0.0
-
-    @property
-    def over(self) -> bool:
-        """Whether it was all spent."""
-        return self.spent > TIME_LIMIT
 
 
 class Interpreter:

@@ -6,7 +6,7 @@ import math
 import re
 from typing import NamedTuple
 
-from prima.grammar.model import Choice, Part, Sequence, lead_index
+from prima.grammar.model import Choice, LeadIndex, Part, Sequence
 
 LEAST = 1e-20
 """A weight of nought counts as this: it comes after everything else."""
@@ -85,7 +85,7 @@ def choice(parts: list[Part], weights: list[float | None]) -> Part:
     greatest = max(given, default=1.0)
     scale = greatest if greatest > 0 else 1.0
     costs = [0.0 if weight == greatest else cost(weight / scale) for weight in given]
-    return Choice(parts, costs, lead_index(parts))
+    return Choice(parts, costs, LeadIndex({}, [], list(range(len(parts)))))
 
 
 def sequence(parts: list[Part]) -> Part:

@@ -1,0 +1,20 @@
+"""How much time the tags of one utterance may take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+TIME_LIMIT = 0.5
+"""Seconds of processor time that the tags of one utterance may take."""
+
+
+@dataclass(slots=True)
+class Budget:
+    """The time that the tags of one utterance have taken, in all documents and analyses."""
+
+    spent: float = 0.0
+
+    @property
+    def over(self) -> bool:
+        """Whether it was all spent."""
+        return self.spent > TIME_LIMIT
