@@ -45,9 +45,9 @@ INSIDE = {
     ],
     "markup": [{"limits", "vocabulary", "tree"}, {"build", "check", "schema"}, {"reader"}, {"__init__"}],
     "grammar": [
-        {"errors", "text", "numbers", "sandbox"},
-        {"model", "moments"},
-        {"values", "builtin", "legacy", "chart"},
+        {"budget", "errors", "text", "numbers"},
+        {"model", "moments", "sandbox"},
+        {"values", "builtin", "leads", "legacy", "chart"},
         {"xmlform", "abnf", "ranking"},
         {"semantics"},
         {"grammar", "linking"},
