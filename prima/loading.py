@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from html import escape
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, urlsplit
@@ -214,6 +215,8 @@ def _validate_one(path: str) -> list[Problem]:
 
             page = read_page(Path(path).name, path, data)
             return [*page.problems, *page.warnings()]
+        if is_grammar(data):
+            return _grammar_problems(Path(path), data)
         root = parse(path, data)
         if root.namespace == DIALOGUE.namespace:
             return read_document(path, data)[1]
@@ -233,6 +236,41 @@ def _validate_one(path: str) -> list[Problem]:
             return load_scenario(path).problems
     except DocumentError as error:
         return error.problems
+    return []
+
+
+GRAMMAR = re.compile(
+    rb"\s*(?:#ABNF|#JSGF|;GSL|#GSL)|" + VOICEXML_ROOT.pattern.replace(b"vxml", b"grammar"), re.DOTALL
+)
+"""How a grammar begins that is a file of its own."""
+
+
+def is_grammar(data: bytes) -> bool:
+    """Whether a file is a grammar, as far as its beginning tells."""
+    if b"\0" in data[:4]:  # UTF-16
+        data = data.replace(b"\0", b"")
+    return GRAMMAR.match(data) is not None
+
+
+def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
+    """What is wrong with a grammar, and with those of its folder that it refers to."""
+    from prima.grammar import load
+
+    def fetch(uri: str) -> bytes:
+        from prima.voicexml.document import FetchError
+
+        try:
+            return _fetch(path.parent, uri)
+        except FetchError as error:
+            raise LookupError(str(error).rstrip(".")) from None
+
+    try:
+        load(data, base=path.name, fetch=fetch)
+    except DocumentError as error:
+        return [
+            problem._replace(place=problem.place._replace(file=str(path.parent / problem.place.file)))
+            for problem in error.problems
+        ]
     return []
 
 
@@ -277,6 +315,7 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
 
 
 def _load(path: Path, data: bytes) -> Loaded:
+    from prima.sim.hearing import check_hearing
     from prima.sim.rehearsal import Cast, check_cast
     from prima.sim.scenario import read_robot, read_scenario, read_world
 
@@ -297,7 +336,7 @@ def _load(path: Path, data: bytes) -> Loaded:
     if world is None or robot is None or not complete:
         raise DocumentError(reading.problems)
     cast = Cast(scenario, reading.documents, world, robot, offers)
-    problems = sorted({*reading.problems, *check_cast(cast, str(path))})
+    problems = sorted({*reading.problems, *check_cast(cast, str(path)), *check_hearing(cast)})
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(problems)
     return Loaded(cast, reading.files, problems)
@@ -317,7 +356,7 @@ class _Reading:
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
-        target = self.path.parent / name
+        target = Path(normpath(self.path.parent / name))
         try:
             content = read_file(target)
             self.files[name] = _digest(content)

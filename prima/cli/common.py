@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from prima.errors import UsageError
+from prima.errors import UsageError, did_you_mean, one_of
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -20,10 +20,23 @@ WATCHDOG_SECONDS = 5.0
 INSTANT_SECONDS = 20.0
 """How long the scripts of one instant of a run may take together."""
 
+
+class Choice(click.Choice[str]):
+    """One of some words, with a suggestion for a misspelt one."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The word, or a refusal that says which one was probably meant."""
+        words = [str(word) for word in self.choices]
+        if value not in words:
+            hint = did_you_mean(str(value), words) or f"Write {one_of(words)}."
+            self.fail(f'There is no "{value}" here. {hint}', param, ctx)
+        return str(value)
+
+
 format_option = click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "json"]),
+    type=Choice(["text", "json"]),
     default="text",
     help="What to print.",
 )
@@ -74,7 +87,6 @@ def raise_limits(given: tuple[str, ...]) -> None:
     Raises:
         UsageError: there is no such limit, or it cannot be that high.
     """
-    from prima.errors import did_you_mean, one_of
     from prima.markup.limits import HIGHEST, LIMITS
 
     names = ("bytes", "elements", "attributes", "depth")

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from prima.cli.common import print_json, put, start_watchdog
+from prima.cli.common import Choice, print_json, put, start_watchdog
 
 
 @click.command()
@@ -15,7 +15,7 @@ from prima.cli.common import print_json, put, start_watchdog
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "json", "csv"]),
+    type=Choice(["text", "json", "csv"]),
     default="text",
     help="What to print.",
 )

@@ -11,6 +11,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
+    Choice,
     SourceLines,
     coloured,
     limit_option,
@@ -33,7 +34,7 @@ MANY = 50
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "short", "json", "sarif"]),
+    type=Choice(["text", "short", "json", "sarif"]),
     default="text",
     help="What to print; short leaves out the source lines.",
 )

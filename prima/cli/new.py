@@ -1,0 +1,30 @@
+"""prima new."""
+
+from __future__ import annotations
+
+import click
+
+from prima.cli.common import Choice, tell
+from prima.new import KINDS, attempt, write
+
+
+@click.command()
+@click.argument("kind", type=Choice(KINDS))
+@click.argument("name", type=click.Path())
+def new(kind: str, name: str) -> None:
+    """Start a document: commented, valid, and running as it is.
+
+    NAME is the file, with or without its ending. A scenario takes in the applications,
+    the world and the robot that are in its folder, and what is lacking is written beside
+    it. No file is ever overwritten.
+
+    \b
+    prima new ea guide
+    prima new fa friend
+    prima new scenario visit
+    prima run visit.xml
+    """
+    written = write(kind, name)
+    for path in written:
+        tell(f"written: {path}")
+    tell(f"Now try: {attempt(kind, written[-1])}")

@@ -1,0 +1,141 @@
+"""New documents from templates, for ``prima new``."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from html import escape
+from pathlib import Path
+
+from prima.errors import DocumentError, UsageError
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading import is_voicexml, read_file
+from prima.markup.reader import parse
+from prima.sim.scenario import read_world
+from prima.sim.vocabulary import ROBOT, WORLD
+
+KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
+TEMPLATES = Path(__file__).parent / "templates"
+ANSWERS = {
+    "Would you like something to drink?": "Yes.",
+    "Would you like tea or juice?": "Tea.",
+    "Tea or juice?": "Tea.",
+    "Shall I wave, or nod?": "Wave.",
+}
+"""What the user of a new scenario says to the questions of the other templates."""
+AWAY = 0.9
+"""How far the user stands from the robot at the beginning (m)."""
+
+
+def write(kind: str, name: str) -> list[Path]:
+    """Write a new document, and what a scenario lacks; gives the files written.
+
+    Args:
+        kind: one of :data:`KINDS`.
+        name: its file, with or without ``.xml`` (``.vxml``); its id is made of it.
+
+    Raises:
+        UsageError: the file is there already, or cannot be written.
+    """
+    ending = ".vxml" if kind == "vxml" else ".xml"
+    path = Path(name if name.endswith(ending) else name + ending)
+    if path.exists():
+        raise UsageError(f"{path}: is there already; name another file.")
+    if kind == "scenario":
+        return _scenario(path)
+    return [_fill(kind, path)]
+
+
+def identifier(name: str, kind: str) -> str:
+    """An id made of a file's name, or of the kind where nothing of the name can stand in one."""
+    made = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_") or kind
+    return f"{kind}-{made}" if made[:1].isdigit() else made
+
+
+def attempt(kind: str, path: Path) -> str:
+    """How to try a new document out."""
+    name = shlex.quote(str(path))
+    return {
+        "fa": "prima new scenario NAME",
+        "ea": f"prima run --ea {name} --say Yes. --say tea",
+        "vxml": f"prima run --ea {name} --say tea",
+        "scenario": f"prima run {name}",
+    }.get(kind, f"prima validate {name}")
+
+
+def _fill(kind: str, path: Path, **values: str) -> Path:
+    """Write a template with its values to a file that is not there."""
+    text = (TEMPLATES / f"{kind}.xml").read_text(encoding="utf-8")
+    title = escape(path.stem)
+    given = {"id": identifier(path.stem, kind), "title": title, **values}
+    given["file"] = path.name if "--" not in path.name else "FILE"  # no comment may hold --
+    for key, value in given.items():
+        text = text.replace(f"{{{key}}}", value)
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except FileExistsError:
+        raise UsageError(f"{path}: is there already; name another file.") from None
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+    return path
+
+
+def _scenario(path: Path) -> list[Path]:
+    """A scenario of what its folder has, and of what is written beside it."""
+    folder, written = path.parent, []
+    found = _documents(folder)
+    for kind, other in (("world", "room.xml"), ("robot", "robot.xml"), ("ea", "guide.xml")):
+        lacking = not found[kind] and not (kind == "ea" and found["fa"])
+        if lacking:
+            beside = folder / other if folder / other != path else folder / f"the-{other}"
+            written.append(_fill(kind, beside))
+            found[kind] = [beside]
+    world = read_world(str(found["world"][0]), read_file(found["world"][0]))
+    place, (x, y) = next(iter(world.places.items()))
+    applications = [
+        f'  <application src="{escape(one.name)}"' + (' kind="ea"' if one.suffix == ".vxml" else "")
+        + "/>"
+        for one in [*found["fa"], *found["ea"]]
+    ]  # fmt: skip
+    said = "".join(read_file(one).decode(errors="replace") for one in [*found["fa"], *found["ea"]])
+    answers = [
+        f'  <answer to="{escape(question)}">{escape(answer)}</answer>'
+        for question, answer in ANSWERS.items()
+        if f"{question}</prompt>" in said
+    ]
+    made = _fill(
+        "scenario",
+        path,
+        world=escape(found["world"][0].name),
+        robot=escape(found["robot"][0].name),
+        place=escape(place),
+        x=f"{x + AWAY:g}",
+        y=f"{y:g}",
+        applications="\n".join(applications),
+        answers="\n".join(answers),
+    )
+    return [*written, made]
+
+
+def _documents(folder: Path) -> dict[str, list[Path]]:
+    """The documents of a folder by what they are, in the order of their names."""
+    found: dict[str, list[Path]] = {"fa": [], "ea": [], "world": [], "robot": []}
+    for path in sorted([*folder.glob("*.xml"), *folder.glob("*.vxml")]):
+        kind = _kind(path)
+        if kind in found:
+            found[kind].append(path)
+    return found
+
+
+def _kind(path: Path) -> str:
+    try:
+        data = read_file(path)
+        if is_voicexml(data):
+            return "ea"
+        root = parse(str(path), data)
+    except (DocumentError, UsageError):
+        return ""
+    if root.namespace == DIALOGUE.namespace:
+        return root.get("kind")
+    return {WORLD.namespace: "world", ROBOT.namespace: "robot"}.get(root.namespace, "")
