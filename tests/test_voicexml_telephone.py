@@ -489,8 +489,7 @@ CONNECTION = """<form><block><log expr="[session.connection.remote.uri, session.
   session.connection.protocol.name, session.connection.protocol.version, session.connection.aai,
   session.connection.originator === session.connection.remote,
   session.connection.redirect &amp;&amp; session.connection.redirect.length + ' '
-  + session.connection.redirect[0].uri + ' ' + session.connection.redirect[0].reason,
-  typeof session.telephone].join()"/></block></form>"""
+  + session.connection.redirect[0].uri + ' ' + session.connection.redirect[0].reason].join()"/></block></form>"""
 
 
 def test_what_a_scenario_says_of_the_connection_is_there(place: Path) -> None:
@@ -498,14 +497,14 @@ def test_what_a_scenario_says_of_the_connection_is_there(place: Path) -> None:
     aai="vip" originator="remote"><redirect uri="tel:+81-3" reason="busy"/>
     <redirect uri="tel:+81-4"/></connection>"""
     assert logs(run(place, CONNECTION, script)) == [
-        "tel:+81-1,tel:+81-2,sip,2.0,vip,true,2 tel:+81-3 busy,undefined"
+        "tel:+81-1,tel:+81-2,sip,2.0,vip,true,2 tel:+81-3 busy"
     ]
 
 
 def test_what_it_does_not_say_is_undefined(place: Path) -> None:
-    assert logs(run(place, CONNECTION)) == [",,,,,false,,undefined"]
+    assert logs(run(place, CONNECTION)) == [",,,,,false,"]
     assert logs(run(place, CONNECTION, '<connection local="tel:+81-2"/>')) == [
-        ",tel:+81-2,,,,false,,undefined"
+        ",tel:+81-2,,,,false,"
     ]
 
 
