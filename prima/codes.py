@@ -40,11 +40,11 @@ CODES: dict[str, str] = {
     "no-such-form": "A goto, subdialog or link names a form that is not there.",
     "no-such-item": "A name is used that no item of the form has.",
     "no-such-rule": "A grammar names a rule that it does not have.",
-    "no-such-name": "A scenario or map names a place, thing, sensor, device or application that the"
-    " world, robot or scenario does not have.",
+    "no-such-name": "A scenario, world or application names a place, thing, gesture, sensor, device or"
+    " application that the world, robot or scenario does not have.",
     "no-such-argument": "A Command is given an argument that the robot's profile does not name.",
-    "no-such-file": "A scenario names a file that cannot be read. Paths are relative to the"
-    " scenario's own folder.",
+    "no-such-file": "A scenario or a grammar names a file that cannot be read. Paths are relative to"
+    " the folder of the document that names them.",
     "no-answer": "A field without options, grammar or type takes no answer: the user could never"
     " leave it.",
     "empty-answer": "An option or a grammar that holds nothing to say can never be said.",
@@ -73,11 +73,11 @@ CODES: dict[str, str] = {
     "bad-token": "A word of a grammar cannot be said or typed: a quote that is not closed, or a key that"
     " no telephone has.",
     "format": "The grammar is of a format that is not read: JSGF, GSL or another. SRGS is, as XML or ABNF.",
-    "language": "A grammar for voice says its language with xml:lang; the tag has to be well-formed.",
+    "language": "The grammar is in a language that whoever loads it does not take.",
     "mode": "A grammar is for voice or for dtmf, and what it refers to is of the same mode.",
     "no-root": "The grammar names no rule to begin with, and has more than one: write root on <grammar>.",
     "not-abnf": "The text is no grammar in the ABNF form of SRGS; the place is where reading stopped.",
-    "not-fetched": "A grammar refers to another file, which cannot be had or is outside the folder.",
+    "not-fetched": "A grammar refers to another file, and whoever loads it fetches none.",
     "private-rule": "A grammar refers to a rule of another grammar that is private there. Make it public.",
     "tag-format": "tag-format names a language that is not read: semantics/1.0 and semantics/1.0-literals are.",
     "hold-price": "A stream hint (rule X3) keeps other applications out while this one waits for an event:"
@@ -85,8 +85,18 @@ CODES: dict[str, str] = {
     " state. The note tells this price; it counts only in a run with the extension x3.",
     "idle-hint": "A hint that can never have an effect: hold-for without stream, or a stream held in a"
     " state that handles no event to wait for, or that asks for no Command.",
-    "endless": "The Command goes on for ever, and the state handles no event that could end it;"
-    " another application's equal behaviours may starve (rule E4).",
+    "endless": "The Command goes on for ever, and the state handles no event that could end it, or forms go"
+    " round without waiting; another application's equal behaviours may starve (rule E4).",
+    "no-noinput": "A question that nobody answers is asked again, as long as nothing handles noinput. The"
+    " conversation stays open meanwhile, so that nobody else can drive the robot anywhere (rule K1).",
+    "leaves-question": "The robot drives away from the user in the middle of a question, and then asks it"
+    " again where he is not (thesis 3.3, the Communication Channel).",
+    "unknown-event": "A handler names an event that nothing raises, most likely a slip. Events of one's own"
+    " come from throw, send, link, watch, a return, or a scenario.",
+    "unheard-event": "An event is raised, and no handler takes it. It is lost; one that is thrown ends the"
+    " application.",
+    "never-said": "A scenario waits for words that none of its applications says, so that what it holds"
+    " never happens.",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
     " time the application gets error.unsupported.COMMAND, which it may handle.",
 }

@@ -240,7 +240,8 @@ def _validate_one(path: str) -> list[Problem]:
 
 
 GRAMMAR = re.compile(
-    rb"\s*(?:#ABNF|#JSGF|;GSL|#GSL)|" + VOICEXML_ROOT.pattern.replace(b"vxml", b"grammar"), re.DOTALL
+    rb"\s*(?:#ABNF|#JSGF|;GSL|#GSL)|" + VOICEXML_ROOT.pattern.replace(b"vxml", b"grammar"),
+    re.DOTALL,
 )
 """How a grammar begins that is a file of its own."""
 
@@ -268,7 +269,9 @@ def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
         load(data, base=path.name, fetch=fetch)
     except DocumentError as error:
         return [
-            problem._replace(place=problem.place._replace(file=str(path.parent / problem.place.file)))
+            problem._replace(
+                place=problem.place._replace(file=str(path.parent / problem.place.file))
+            )
             for problem in error.problems
         ]
     return []

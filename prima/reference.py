@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import prima
-from prima import prelude
+from prima import examples, prelude
 from prima.codes import CODES
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import UsageError
@@ -305,7 +305,33 @@ def _type(item: Mapping[str, Any]) -> str:
 
 def codes() -> str:
     """The codes of problems."""
-    return table(("code", "what it means"), ((f"`{name}`", text) for name, text in CODES.items()))
+    return table(
+        ("code", "what it means"),
+        ((f"[`{name}`](#{name})", _quoted(text)) for name, text in CODES.items()),
+    )
+
+
+def code_examples() -> str:
+    """A wrong and a right example for each code, with what is said of the wrong one."""
+    parts = []
+    for code in CODES:
+        wrong, right = examples.examples(code)
+        parts += [f"## {code}", _quoted(CODES[code])]
+        for name, text in examples.beside(code).items():
+            parts += [f"`{name}`:", _listing(text)]
+        parts += [examples.headline(code, "Wrong"), _listing(wrong.text)]
+        parts += [_listing(examples.told(wrong)), examples.headline(code, "Right")]
+        parts += [_listing(right.text)]
+    return "\n" + "\n\n".join(parts) + "\n\n"
+
+
+def _quoted(text: str) -> str:
+    """Text with its tags and entities as Markdown shows them."""
+    return re.sub(r"<[^>]+>|(?:&\w+; ?)+(?<=;)", r"`\g<0>`", text)
+
+
+def _listing(text: str) -> str:
+    return f"```text\n{text.rstrip()}\n```"
 
 
 def defaults() -> str:
@@ -463,6 +489,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "scenario": lambda: elements(SCENARIO, 4),
     "fields": fields,
     "codes": codes,
+    "examples": code_examples,
     "interface": interface,
 }
 """What may stand between markers in the documentation, by name."""

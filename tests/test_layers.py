@@ -23,9 +23,9 @@ LAYERS = [
     {"voicexml"},
     {"session"},
     {"sim", "journal"},
-    {"loading", "web"},
+    {"export", "loading", "web"},
     {"api"},
-    {"study"},
+    {"examples", "new", "report", "study"},
     {"cli", "__init__", "reference", "pictures"},
     {"__main__"},
 ]
@@ -58,12 +58,16 @@ INSIDE = {
         {"vocabulary", "names", "grammar"},
         {"expressions"},
         {"elements", "srgs"},
+        {"events"},
+        {"surroundings"},
         {"build", "checks", "frame", "selection"},
         {"reader", "content"},
         {"form", "handling", "bounds"},
         {"application"},
         {"__init__"},
     ],
+    "export": [{"timeline"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
+    "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],
     "sim": [
         {"vocabulary", "voice"},
         {"scenario"},
@@ -72,6 +76,7 @@ INSIDE = {
         {"robot"},
         {"person", "services", "telephone"},
         {"rehearsal"},
+        {"hearing"},
         {"__init__"},
     ],
 }
@@ -83,6 +88,7 @@ ALONE = {
     "_quickjs": {"interpreter.expressions", "grammar.sandbox"},
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},
+    "mcap": {"export.mcap"},
 }
 """Libraries that one module or package alone knows."""
 

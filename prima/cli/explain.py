@@ -3,28 +3,66 @@
 from __future__ import annotations
 
 import os
+from textwrap import shorten
 
 import click
 
-from prima.cli.common import put
+from prima.cli.common import format_option, print_json, put
 from prima.errors import UsageError
+
+LINE = 100
+"""Letters of a line of the list of codes."""
 
 
 @click.command()
-@click.argument("what")
+@click.argument("what", required=False)
 @click.argument("row", type=int, required=False)
-def explain(what: str, row: int | None) -> None:
+@format_option
+def explain(what: str | None, row: int | None, form: str) -> None:
     """Explain a problem's CODE, or why a ROW of a transcript came where it did.
 
+    A code comes with a wrong example, what prima validate says of it, and a right one.
+    Without CODE, all codes are listed with a line each.
+
     \b
+    prima explain
     prima explain undeclared-variable
     prima explain mediated.jsonl 16
     """
-    from prima import api
-
-    if row is None and not os.path.exists(what):
-        put(api.explain(what))
+    if what is None:
+        _list(form)
+    elif row is None and not os.path.exists(what):
+        _code(what, form)
     elif row is None:
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
     else:
-        put(api.explain_row(api.read(what), row))
+        from prima import api
+
+        text = api.explain_row(api.read(what), row)
+        if form == "json":
+            print_json({"row": row, "lines": text.split("\n")})
+        else:
+            put(text)
+
+
+def _list(form: str) -> None:
+    """Every code with the first sentence of its explanation."""
+    from prima.codes import CODES
+
+    if form == "json":
+        print_json([{"code": code, "explanation": text} for code, text in CODES.items()])
+        return
+    width = max(map(len, CODES))
+    for code in sorted(CODES):
+        first = CODES[code].partition(". ")[0].rstrip(".")
+        put(f"{code:{width}}  {shorten(first, LINE - width - 2, placeholder=' ...')}")
+
+
+def _code(code: str, form: str) -> None:
+    """A code with its examples."""
+    from prima.examples import data, shown
+
+    if form == "json":
+        print_json(data(code))
+    else:
+        put(shown(code))

@@ -25,6 +25,8 @@ from prima.interpreter.elements import (
     Form,
     Goto,
     GroupTemplate,
+    Handler,
+    If,
     Item,
     Return,
     Run,
@@ -38,6 +40,7 @@ from prima.interpreter.elements import (
     run_commands,
     unit_commands,
 )
+from prima.interpreter.events import Events, silent_fields
 from prima.interpreter.expressions import (
     ScriptError,
     check_expression,
@@ -51,6 +54,9 @@ from prima.values import read_value
 LONG_UNIT_MS = 20_000
 """A unit whose speech alone takes longer than this cannot be reacted in."""
 MS_A_LETTER = 70
+MS_A_SYLLABLE = 125
+"""Speech of a letter, and of one of a script of syllables or words, as the robots here speak."""
+SYLLABLES = ("ja", "zh", "ko")
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
@@ -191,6 +197,10 @@ class Checker:
         self._names()
         self._expressions()
         self._commands()
+        self._rounds()
+        self._leaving()
+        self._silence()
+        self.problems += Events(self.document).problems()
         self._after_goto()
 
     # States -------------------------------------------------------------------
@@ -287,6 +297,24 @@ class Checker:
                         " for each event awaited here, unless it reacts to one itself."
                     )
                     self.note(node, "hold-price", message, "", "stream", "note")
+
+            if form.connect and not self._speaks(form):
+                message = (
+                    "The robot is to turn to the user before its first word, but says none here."
+                )
+                self.note(form.node, "idle-hint", message, "Remove the hint.", "channel", "warning")
+
+    def _speaks(self, form: Form) -> bool:
+        """Whether the robot says or asks something in a form, as far as can be seen."""
+        asks = any(isinstance(item, Field | Subdialog) for item in all_items(form.items))
+        says = (
+            command.text or command.type not in TABLE_4_2
+            for content in (*self.contents.get(id(form), ()), *self.contents.get(0, ()))
+            for act in all_acts(content)
+            if isinstance(act, Run)
+            for command in run_commands(act.steps)
+        )
+        return asks or any(says)
 
     def _reachable(self) -> None:
         forms = self.document.forms
@@ -538,6 +566,81 @@ class Checker:
                     'Handle an event: <on event="touch"><goto .../></on>.', severity="warning",
                 )  # fmt: skip
 
+    def _rounds(self) -> None:
+        """E4: forms that go to each other for ever without asking or waiting for anything."""
+        gotos = {name: self._always(form) for name, form in self.document.forms.items()}
+        told: set[str] = set()
+        for start in gotos:
+            way: list[str] = []
+            name = start
+            while name not in way and name not in told and (act := gotos.get(name)):
+                way.append(name)
+                name = act.form if isinstance(act.form, str) else ""
+            told |= set(way)
+            last = gotos[way[-1]] if way else None
+            if last is None or name not in way:
+                continue
+            ring = way[way.index(name) :]
+            goes = f"The forms {', '.join(ring)} go round"
+            if len(ring) == 1:
+                goes = f'The form "{name}" goes to itself'
+            message = f"{goes} without asking or waiting: no other application has a turn."
+            remedy = 'Wait for an event: <send event="..." delay="10s"/> and <on event="...">.'
+            self.note(last.node, "endless", message, remedy, "next", "warning")
+
+    @staticmethod
+    def _always(form: Form) -> Goto | None:
+        """The goto to a form by which a form is left for certain, without a question or a wait."""
+        for item in form.items:
+            if not isinstance(item, Block) or item.cond is not None or item.expr is not None:
+                return None
+            for act in item.content:
+                if isinstance(act, If | Foreach | Throw | Exit | Return):
+                    return None
+                if isinstance(act, Goto):
+                    return act if isinstance(act.form, str) else None
+        return None
+
+    def _leaving(self) -> None:
+        """3.3: a Command that leaves the user while a question is to be asked again."""
+        document = self.document
+        every = list(document.handlers)
+        for form in document.forms.values():
+            fields = [item for item in all_items(form.items) if isinstance(item, Field)]
+            every += form.handlers if fields else []
+            for field in fields:
+                for handler in field.handlers:
+                    self._leaves(handler)
+        for handler in every:
+            if set(handler.events) & {"noinput", "nomatch", "help"}:
+                self._leaves(handler)
+
+    def _leaves(self, handler: Handler) -> None:
+        """Note where a handler drives away from a question and comes back to it."""
+        acts = all_acts(handler.content)
+        if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
+            return
+        commands = [one for act in acts if isinstance(act, Run) for one in run_commands(act.steps)]
+        leaving = [one for one in commands if one.type in TABLE_4_2 and TABLE_4_2[one.type].leaves]
+        if leaving and not any(one.type == "active-sensing-human" for one in commands):
+            node = leaving[0].node
+            message = f"<{node.tag}> leaves the user, and then the question is asked again."
+            remedy = (
+                "Leave the question with <goto>, or look for the user first:"
+                " <active-sensing-human/> behind it."
+            )
+            self.note(node, "leaves-question", message, remedy, severity="warning")
+
+    def _silence(self) -> None:
+        """K1: questions that are asked for ever while nobody answers."""
+        for field in silent_fields(self.document):
+            message = (
+                f'If nobody answers "{field.name}", it is asked for ever,'
+                " and other applications cannot drive anywhere."
+            )
+            remedy = 'Write <noinput count="3"><exit/></noinput>, or where else to go.'
+            self.note(field.node, "no-noinput", message, remedy, severity="warning")
+
     def _long_units(self, steps: list[StepTemplate]) -> None:
         for step in steps:
             if isinstance(step.what, GroupTemplate):
@@ -545,7 +648,8 @@ class Checker:
                 self._long_unit(step.what.node, text)
 
     def _long_unit(self, node: Node, letters: int) -> None:
-        lasts = letters * MS_A_LETTER
+        syllables = self.document.lang.lower().startswith(SYLLABLES)
+        lasts = letters * (MS_A_SYLLABLE if syllables else MS_A_LETTER)
         if lasts > LONG_UNIT_MS:
             message = f"This unit speaks for about {lasts // 1000} s: no reaction can break in."
             self.note(node, "long-unit", message, "Divide it (thesis 4.5).", severity="warning")

@@ -97,8 +97,10 @@ def decode(file: str, data: bytes) -> str:
     if data.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
         encoding = "utf-32"
     if _codec(encoding) not in ENCODINGS:
+        named = declared is not None and encoding == declared[1].decode().lower()
+        place = Place(file, 1, declared.start(1) + 1) if declared and named else start
         raise _error(
-            start, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
+            place, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
         )
     try:
         text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)

@@ -1,0 +1,148 @@
+"""A wrong and a right example for every code of a problem, for ``prima explain CODE``.
+
+Each code has a folder with ``wrong.*`` and ``right.*``; what they name lies beside the
+folders. A test reads every one: the wrong one has exactly the problem of its code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from prima.codes import CODES
+from prima.errors import DocumentError, Problem, UsageError, did_you_mean
+from prima.markup.limits import LIMITS
+
+FOLDER = Path(__file__).parent
+LOWERED = {"too-large": ("elements", 4), "too-deep": ("depth", 5)}
+"""Limits under which the examples of some codes are read, so that they can be short."""
+BY_HAND = {
+    "language": "load(..., languages=...) does not take it",
+    "not-fetched": "load(...) is given no fetch",
+}
+"""Codes that only who calls :func:`prima.grammar.load` can meet, and when."""
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A document: its file's name, its text, and the problems that it has."""
+
+    name: str
+    text: str
+    problems: list[Problem]
+
+
+def examples(code: str) -> tuple[Example, Example]:
+    """The wrong and the right example for a code, just read and checked.
+
+    Raises:
+        UsageError: there is no such code.
+    """
+    if code not in CODES:
+        hint = did_you_mean(code, CODES) or "prima explain lists them."
+        raise UsageError(f'There is no code "{code}". {hint}')
+    return _example(code, "wrong"), _example(code, "right")
+
+
+def _example(code: str, which: str) -> Example:
+    path = next((FOLDER / code).glob(f"{which}.*"))
+    problems = [_named(problem) for problem in _problems(code, path)]
+    return Example(path.name, path.read_text(encoding="utf-8"), problems)
+
+
+def _named(problem: Problem) -> Problem:
+    """A problem that names its file without the folder of the package."""
+    name = Path(problem.place.file).name
+    return problem._replace(place=problem.place._replace(file=name))
+
+
+def _problems(code: str, path: Path) -> list[Problem]:
+    if code in BY_HAND:
+        return _loaded(path)
+    from prima import api
+
+    limit, number = LOWERED.get(code, ("depth", LIMITS.depth))
+    before = getattr(LIMITS, limit)
+    setattr(LIMITS, limit, number)
+    try:
+        return api.validate([path])
+    finally:
+        setattr(LIMITS, limit, before)
+
+
+def _loaded(path: Path) -> list[Problem]:
+    """The problems of a grammar that is read alone, by somebody who takes English only."""
+    from prima.grammar import load
+
+    try:
+        load(path.read_bytes(), base=path.name, languages=lambda tag: tag.startswith("en"))
+    except DocumentError as error:
+        return error.problems
+    return []
+
+
+def shown(code: str) -> str:
+    """A code's explanation with its wrong and its right example, as text.
+
+    Raises:
+        UsageError: there is no such code.
+    """
+    wrong, right = examples(code)
+    parts = [CODES[code]]
+    for name, text in beside(code).items():
+        parts += [f"{name}:", _indented(text)]
+    parts += [headline(code, "Wrong"), _indented(wrong.text), told(wrong)]
+    return "\n\n".join([*parts, headline(code, "Right"), _indented(right.text)])
+
+
+def data(code: str) -> dict[str, Any]:
+    """A code's explanation and examples for a machine to read.
+
+    Raises:
+        UsageError: there is no such code.
+    """
+    from prima.diagnostics import problem_data
+
+    wrong, right = examples(code)
+    return {
+        "code": code,
+        "explanation": CODES[code],
+        "wrong": {"name": wrong.name, "text": wrong.text},
+        "problems": [problem_data(problem) for problem in wrong.problems],
+        "right": {"name": right.name, "text": right.text},
+        "beside": beside(code),
+    }
+
+
+def beside(code: str) -> dict[str, str]:
+    """Other files of a code's folder, by name: what its examples refer to."""
+    return {
+        path.name: path.read_text(encoding="utf-8")
+        for path in sorted((FOLDER / code).iterdir())
+        if path.stem not in ("wrong", "right")
+    }
+
+
+def headline(code: str, word: str) -> str:
+    """What stands above an example: how it is read, if that is not the usual way."""
+    if code in LOWERED:
+        limit, number = LOWERED[code]
+        return f"{word}, with --limit {limit}={number}:"
+    return f"{word}, where {BY_HAND[code]}:" if code in BY_HAND else f"{word}:"
+
+
+def told(example: Example) -> str:
+    """The problems of an example as ``prima validate`` tells them."""
+    from prima.diagnostics import render
+
+    def lines(name: str) -> list[str]:
+        path = FOLDER / name
+        text = path.read_text(encoding="utf-8") if path.is_file() else ""
+        return (example.text if name == example.name else text).split("\n")
+
+    return "\n".join(render(problem, lines) for problem in example.problems)
+
+
+def _indented(text: str) -> str:
+    return "\n".join(f"    {line}" if line else "" for line in text.splitlines())

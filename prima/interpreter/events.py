@@ -1,0 +1,226 @@
+"""Events by name: which a document may hear of, which nobody raises, which nobody hears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+from typing import NamedTuple
+
+from prima.commands import DEVICES
+from prima.errors import MANY_LETTERS, MANY_WORDS, Place, Problem
+from prima.interpreter.elements import (
+    CommandTemplate,
+    Document,
+    Expression,
+    Field,
+    Handler,
+    Item,
+    Return,
+    Run,
+    SendOut,
+    Throw,
+    all_acts,
+    all_items,
+    run_commands,
+)
+from prima.markup.tree import Node
+
+STANDARD = frozenset(
+    [
+        *("touch", "message", "human.found", "human.lost", "corner", "noinput", "nomatch", "help"),
+        *("emergency.stop", "emergency.release", "connection.disconnect.hangup", "error"),
+        *("error.semantic", "error.badfetch", "error.unsupported", "error.unit.timeout"),
+        *("error.service", "end", "cancel", "interrupted", "reply"),
+        *(f"error.device.{device}" for device in DEVICES),
+    ]
+)
+"""What the language itself raises, beside events with the name of a sensor, Command or service."""
+HABITS = {
+    "timeout": "noinput",
+    "silence": "noinput",
+    "click": "touch",
+    "person.found": "human.found",
+    "person.lost": "human.lost",
+    "human.seen": "human.found",
+    "human.gone": "human.lost",
+    "hangup": "connection.disconnect.hangup",
+    "done": "end",
+    "finished": "end",
+}
+"""Names that authors expect, and those that the language has."""
+DEFAULTS = ("noinput", "nomatch", "help")
+"""Thrown events that end nothing where no handler takes them."""
+NEAR = 0.8
+"""How alike names are of which one is taken for a slip of the other."""
+OWN = ("end", "cancel", "interrupted")
+"""What begins an event of the application's own Commands."""
+
+
+class Raised(NamedTuple):
+    """An event that a document raises itself: its name, and the attribute that names it."""
+
+    name: str
+    node: Node
+    attribute: str
+    fatal: bool
+    """Whether it ends the application if no handler takes it."""
+
+
+def takes(handler: str, event: str) -> bool:
+    """Whether a handler's name takes an event (VoiceXML 2.0, 5.2.4)."""
+    return event == handler or event.startswith(f"{handler}.")
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """The known name of which a word is most likely a slip, or nothing."""
+    words = sorted(known)
+    if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
+        return ""
+    folded = word.casefold().replace("-", "").replace("_", "")
+    rated = [(SequenceMatcher(None, folded, one.replace("-", "")).ratio(), one) for one in words]
+    best, name = max(rated, default=(0.0, ""))
+    return name if best >= NEAR else ""
+
+
+def handlers_of(document: Document) -> Iterator[Handler]:
+    """Every handler of a document."""
+    yield from document.handlers
+    for form in document.forms.values():
+        yield from form.handlers
+        for item in all_items(form.items):
+            yield from item.handlers
+    for command in _commands(document):
+        yield from command.handlers
+
+
+def _commands(document: Document) -> Iterator[CommandTemplate]:
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            if isinstance(act, Run):
+                yield from run_commands(act.steps)
+
+
+def raised_by(document: Document) -> Iterator[Raised]:
+    """The events that a document raises itself, where their names are written out."""
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            if isinstance(act, Throw) and isinstance(act.event, str) and act.event:
+                yield Raised(act.event, act.node, "event", True)
+            elif isinstance(act, SendOut) and act.event:
+                yield Raised(act.event, act.node, "event", False)
+            elif isinstance(act, Return) and act.event:
+                yield Raised(act.event, act.node, "event", True)
+    forms = document.forms.values()
+    for link in [*document.links, *(one for form in forms for one in form.links)]:
+        if link.event:
+            yield Raised(link.event, link.node, "event", False)
+    for watch in [*document.watches, *(one for form in forms for one in form.watches)]:
+        yield Raised(watch.name, watch.node, "name", False)
+
+
+class Events:
+    """What a document knows of events, gathered once."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.handlers = list(handlers_of(document))
+        self.heard = {name for handler in self.handlers for name in handler.events}
+        self.raised = list(raised_by(document))
+        self.commands = {command.type for command in _commands(document)}
+        items = [item for form in document.forms.values() for item in all_items(form.items)]
+        if any(isinstance(item, Field) for item in items):
+            self.commands.add("q-and-a")
+        self.asked: list[tuple[Node, str]] = []
+        """The services that are asked by their names, and where."""
+        self.dynamic = False
+        """Whether a service or an event is named by an expression."""
+        for _, content, _ in document.contents():
+            for act in all_acts(content):
+                if isinstance(act, SendOut) and isinstance(act.service, str) and act.service:
+                    self.asked.append((act.node, act.service))
+                named = act.service if isinstance(act, SendOut) else getattr(act, "event", "")
+                self.dynamic = self.dynamic or isinstance(named, Expression)
+        self.services = {name for _, name in self.asked}
+        self._own = {one.name for one in self.raised}
+
+    def problems(self) -> list[Problem]:
+        """Handlers of events that nobody raises, and events that no handler takes."""
+        found: list[Problem] = []
+        meant: set[str] = set()
+        for handler in self.handlers:
+            for name in handler.events:
+                told = self._unraised(name)
+                if told is not None:
+                    message, nearest = told
+                    meant.add(nearest)
+                    remedy = f'Did you mean "{nearest}"?' if nearest else "Remove the handler."
+                    place = event_place(handler.node, name)
+                    found.append(Problem(place, "warning", "unknown-event", message, remedy))
+        found += [problem for one in self.raised if (problem := self._unheard(one, meant))]
+        return found
+
+    def _unraised(self, name: str) -> tuple[str, str] | None:
+        """What is wrong with the name of a handler, and the name that was probably meant."""
+        first, _, rest = name.partition(".")
+        if any(takes(name, one) for one in (*STANDARD, *self._own)):
+            return None
+        if first in OWN:
+            if any(takes(rest, one) for one in self.commands):
+                return None
+            message = f'"{name}" is never raised: no Command "{rest}" is asked for here.'
+            nearest = near(rest, self.commands)
+            return message, f"{first}.{nearest}" if nearest else ""
+        service = name.removeprefix("error.service.").removeprefix("reply.")
+        if service != name:
+            if self.dynamic or any(takes(service, one) for one in self.services):
+                return None
+            message = f'"{name}" is never raised: nothing is sent to "{service}" here.'
+            nearest = near(service, self.services)
+            return message, name.removesuffix(service) + nearest if nearest else ""
+        if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
+            return None
+        nearest = HABITS.get(name, "") or near(name, {*STANDARD, *self._own})
+        return (f'Nothing raises an event "{name}".', nearest) if nearest else None
+
+    def _unheard(self, one: Raised, meant: set[str]) -> Problem | None:
+        if one.name in meant or any(takes(name, one.name) for name in (*self.heard, *DEFAULTS)):
+            return None
+        ends = " It ends the application." if one.fatal else ""
+        message = f'No handler takes the event "{one.name}".{ends}'
+        nearest = near(one.name, self.heard - {"error"})
+        remedy = f'Did you mean "{nearest}"?' if nearest else f'Write <on event="{one.name}">.'
+        place = one.node.attribute_place(one.attribute)
+        return Problem(place, "warning", "unheard-event", message, remedy)
+
+
+def event_place(node: Node, name: str) -> Place:
+    """Where a handler names an event: one of several in its attribute."""
+    if "event" not in node.attributes:
+        return node.place
+    words = node.get("event")
+    at = words.find(name)
+    return node.source.inside(node.index, "event", max(at, 0))
+
+
+def silent_fields(document: Document) -> list[Field]:
+    """The fields in whose scope nothing handles noinput."""
+
+    def handled(handlers: Iterable[Handler]) -> bool:
+        return any("noinput" in handler.events for handler in handlers)
+
+    found: list[Field] = []
+
+    def look(items: list[Item]) -> None:
+        for item in items:
+            if handled(item.handlers):
+                continue
+            if isinstance(item, Field):
+                found.append(item)
+            look(getattr(item, "items", []))
+
+    if handled(document.handlers):
+        return []
+    for form in document.forms.values():
+        if not handled(form.handlers):
+            look(form.items)
+    return found

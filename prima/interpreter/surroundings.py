@@ -1,0 +1,119 @@
+"""What a document says of its surroundings, beside a world, a robot and a scenario that has it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from prima.errors import Problem, did_you_mean, one_of
+from prima.interpreter.elements import (
+    CommandTemplate,
+    Document,
+    Field,
+    Run,
+    Text,
+    all_acts,
+    all_items,
+    run_commands,
+)
+from prima.interpreter.events import event_place, handlers_of
+from prima.interpreter.grammar import fold
+
+PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
+"""Arguments of Commands that name something of the surroundings."""
+FEW = 8
+"""So many names are listed where no guess can be made."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """The names that a world and a robot have."""
+
+    places: frozenset[str]
+    things: frozenset[str]
+    gestures: frozenset[str]
+    sensors: frozenset[str]
+
+
+def check_surroundings(document: Document, names: Surroundings) -> list[Problem]:
+    """Places, things, gestures and touch sensors that are not there: warnings.
+
+    At run time they are errors of devices, which a document may handle.
+    """
+    problems = []
+    for command in commands_of(document):
+        for name, value in command.args.items():
+            if name not in PLACED or not isinstance(value, str):
+                continue
+            what = PLACED[name]
+            known = {
+                "to": names.places,
+                "toward": names.places | names.things,
+                "name": names.gestures,
+            }[name]
+            if what == "gesture" and not known:
+                continue  # the robot has no arm, which is told already
+            if value.strip() not in known:
+                whose = "The robot knows" if what == "gesture" else "The world has"
+                message = f'{whose} no {what} "{value}".'
+                place = command.node.attribute_place(name)
+                remedy = nearest(value, known)
+                problems.append(Problem(place, "warning", "no-such-name", message, remedy))
+    for handler in handlers_of(document):
+        for event in handler.events:
+            first, _, sensor = event.partition(".")
+            if first == "touch" and sensor and sensor not in names.sensors:
+                message = f'The robot has no touch sensor "{sensor}".'
+                place = event_place(handler.node, event)
+                remedy = nearest(sensor, names.sensors)
+                problems.append(Problem(place, "warning", "no-such-name", message, remedy))
+    return problems
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """What was probably meant, or what there is."""
+    words = sorted(known)
+    if hint := did_you_mean(word, words):
+        return hint
+    return f"There is {one_of(words).replace(' or ', ' and ')}." if 0 < len(words) <= FEW else ""
+
+
+def commands_of(document: Document) -> list[CommandTemplate]:
+    """Every Command of a document."""
+    return [
+        command
+        for _, content, _ in document.contents()
+        for act in all_acts(content)
+        if isinstance(act, Run)
+        for command in run_commands(act.steps)
+    ]
+
+
+def may_say(documents: Iterable[Document], words: str, asked: bool) -> bool:
+    """Whether the robot may ever say, or ask, something with these words; so as not to err, yes."""
+    wanted = fold(words)
+    return any(
+        any(not isinstance(part, str) for part in text) or wanted in fold(_joined(text))
+        for document in documents
+        for text in _texts(document, asked)
+    )
+
+
+def _joined(text: Text) -> str:
+    return "".join(part for part in text if isinstance(part, str))
+
+
+def _texts(document: Document, asked: bool) -> list[Text]:
+    """What a document's questions ask, and if not ``asked`` what its Commands say as well."""
+    found: list[Text] = []
+    for form in document.forms.values():
+        for item in all_items(form.items):
+            if isinstance(item, Field):
+                found += [prompt.text for prompt in item.prompts]
+                found.append([part for one in item.prompts for part in (*one.text, " ")])
+    return found if asked else [*found, *(one.text for one in commands_of(document) if one.text)]
+
+
+def lines_of(documents: Iterable[Document], asked: bool) -> list[str]:
+    """What the robot says, or asks, for a guess at what was meant."""
+    return [_joined(text) for document in documents for text in _texts(document, asked)]
