@@ -13,6 +13,8 @@ from tests.voice import Call
 
 SILENT = ""
 """Instead of an utterance: the user says nothing."""
+OOPS = "I did not understand."
+"""What the platform says of what no grammar takes, where no handler does (5.2.5)."""
 CITIES = "<option>Kyoto</option><option>Nara</option>"
 TRIP = """<grammar version="1.0" root="trip" xmlns="http://www.w3.org/2001/06/grammar"
     tag-format="semantics/1.0">
@@ -200,7 +202,7 @@ case(
     <nomatch count="2"><goto next="#a"/></nomatch></field></form>""",
     "x",
     "x",
-    said=["One?", "Two?", "One?"],
+    said=["One?", OOPS, "Two?", "One?"],
 )
 
 # 2.1.5 Mixed initiative -----------------------------------------------------------------
@@ -237,7 +239,7 @@ case(
     "y",
     "kyoto",
     "nara",
-    said=["Your trip?", "Your trip?", "Step by step.", "From?", "To?"],
+    said=["Your trip?", OOPS, "Your trip?", "Step by step.", "From?", "To?"],
     logs=["s:Kyoto", "e:Nara", "Kyoto-Nara-true"],
 )
 case(
@@ -247,7 +249,7 @@ case(
     "kyoto",
     "from Nara",
     "kyoto",
-    said=["Your trip?", "Your trip?", "To?"],
+    said=["Your trip?", OOPS, "Your trip?", "To?"],
     logs=["s:Nara", "e:Kyoto", "Nara-Kyoto-true"],
 )
 case(
@@ -1710,21 +1712,20 @@ case(
     said=["Hello."],
     ended="odd",
 )
-for _event, _said in (("help", 2), ("cancel", 1)):
-    case(
-        f"{_event} that nothing takes asks again" if _said > 1 else f"{_event} does not ask again",
-        "5.2.5",
-        f"""<form><link event="{_event}">{HOME}</link>
-        <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
-        "go home",
-        said=["Well?"] * _said,
-    )
+case(
+    "cancel that nothing takes does not ask again",
+    "5.2.5",
+    f"""<form><link event="cancel">{HOME}</link>
+    <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
+    "go home",
+    said=["Well?"],
+)
 case(
     "a nomatch that nothing takes asks again",
     "5.2.5",
     f"<form><field name='f'><prompt>1?</prompt><prompt count='2'>2?</prompt>{CITIES}</field></form>",
     "x",
-    said=["1?", "2?"],
+    said=["1?", OOPS, "2?"],
 )
 case(
     "a noinput that nothing takes asks again",
@@ -2089,7 +2090,7 @@ case(
     f"""<form><field name="f">Where <value expr="1 + 1"/>?{CITIES}
     <prompt count="2">Which city?</prompt></field></form>""",
     "x",
-    said=["Where 2?", "Which city?"],
+    said=["Where 2?", OOPS, "Which city?"],
 )
 case(
     "a handler in a menu enumerates its choices",
@@ -2181,7 +2182,6 @@ case(
     <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
     "go home",
     said=["Well?", "There is no help here.", "Well?"],
-    fails="Events._default says nothing for help and nomatch, only asks again",
 )
 
 # Rules together -------------------------------------------------------------------------

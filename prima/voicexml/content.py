@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
 INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
 """Items that take input or a result; a block and an initial are control items (2.3)."""
+STEP_TAGS = 10
+"""Tags of a document of data that count as one step."""
 SERVICE = "service:"
 """How the URI of a scenario's service begins."""
 
@@ -272,6 +274,8 @@ class Content(Speaker):
         content = yield from self.owner.fetch(uri, node, request)
         if not node.get("name"):
             return
+        for _ in range(content.count(b"<") // STEP_TAGS):
+            self.owner.count_step(node)
         held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
         blank = self.engine.scope()
         try:

@@ -26,6 +26,19 @@ if TYPE_CHECKING:
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
 """Events after which the platform's own handlers ask again (5.2.5)."""
+WORDS = {
+    "en": {
+        "help": "There is no help here.",
+        "nomatch": "I did not understand.",
+        "maxspeechtimeout": "That was too long.",
+    },
+    "ja": {
+        "help": "ヘルプはありません。",
+        "nomatch": "わかりませんでした。",
+        "maxspeechtimeout": "長すぎます。",
+    },
+}
+"""What those handlers say before, in the languages that they know; in others, nothing."""
 
 
 class Events:
@@ -134,6 +147,10 @@ class Events:
         """The platform's own handlers (5.2.5)."""
         if any(takes(one, thrown.name) for one in ASKED_AGAIN):
             context.quiet = False
+            lang = context.page.lang
+            words = WORDS.get(lang.partition("-")[0].lower(), {})
+            said = next((text for one, text in words.items() if takes(one, thrown.name)), "")
+            self.owner.say(said, lang, thrown.source)
         elif takes("cancel", thrown.name):
             context.quiet = True
         elif isinstance(thrown, Unasked):

@@ -1,0 +1,353 @@
+"""VoiceXML against the Recommendations, sentence by sentence: each document says pass or fail.
+
+What other tests hold already is not said again here.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.voice import Call
+
+PASS = "<log>pass</log><exit/>"
+FAIL = "<log>fail</log><exit/>"
+YES = "<option>yes</option>"
+SILENT = ""
+VXML = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"'
+
+
+def page(body: str) -> str:
+    """A further document."""
+    return f"{VXML}>{body}</vxml>"
+
+
+def leaf(body: str) -> str:
+    """A document of the application of root.vxml."""
+    return f'{VXML} application="root.vxml">{body}</vxml>'
+
+
+def grammar(words: str, tag: str = "", attributes: str = "") -> str:
+    """A grammar of one phrase, and what it means."""
+    meaning = f"<tag>{tag}</tag>" if tag else ""
+    return f"""<grammar version="1.0" root="r" xml:lang="en" tag-format="semantics/1.0" {attributes}
+    xmlns="http://www.w3.org/2001/06/grammar"><rule id="r">{words}{meaning}</rule></grammar>"""
+
+
+def holds(cond: str) -> str:
+    """Pass if a condition holds, else fail."""
+    return f'<if cond="{cond}">{PASS}<else/>{FAIL}</if>'
+
+
+def run(text: str, *says: str, **files: str) -> Call:
+    """Run a document to its end, or to a question that nobody answers."""
+    call = Call(text, **files)
+    for one in says:
+        if one == SILENT:
+            call.silent()
+        else:
+            call.answer(one)
+    call.play()
+    return call
+
+
+GO = grammar("go")
+
+
+# 1.5 and 5.3.7: documents ----------------------------------------------------------------
+
+
+def test_a_root_that_goes_to_itself_by_its_uri_begins_anew() -> None:  # 1.5.2, 5.3.7
+    text = f"""<var name="n" expr="0"/><form><block><assign name="n" expr="n + 1"/>
+        <goto next="app.vxml#b"/></block></form><form id="b"><block>{holds("n == 0")}</block></form>"""
+    assert run(text, app=page(text)).logs() == ["pass"]
+
+
+def test_a_subdialog_of_the_same_root_has_one_of_its_own() -> None:  # 2.3.4
+    call = run(
+        leaf(
+            f"""<form><block><assign name="n" expr="9"/></block><subdialog name="s" src="b.vxml"/>
+            <block>{holds("s.v == 1 &amp;&amp; n == 9")}</block></form>"""
+        ),
+        root=page('<var name="n" expr="1"/><form><block/></form>'),
+        b=leaf('<form><var name="v" expr="n"/><block><return namelist="v"/></block></form>'),
+    )
+    assert call.logs() == ["pass"]
+
+
+# 2.1 and appendix C: the algorithm -----------------------------------------------------------
+
+
+def test_what_fills_no_item_is_no_nomatch() -> None:  # 2.1.6, C
+    call = run(
+        f"""<form>{grammar("hi", "out.other = 1")}<nomatch>{FAIL}</nomatch>
+        <field name="f"><prompt>Well?</prompt>{YES}<filled>{PASS}</filled></field></form>""",
+        "hi",
+        "yes",
+    )
+    assert (call.said(), call.logs()) == (["Well?", "Well?"], ["pass"])
+
+
+def test_what_fills_no_item_is_the_last_result() -> None:  # 5.1.5
+    result = "application.lastresult$"
+    call = run(
+        f"""<form>{grammar("hi", "out.other = 1")}
+        <field name="f" cond="{result} === undefined">{YES}</field>
+        <block>{holds(f"{result}.interpretation.other == 1")}</block></form>""",
+        "hi",
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_a_simple_result_of_a_forms_grammar_fills_no_item() -> None:  # 3.1.6.1
+    call = run(
+        f"""<form>{grammar("hi", "out = 5")}<field name="f">{YES}
+        <filled>{holds("f == 'yes'")}</filled></field></form>""",
+        "hi",
+        "yes",
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_a_goto_to_no_item_is_handled_in_the_dialogs_scope() -> None:  # 5.3.7
+    call = run(
+        f"""<form><catch event="error.badfetch">{PASS}</catch><field name="f">{YES}
+        <catch event="error.badfetch">{FAIL}</catch>
+        <filled><goto nextitem="none"/></filled></field></form>""",
+        "yes",
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_a_variable_declared_again_without_expr_keeps_its_value() -> None:  # 5.3.1
+    call = run(
+        f"""<form><var name="x" expr="1"/><var name="x"/><block><var name="y" expr="1"/>
+        <var name="y"/>{holds("x == 1 &amp;&amp; y == 1")}</block></form>"""
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_clear_may_name_a_scope() -> None:  # 5.3.3
+    call = run(
+        f"""<var name="x" expr="1"/><form><var name="x" expr="2"/><block>
+        <clear namelist="document.x"/>{holds("x == 2 &amp;&amp; document.x === undefined")}</block></form>"""
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_a_parameter_without_a_variable_is_first_the_subdialogs_to_handle() -> None:  # 6.4
+    catch = f'<catch event="error.semantic">{PASS}</catch>'
+    text = """<form><subdialog name="s" src="b.vxml"><param name="q" expr="1"/>{}
+    </subdialog></form>"""
+    inner = page(f"<form>{catch}<block><return/></block></form>")
+    assert run(text.format(f'<catch event="error">{FAIL}</catch>'), b=inner).logs() == ["pass"]
+    bare = page("<form><block><return/></block></form>")
+    assert run(text.format(catch), b=bare).logs() == ["pass"]
+
+
+# 2.2 and 2.5: menus and links --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        "<block><enumerate/></block>",
+        f"""<field name="f"><prompt><enumerate/></prompt>{GO}</field>""",
+        f"""<field name="f"><prompt><enumerate><enumerate/></enumerate></prompt>{YES}</field>""",
+    ],
+)
+def test_enumerate_without_choices_is_error_semantic(item: str) -> None:  # 2.2.4
+    call = run(f'<form><catch event="error.semantic">{PASS}</catch>{item}</form>')
+    assert call.logs() == ["pass"]
+
+
+def test_a_links_expression_is_evaluated_where_it_is_heard() -> None:  # 2.5
+    call = run(
+        leaf(
+            f"""<form><var name="to" expr="'#y'"/><field name="f">{YES}</field></form>
+            <form id="y"><block>{PASS}</block></form>"""
+        ),
+        "go",
+        root=page(f"""<var name="to" expr="'#z'"/><link expr="to">{GO}</link>"""),
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_an_utterance_for_another_menu_goes_to_it_first() -> None:  # 3.1.4
+    call = run(
+        f"""<form><catch event="x">{FAIL}</catch><field name="f">{YES}</field></form>
+        <menu scope="document"><choice event="x">go</choice><catch event="x">{PASS}</catch></menu>""",
+        "go",
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_a_modal_field_hears_its_own_links() -> None:  # 2.3.1, 3.1.4
+    call = run(
+        f"""<link event="y">{grammar("away")}</link><form><field name="f" modal="true">{YES}
+        <link event="x">{GO}</link><catch event="x">{PASS}</catch><catch event="y">{FAIL}</catch>
+        <nomatch><log>no</log></nomatch></field></form>""",
+        "away",
+        "go",
+    )
+    assert call.logs() == ["no", "pass"]
+
+
+# 3.1 and 6.3: input ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        '<field name="f"><prompt>Well?</prompt></field>',
+        "<initial><prompt>Well?</prompt></initial>",
+        f'<field name="f" modal="true"/><link event="x">{GO}</link>',
+    ],
+)
+def test_to_listen_without_a_grammar_is_error_semantic(item: str) -> None:  # 3.1.4
+    call = run(f'<form>{item}<catch event="error.semantic">{PASS}</catch></form>')
+    assert call.logs() == ["pass"]
+
+
+@pytest.mark.parametrize(
+    ("key", "typed", "outcome"),
+    [
+        ("#", "12#", "12"),
+        ("*", "12*", "12"),
+        ("*", "12", "12"),
+        ("*", "12#", "nomatch"),
+        ("", "12#", "nomatch"),
+    ],
+)
+def test_the_key_that_ends_an_input(key: str, typed: str, outcome: str) -> None:  # 6.3.3
+    call = run(
+        f"""<form><property name="termchar" value="{key}"/><field name="f" type="digits">
+        <filled><log expr="f"/><exit/></filled><nomatch><log>nomatch</log><exit/></nomatch>
+        </field></form>""",
+        typed,
+    )
+    assert call.logs() == [outcome]
+
+
+def test_an_expression_for_a_grammar_is_evaluated_once_for_a_wait() -> None:  # 2.1, 2
+    call = run(
+        """<var name="n" expr="0"/><script>function next() { n = n + 1; return n + '.grxml'; }
+        </script><form><field name="f"><grammar srcexpr="next()" type="application/srgs+xml"/>
+        <nomatch><log expr="n"/></nomatch><filled><log expr="n"/></filled></field></form>""",
+        "no",
+        "two",
+        **{"1.grxml": grammar("one"), "2.grxml": grammar("two")},
+    )
+    assert call.logs() == ["1", "2"]
+
+
+# 5.2: events ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("lang", "words"),
+    [("en-GB", ["There is no help here."]), ("ja", ["ヘルプはありません。"]), ("fr", [])],
+)
+def test_the_platforms_help_is_in_the_documents_language(lang: str, words: list[str]) -> None:
+    """5.2.5."""
+    call = run(
+        f"""{VXML} xml:lang="{lang}"><form><block><throw event="help"/></block></form></vxml>"""
+    )
+    assert call.said() == words
+
+
+def test_events_count_under_the_names_that_handlers_have() -> None:  # 5.2.2
+    call = run(
+        f"""<form><catch event="a.b" count="2">{PASS}</catch><catch event="a"><log>1</log></catch>
+        <block name="x"><throw event="a.b.c"/></block><block><log>on</log></block></form>"""
+    )
+    assert call.logs() == ["1", "on"]
+
+
+# VoiceXML 2.1, 5 and appendix D: data ----------------------------------------------------------
+
+DATA = """<?xml version="1.0"?><!-- first --><?do this?><r xmlns="urn:d" xmlns:x="urn:x" a="1"
+x:b="2"><!-- in --><x:k id="K">one</x:k><k><![CDATA[<c>]]></k><?do that?></r>"""
+
+
+@pytest.mark.parametrize(
+    "cond",
+    [
+        "d.childNodes.length == 3 && d.firstChild.nodeType == 8 && d.childNodes[1].target == 'do'",
+        "d.doctype === null && d.implementation.hasFeature('Core', '2.0') && d.parentNode === null",
+        "r.firstChild.nodeName == '#comment' && r.firstChild.data == ' in '",
+        "r.lastChild.nodeType == 7 && r.lastChild.nodeName == 'do' && r.lastChild.data == 'that'",
+        "r.lastChild.nextSibling === null && r.lastChild.previousSibling.nodeName == 'k'",
+        "k.nodeName == 'x:k' && k.localName == 'k' && k.prefix == 'x' && k.namespaceURI == 'urn:x'",
+        "d.getElementsByTagName('k').length == 1 && d.getElementsByTagNameNS('*', 'k').length == 2",
+        "r.getAttribute('x:b') == '2' && r.getAttributeNS('urn:x', 'b') == '2'",
+        "r.hasAttributeNS('urn:x', 'b') && !r.hasAttributeNS('urn:x', 'a') && r.hasAttributes()",
+        "r.getAttributeNodeNS('urn:x', 'b').ownerElement === r",
+        "r.attributes.getNamedItemNS('urn:x', 'b').nodeValue == '2' && r.attributes.length == 4",
+        "r.getAttributeNode('a').firstChild.data == '1' && r.getAttributeNode('a').specified",
+        "r.getAttributeNode('a').parentNode === null && r.getAttributeNode('none') === null",
+        "r.getAttribute('xmlns:x') == 'urn:x' && r.getAttribute('xmlns') == 'urn:d'",
+        "k.nextSibling.firstChild.nodeType == 4 && k.nextSibling.firstChild.data == '<c>'",
+        "k.firstChild.substringData(1, 2) == 'ne' && k.firstChild.length == 3",
+        "failed(function () { k.firstChild.substringData(9, 1); }) == DOMException.INDEX_SIZE_ERR",
+        "failed(function () { r.removeChild(k); }) == DOMException.NO_MODIFICATION_ALLOWED_ERR",
+        "failed(function () { r.attributes.removeNamedItem('a'); }) == 7",
+        "k.nodeType == Node.ELEMENT_NODE && k.nodeType == k.ELEMENT_NODE && k === r.childNodes[1]",
+        "(k.firstChild.nodeValue = 'x', k.firstChild.nodeValue) == 'one' && r.textContent == 'one<c>'",
+    ],
+)
+def test_the_dom_is_whole(cond: str) -> None:
+    code = cond.replace("&", "&amp;").replace("<", "&lt;")
+    call = run(
+        f"""<form><block><data name="d" src="d.xml"/><var name="r" expr="d.documentElement"/>
+        <script>var k = d.getElementById('K');
+        function failed(what) {{ try {{ what(); }} catch (e) {{ return e.code; }} }}</script>
+        {holds(code)}</block></form>""",
+        **{"d.xml": DATA},
+    )
+    assert call.logs() == ["pass"]
+
+
+def test_data_is_declared_as_var_is() -> None:  # 2.1, 5
+    call = run(
+        f"""<var name="d" expr="1"/><form><catch event="error.semantic">{holds("d == 1")}</catch>
+        <block><data name="d" src="d.xml"/></block>
+        <block><data name="document.d" src="d.xml"/>{FAIL}</block></form>""",
+        **{"d.xml": DATA},
+    )
+    assert call.logs() == ["pass"]
+
+
+# What is hostile -------------------------------------------------------------------------------
+
+NAME = "'a.' + 'b.'.repeat(40000) + 'c'"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<form id='a'><block><data name='d' src='d.xml'/><goto next='#a'/></block></form>",
+        f"<form><catch event='a'><clear/></catch><block><throw eventexpr=\"{NAME}\"/></block></form>",
+        "<catch><throw event='x'/></catch><form><block><throw event='a'/></block></form>",
+        "<form id='a'><catch event='error'><goto next='#a'/></catch>"
+        "<block><script>while (true) {}</script></block></form>",
+        "<form><block>" + "<foreach array='[1, 2]' item='i'>" * 60 + "x" + "</foreach>" * 60
+        + "</block></form>",
+        "<menu><prompt>" + "<enumerate><value expr='_prompt'/></enumerate>" * 200 + "</prompt>"
+        + "<choice next='#a'>word word</choice>" * 200 + "</menu>",
+        "<form><subdialog name='s' src='#b'><filled><clear/></filled></subdialog></form>"
+        "<form id='b'><block><return/></block></form>",
+    ],
+    ids=["data", "long names", "throws", "scripts", "foreach", "enumerate", "subdialogs"],
+)  # fmt: skip
+def test_what_never_waits_ends_with_one_error(text: str) -> None:
+    call = run(text, **{"d.xml": "<r>" + "<k/>" * 5000 + "</r>"})
+    assert call.ended.startswith("error.semantic")
+    assert len(call.phases("error")) == 1
+
+
+def test_an_event_of_a_very_long_name_is_taken_in_no_time() -> None:
+    call = run(
+        f"""<form><catch event="a"><log>pass</log></catch><block><throw eventexpr="{NAME}"/>
+        </block></form>"""
+    )
+    assert (call.logs(), call.ended) == (["pass"], "exit")
