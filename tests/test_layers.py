@@ -25,7 +25,7 @@ LAYERS = [
     {"sim", "journal"},
     {"export", "loading", "web"},
     {"api"},
-    {"examples", "new", "report", "study"},
+    {"examples", "lsp", "new", "report", "study"},
     {"cli", "__init__", "reference", "pictures"},
     {"__main__"},
 ]
@@ -67,6 +67,17 @@ INSIDE = {
         {"__init__"},
     ],
     "export": [{"timeline"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
+    "lsp": [
+        {"words", "text"},
+        {"scan"},
+        {"tables"},
+        {"names"},
+        {"desk"},
+        {"hover", "naming", "outline", "problems"},
+        {"complete", "fixes"},
+        {"server"},
+        {"__init__"},
+    ],
     "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],
     "sim": [
         {"vocabulary", "voice"},
@@ -89,6 +100,8 @@ ALONE = {
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},
     "mcap": {"export.mcap"},
+    "pygls": {"lsp.server"},
+    "lsprotocol": {"lsp.server"},
 }
 """Libraries that one module or package alone knows."""
 

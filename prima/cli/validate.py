@@ -40,9 +40,24 @@ MANY = 50
 )
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 @click.option("--notes", is_flag=True, help="Print notes too: what holds and units cost others.")
+@click.option(
+    "--with",
+    "fas",
+    metavar="FA",
+    multiple=True,
+    type=click.Path(),
+    help="Certify what each of FILES, an EA, can do to this FA.",
+)
+@click.option("--robot", type=click.Path(), default="", help="The robot's profile for --with.")
 @limit_option
 def validate(
-    files: tuple[str, ...], form: str, watch: bool, notes: bool, limits: tuple[str, ...]
+    files: tuple[str, ...],
+    form: str,
+    watch: bool,
+    notes: bool,
+    fas: tuple[str, ...],
+    robot: str,
+    limits: tuple[str, ...],
 ) -> None:
     """Check documents of any kind: applications, worlds, robots, scenarios, VoiceXML.
 
@@ -54,13 +69,31 @@ def validate(
     prima validate documents/fa/follow.xml documents/ea
     prima validate documents --format sarif > problems.sarif
     prima validate my-guide.xml --watch
+    prima validate --with documents/fa/follow.xml documents/ea/museum.xml
     """
     raise_limits(limits)
+    if robot and not fas:
+        raise UsageError("--robot goes with --with.")
+    if fas:
+        _certify(fas, files, robot, form)
+        return
     if watch:
         _watch(files, form, notes)
     unread, errors = _check(files, form, notes)
     if unread or errors:
         raise Exit(2 if unread else 1)
+
+
+def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) -> None:
+    from prima.certificate import certificate_data, certificates, format_certificate
+
+    if form == "sarif":
+        raise UsageError("A certificate is no list of problems: --format text or json.")
+    found = certificates(fas, list(_expanded(eas)), robot)
+    if form == "json":
+        print_json([certificate_data(one) for one in found])
+    else:
+        put("\n".join(map(format_certificate, found)))
 
 
 def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int]:

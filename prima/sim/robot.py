@@ -20,7 +20,7 @@ from prima.messages import (
 )
 from prima.sim import voice
 from prima.sim.routes import Routes
-from prima.sim.scenario import Point, Profile
+from prima.sim.scenario import POINTING_MS, Point, Profile
 from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance, off_line
 
 ARRIVED = 0.1
@@ -38,7 +38,6 @@ PASSING = 70.0
 ALIGNED = 1.5
 """How many degrees off a direction counts as turned to it."""
 BRAKING_MS = 200
-POINTING_MS = 1000
 REACTING_S = 0.2
 """How long the robot goes on off its way after a dance has stopped taking it there (X5)."""
 AFTERMATH_MS = 1000

@@ -171,6 +171,10 @@ def read_world(file: str, data: bytes) -> Map:
     return world
 
 
+POINTING_MS = 1000
+"""How long the robot holds its arm out."""
+
+
 @dataclass(slots=True)
 class Profile:
     """A robot: sizes in m, speeds in m/s and degrees/s, times in ms."""
