@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from prima.commands import TABLE_4_2, CommandType
@@ -143,6 +143,14 @@ def document_commands(document: Document) -> Iterator[CommandTemplate]:
         for act in all_acts(content):
             if isinstance(act, Run):
                 yield from run_commands(act.steps)
+
+
+@cache
+def _parts(kind: type) -> tuple[str, ...]:
+    """The fields of a value in which expressions may stand; looking them up is slow."""
+    if not is_dataclass(kind) or kind is Node:
+        return ()
+    return tuple(entry.name for entry in fields(kind) if entry.name != "node")
 
 
 @lru_cache(maxsize=1)
@@ -452,11 +460,12 @@ class Checker:
                 self._walk(part, known, every)
         elif isinstance(value, dict):
             self._walk(list(value.values()), known, every)
-        elif is_dataclass(value) and not isinstance(value, Node):
-            self._variables(value, known)
-            for entry in fields(value):
-                if entry.name != "node":
-                    self._walk(getattr(value, entry.name), known, every)
+        else:
+            names = _parts(type(value))
+            if names:
+                self._variables(value, known)
+            for name in names:
+                self._walk(getattr(value, name), known, every)
 
     def _variables(self, value: object, known: set[str]) -> None:
         if isinstance(value, Assign):

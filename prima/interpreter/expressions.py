@@ -321,14 +321,30 @@ def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
     return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
 
 
+_sound: set[tuple[str, str]] = set()
+"""Code that has compiled, so that a document that is looked through again costs less."""
+MOST_SOUND, LONG_CODE = 20_000, 500
+"""How much is kept, and beyond how many characters nothing is."""
+
+
+def _remember(kind: str, code: str) -> None:
+    if len(_sound) >= MOST_SOUND:
+        _sound.clear()
+    if len(code) <= LONG_CODE:
+        _sound.add((kind, code))
+
+
 def check_expression(context: Any, code: str) -> None:
     """Compile an expression by itself, so that no bracket in it closes one of ours.
 
     Raises:
         ScriptError: with the line and column inside the expression.
     """
+    if ("expression", code) in _sound:
+        return
     _check(context, code, f"return (\n{code}\n)", 1)
     _check(context, code, f"return [\n{code}\n]", 1)  # what closes one bracket fails in the other
+    _remember("expression", code)
 
 
 def check_script(context: Any, code: str) -> None:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from functools import lru_cache
+from types import MappingProxyType
 from typing import NamedTuple
 
 RESERVED = frozenset(
@@ -151,8 +154,21 @@ def tokens_of(code: str) -> list[Token]:
     return found
 
 
-def free_names(code: str) -> dict[str, int]:
+LONG_CODE = 500
+"""Characters of code beyond which what is found in it is not kept."""
+
+
+def free_names(code: str) -> Mapping[str, int]:
     """Names that code uses without declaring them, as far as can be seen, and where first."""
+    return _free_names(code) if len(code) > LONG_CODE else _kept_names(code)
+
+
+@lru_cache(maxsize=10_000)
+def _kept_names(code: str) -> Mapping[str, int]:
+    return MappingProxyType(_free_names(code))
+
+
+def _free_names(code: str) -> dict[str, int]:
     reader = _Reader(code)
     used = reader.used()
     own = reader.declared() | reader.parameters() | GLOBALS

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from prima.errors import DocumentError, Problem, did_you_mean, one_of
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Attribute, Element, Vocabulary, attributes_by_name
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.values import read_value
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
@@ -61,7 +61,7 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
     while stack:
         node = stack.pop()
         element = vocabulary.elements[node.key]
-        _check_attributes(node, element, node is root, problems)
+        _check_attributes(node, element, vocabulary.attributes[node.key], node is root, problems)
         _check_text(node, element, problems)
         for child in node.nodes:
             key = vocabulary.child(node.key, child.tag)
@@ -96,8 +96,13 @@ def _check_text(node: Node, element: Element, problems: list[Problem]) -> None:
     )  # fmt: skip
 
 
-def _check_attributes(node: Node, element: Element, root: bool, problems: list[Problem]) -> None:
-    known = attributes_by_name(element)
+def _check_attributes(
+    node: Node,
+    element: Element,
+    known: dict[str, tuple[Attribute, bool]],
+    root: bool,
+    problems: list[Problem],
+) -> None:
     for name, text in node.attributes.items():
         if root and name in EVERYWHERE:
             continue
@@ -110,8 +115,9 @@ def _check_attributes(node: Node, element: Element, root: bool, problems: list[P
             place = node.attribute_place(name)
             problems.append(Problem(place, "error", "bad-value", f'{name} "{text}" {message}'))
     for item in element.attributes:
-        expr = f"{item.name}-expr"
-        if item.required and item.name not in node.attributes and expr not in node.attributes:
+        if not item.required or item.name in node.attributes:
+            continue
+        if f"{item.name}-expr" not in node.attributes:
             message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
             problems.append(Problem(node.place, "error", "missing-attribute", message))
 

@@ -75,6 +75,8 @@ class Vocabulary:
             for key, element in self.elements.items()
         }
         self.tags = frozenset(element.tag for element in self.elements.values())
+        self.attributes = {key: attributes_by_name(one) for key, one in self.elements.items()}
+        """What :func:`attributes_by_name` gives, by key."""
 
     def child(self, key: str, tag: str) -> str | None:
         """The key of the element written ``tag`` inside the element ``key``, if allowed."""
