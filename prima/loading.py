@@ -457,6 +457,12 @@ def _digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
+def schemas_folder() -> Path:
+    """The folder of the schemas that come with the package."""
+    inside = Path(__file__).parent / "schemas"
+    return inside if inside.is_dir() else Path(__file__).parent.parent / "schemas"
+
+
 def documents_folder() -> Path:
     """The folder of the demo documents that come with the package."""
     inside = Path(__file__).parent / "documents"
