@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from prima.interpreter.grammar import fold
@@ -12,6 +13,7 @@ from prima.messages import (
     Heard,
     Inbound,
     Json,
+    Loaded,
     Narrated,
     Occurred,
     Record,
@@ -31,6 +33,8 @@ class Script:
     """What follows a trigger: what is left of it, and when it goes on (ms)."""
 
     time: int
+    triggered: bool
+    """Whether something that the robot did has begun it; what was planned comes first."""
     serial: int
     left: list[Doing] = field(compare=False)
     speaking: str = field(default="", compare=False)
@@ -59,11 +63,28 @@ class Person:
         self._following: float | None = None
         for when in self._whens:
             if when.trigger == "at":
-                self._begin(when, int(when.what) + when.after)
+                self._begin(when.doings, int(when.what) + when.after, False)
 
-    def _begin(self, when: When, time: int) -> None:
+    def _begin(self, doings: list[Doing], time: int, triggered: bool) -> None:
         self._serial += 1
-        self._scripts.append(Script(time, self._serial, list(when.doings)))
+        self._scripts.append(Script(time, triggered, self._serial, list(doings)))
+
+    def play(self, time: int, doings: list[Doing]) -> Callable[[], bool]:
+        """Do something at a time (ms) that is still to come, as a ``when`` at that time would.
+
+        Returns:
+            what tells whether all of it has been done.
+        """
+        self._begin(doings, time, False)
+        script = self._scripts[-1]
+        # As if it had been known from the beginning, so that a scenario can repeat it.
+        self._scripts.sort(key=lambda one: (one.triggered, one.serial))
+        return lambda: not any(one is script for one in self._scripts)
+
+    @property
+    def will_load(self) -> bool:
+        """Whether an application is still to be put in again."""
+        return any(doing.name == "load" for one in self._scripts for doing in one.left)
 
     # Observing --------------------------------------------------------------------
 
@@ -83,7 +104,7 @@ class Person:
         fired = self._fired.get(index, 0)
         if self._seen[index] >= when.count and fired < when.times:
             self._fired[index] = fired + 1
-            self._begin(when, now + max(when.after, 1))
+            self._begin(when.doings, now + max(when.after, 1), True)
 
     def _is(self, when: When, phase: str, record: Record) -> bool:
         behavior = record.get("behavior") or ""
@@ -223,6 +244,8 @@ class Person:
                 return [Emergency(False, bool(values["resume"]))]
             case "unload":
                 return [Unloaded(values["application"])]
+            case "load":
+                return [Loaded(values["application"])]
         return []
 
     def _walk(self, doing: Doing, script: Script, now: int) -> list[Inbound]:

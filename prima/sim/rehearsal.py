@@ -10,6 +10,7 @@ from prima.interpreter.elements import Document
 from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.scheduler.selection import Policy
 from prima.session import AnyDocument, Session
+from prima.sim.expected import check_expectations
 from prima.sim.person import Person
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
@@ -47,13 +48,14 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
         ("robot", "at"): (set(cast.world.places), "place"),
         ("person", "at"): (points, "place or thing"),
         ("walk", "to"): (points, "place or thing"),
-        ("look", "at"): (points, "place or thing"),
+        ("look", "at"): (points | {"robot"}, "place or thing"),
         ("touch", "sensor"): (set(cast.robot.touch), "touch sensor"),
         ("fail", "device"): (set(cast.robot.devices), "device"),
         ("repair", "device"): (set(cast.robot.devices), "device"),
         ("when", "doing"): (set(cast.robot.commands), "Command"),
         ("when", "done"): (set(cast.robot.commands), "Command"),
         ("unload", "application"): ({doc.id for doc in cast.documents}, "application"),
+        ("load", "application"): ({doc.id for doc in cast.documents}, "application"),
     }
     stack = [scenario.node]
     while stack:
@@ -75,7 +77,7 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
             message = f'Two applications have the id "{document.id}".'
             problems.append(Problem(node.place, "error", "duplicate-id", message))
         seen.add(document.id)
-    return problems
+    return problems + check_expectations(scenario, cast.documents, cast.robot)
 
 
 class Rehearsal:
@@ -119,32 +121,55 @@ class Rehearsal:
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.made = 0
+        self.now = 0
+        """The instant that was carried out last (ms)."""
 
     def _person_start(self, scenario: Scenario) -> Point | None:
         return scenario.person_point or self.cast.world.point(scenario.person_at)
 
     def run(self) -> Iterator[list[Record]]:
         """Run to the end, giving the records of each instant as they are made."""
-        now = 0
-        while not self.outcome:
-            due = self._due()
-            if due is None:
-                self.outcome = "quiet"
-            elif due > self.cast.scenario.until:
-                self.outcome, now = "until", self.cast.scenario.until
-            elif self.made > MAX_RECORDS or self.session.written > MAX_WRITTEN:
-                self.outcome = "limit"
-            else:
-                now = max(due, now)
-                yield self.step(now)
-                if self.session.over and not self._loads:
-                    self.outcome = "over"
-        self.session.chronicle.now = now
+        until = self.cast.scenario.until
+        while (records := self.advance(until)) is not None:
+            yield records
+        yield self.finish(until)
+
+    def advance(self, until: int) -> list[Record] | None:
+        """Carry out the next instant up to a time (ms).
+
+        Returns:
+            its records, or None if there is no such instant: nothing is due by then, or
+            ``outcome`` says why the run has ended.
+        """
+        if self.over:
+            self.outcome = "over"
+        due = None if self.outcome else self.due()
+        if due is None or due > until:
+            return None
+        if self.made > MAX_RECORDS or self.session.written > MAX_WRITTEN:
+            self.outcome = "limit"
+            return None
+        return self.step(max(due, self.now))
+
+    def finish(self, until: int) -> list[Record]:
+        """End the run at a time (ms) by which nothing is due any more; gives its last records."""
+        due = None if self.outcome else self.due()
+        if not self.outcome:
+            self.outcome = "quiet" if due is None else "until"
+        if self.outcome == "until":
+            self.now = until
+        self.session.chronicle.now = self.now
         self.session.chronicle.add("over", "mediator", outcome=self.outcome)
-        yield self.session.drain()
+        return self.session.drain()
+
+    @property
+    def over(self) -> bool:
+        """Whether every application has ended, and none is still to come."""
+        return self.session.over and not self._loads and not self.person.will_load
 
     def step(self, now: int) -> list[Record]:
         """One instant."""
+        self.now = now
         world, session = self.world, self.session
         world.advance(now)
         inbound: list[Inbound] = []
@@ -153,7 +178,9 @@ class Rehearsal:
         inbound += self._cross()
         inbound += self.robot.collect(now)
         said = self.person.collect(now)
-        inbound += said
+        inbound += [
+            self._loaded(value.app) if isinstance(value, Loaded) else value for value in said
+        ]
         inbound += self.services.collect(now)
         inbound += self.telephone.collect(now)
         if self._watching:
@@ -191,7 +218,8 @@ class Rehearsal:
                 crossed.append(Unloaded(name, area.title))
         return crossed
 
-    def _due(self) -> int | None:
+    def due(self) -> int | None:
+        """When the next instant is (ms), if ever."""
         times = [
             0 if self.cast.offers and not self.made else None,
             self._loads[0][0] if self._loads else None,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from prima.markup.vocabulary import Element, Vocabulary, attribute
 from prima.prelude import START
 
@@ -246,7 +248,7 @@ ROBOT = Vocabulary(
 
 _ACTIONS = (
     *("say", "hang-up", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note"),
-    *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload"),
+    *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload", "load"),
 )
 _TRIGGERS = (
     attribute("at", "duration", "a time of the run"),
@@ -255,6 +257,24 @@ _TRIGGERS = (
     attribute("doing", "id", "the robot begins such a Command"),
     attribute("done", "id", "the robot ends such a Command"),
     attribute("on", "event", "such an event happens"),
+)
+_EXPECTED = (
+    attribute("says", "text", "the robot begins to say something with these words"),
+    attribute("does", "id", "the robot begins a Command of this type; may stand beside says"),
+    attribute("finishes", "id", "the robot ends a Command of this type"),
+    attribute("event", "event", "such an event happens"),
+    attribute("logs", "text", "an application logs something with these words"),
+    attribute("sends", "text", "an application sends something to this service or URI"),
+    attribute("state", "id", "an application is in this form"),
+    attribute("ends", "id", "this application ends"),
+    attribute("reason", "text", "why it ends: exit, unloaded or an error's name"),
+    attribute("by", "id", "the application whose doing it is; without, any"),
+    attribute("after", "id", "it comes after this other expectation, by its id"),
+    attribute("before", "id", "it comes before this other expectation, by its id"),
+    attribute("at", "text", "it comes from this time of the run on; for a state also end"),
+    *(replace(one, doc=f"it comes after {one.doc}") for one in _TRIGGERS[1:]),
+    attribute("count", "integer", "which time of these counts", default="1", low=1),
+    attribute("within", "duration", "how long afterwards at most"),
 )
 
 SCENARIO = Vocabulary(
@@ -298,6 +318,9 @@ SCENARIO = Vocabulary(
                 "service",
                 "connection",
                 "transfer",
+                "expect",
+                "never",
+                "in-order",
             ),
         ),
         Element(
@@ -380,7 +403,7 @@ SCENARIO = Vocabulary(
         Element(
             "look",
             "The user looks at something.",
-            (attribute("at", "id", "a place or thing", "required"),),
+            (attribute("at", "id", "a place or thing, or robot", "required"),),
         ),
         Element(
             "follow",
@@ -442,6 +465,11 @@ SCENARIO = Vocabulary(
         Element(
             "unload",
             "An application is taken out.",
+            (attribute("application", "id", "its id", "required"),),
+        ),
+        Element(
+            "load",
+            "An application that has ended, or was taken out, is put in again: it starts anew.",
             (attribute("application", "id", "its id", "required"),),
         ),
         Element(
@@ -527,6 +555,23 @@ SCENARIO = Vocabulary(
                     "lasts", "duration", "how long it lasts once it is answered", default="10s"
                 ),
             ),
+        ),
+        Element(
+            "expect",
+            "What has to happen in the run. prima test checks it; a run itself takes no notice.",
+            (
+                attribute("id", "id", "its name, for after and before of others"),
+                *_EXPECTED,
+                attribute("times", "integer", "how often exactly; without, at least once", low=1),
+            ),
+            ("data",),
+        ),
+        Element("never", "What must not happen in the run.", _EXPECTED, ("data",)),
+        Element(
+            "in-order",
+            "Expectations that have to come true one after the other.",
+            (),
+            ("expect",),
         ),
     ),
 )
