@@ -60,6 +60,10 @@ CODES: dict[str, str] = {
     " form item, <foreach> or <script> declares. At run time that is error.semantic.",
     "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
     " stopped.",
+    "assigning-condition": "A condition has = where a comparison, ==, was most likely meant: it changes the"
+    " variable, and holds whenever the new value does.",
+    "literal-value": "A text holds a variable's name in braces, as other languages write a value. It is"
+    " said as it stands; a value is written <value expr=\"...\"/>.",
     "fa-only": "Additional arguments (thesis Table 4.1) are for an FA, whose developer knows the"
     " robot. An EA runs on any robot.",
     "not-in-unit": "A unit is one piece that nothing breaks (rule U4). A Command that works in"
@@ -83,6 +87,9 @@ CODES: dict[str, str] = {
     "hold-price": "A stream hint (rule X3) keeps other applications out while this one waits for an event:"
     " all but their reactions wait for as long as hold-for says, after each last Command of the"
     " state. The note tells this price; it counts only in a run with the extension x3.",
+    "unit-price": "While a unit runs, a reaction that needs one of its devices waits for its end. The note"
+    " tells how long that may be, on the robot of the demo: what it says and its gestures; a question"
+    " in it may take as long as longest says. prima validate --notes prints such notes.",
     "idle-hint": "A hint that can never have an effect: hold-for without stream, or a stream held in a"
     " state that handles no event to wait for, or that asks for no Command.",
     "endless": "The Command goes on for ever, and the state handles no event that could end it, or forms go"

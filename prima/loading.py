@@ -125,6 +125,14 @@ VOICEXML_ROOT = re.compile(
 """All before a document's root element, and the beginning of VoiceXML's."""
 
 
+APPLICATION = re.compile(
+    VOICEXML_ROOT.pattern.replace(rb"(?:[\w.-]+:)?vxml[\s>/]", rb"prima\s(?:[^<>]*\s)?")
+    + b'xmlns="%s"' % DIALOGUE.namespace.encode(),
+    re.DOTALL,
+)
+"""How an application begins that is surely one, so that it need not be parsed to know it."""
+
+
 def is_voicexml(data: bytes) -> bool:
     """Whether a file's root element is VoiceXML's, as far as its beginning tells."""
     if b"\0" in data[:4]:  # UTF-16
@@ -217,9 +225,10 @@ def _validate_one(path: str) -> list[Problem]:
             return [*page.problems, *page.warnings()]
         if is_grammar(data):
             return _grammar_problems(Path(path), data)
-        root = parse(path, data)
-        if root.namespace == DIALOGUE.namespace:
-            return read_document(path, data)[1]
+        root = None if APPLICATION.match(data) else parse(path, data)
+        if root is None or root.namespace == DIALOGUE.namespace:
+            document, problems = read_document(path, data)
+            return problems + _prices(document) if b"<iu" in data else problems
         from prima.sim.scenario import read_robot, read_world
         from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 
@@ -275,6 +284,15 @@ def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
             for problem in error.problems
         ]
     return []
+
+
+def _prices(document: Document) -> list[Problem]:
+    """What an application's units cost others, on the demo's robot, as notes."""
+    from prima.prices import notes
+    from prima.sim.scenario import read_robot
+
+    robot = documents_folder() / "robots" / "papero.xml"
+    return notes(document, read_robot(str(robot), read_file(robot)))
 
 
 def load_scenario(path: str | Path) -> Loaded:

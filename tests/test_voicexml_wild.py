@@ -11,6 +11,7 @@ import pytest
 
 import prima
 from prima.interpreter.expressions import Engine, ScriptError
+from tests.voice import Call
 
 DEMO = prima.documents_folder()
 HEAD = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">'
@@ -429,3 +430,14 @@ def test_a_uri_that_is_none(tmp_path: Path, body: str, uri: str) -> None:
     transcript = run(tmp_path, body.format(uri))
     [failure] = transcript.failures
     assert "app: error." in failure and "app.vxml:1" in failure
+
+
+def test_an_external_grammar_without_a_language_has_the_documents() -> None:
+    grammar = (
+        '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
+        '<rule id="r">tea</rule></grammar>'
+    )
+    field = '<form><field name="a"><prompt>What?</prompt><grammar src="g.grxml"/></field></form>'
+    call = Call(field, **{"g.grxml": grammar})
+    call.answer("tea")
+    assert call.ended == "exit"

@@ -64,7 +64,8 @@ def load(
         type: the media type, where it is known.
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
-        lenient: whether files without a namespace are taken for SRGS, as some voice browsers do.
+        lenient: whether files without a namespace are taken for SRGS, and files without
+            ``xml:lang`` for the language given, as voice browsers do.
 
     Raises:
         UnsupportedFormat: the media type, or the format of the tags, is not known.
@@ -211,6 +212,7 @@ def _document(
     except DocumentError as error:
         raise GrammarError(error.problems) from None
     document.where = partial(_place, node)
+    document.lang = lang if lenient else document.lang
     read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
 

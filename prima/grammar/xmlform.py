@@ -109,7 +109,8 @@ class _Reader:
         self.document.mode = "dtmf" if mode == "dtmf" else "voice"
 
     def _language(self, node: Node) -> None:
-        lang = node.get("xml:lang", self.document.lang if self.inline else "")
+        inherits = self.inline or self.lenient
+        lang = node.get("xml:lang", self.document.lang if inherits else "")
         if not lang and self.document.mode == "voice":
             message = "A grammar for voice says its language."
             self.note(node, "missing-attribute", message, 'Write xml:lang="en-US" or the like.')
