@@ -1,0 +1,422 @@
+"""What may be written at a place of a text."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from prima.commands import DEVICES, TABLE_4_2
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.desk import Desk, Found, Text
+from prima.lsp.hover import attribute_text, element_text
+from prima.lsp.names import dialect
+from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.tables import (
+    BY_NAMESPACE,
+    DEFINES,
+    FILES,
+    REFERS,
+    Choice,
+    Use,
+    attributes,
+    children,
+    is_code,
+    roots,
+    values,
+)
+from prima.lsp.words import EVENTS, SESSION, VOICEXML_EVENTS
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
+
+MOST = 500
+"""Proposals of names that are given at once."""
+END_TAG = re.compile(r"</([^\s<>]*)$")
+WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
+WORD_AFTER = re.compile(r"[\w$]*")
+POLICIES = ("prima", "prima+all", "fifo", "fair", "fixed", "none")
+PROPERTIES = (
+    *("bargein", "bargeintype", "completetimeout", "confidencelevel", "fetchaudio"),
+    *("fetchtimeout", "incompletetimeout", "inputmodes", "interdigittimeout", "maxnbest"),
+    *("sensitivity", "speedvsaccuracy", "termchar", "termtimeout", "timeout", "universals"),
+)
+MEMBERS = {
+    "event": ("name", "data", "message"),
+    "session": ("connection",),
+    "application": ("lastresult$",),
+}
+SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What may stand in place of a piece of the text.
+
+    ``kind`` is ``element``, ``attribute``, ``value``, ``name``, ``variable``, ``event``,
+    ``file`` or ``text``; in a ``snippet``, ``$1`` and ``$0`` are where one goes on writing.
+    """
+
+    label: str
+    kind: str
+    start: int
+    end: int
+    insert: str = ""
+    snippet: str = ""
+    detail: str = ""
+    doc: str = ""
+
+
+def complete(desk: Desk, path: Path, offset: int, typed: str = "") -> list[Proposal]:
+    """What may be written at an offset; ``typed`` is the sign that has made the editor ask."""
+    text = desk.text(path)
+    if text is None or text.page.aside(offset):
+        return []
+    return list(_Completion(desk, path, text, offset, typed).proposals())[:MOST]
+
+
+class _Completion:
+    """One question for what may be written."""
+
+    def __init__(self, desk: Desk, path: Path, text: Text, offset: int, typed: str) -> None:
+        self.desk, self.path, self.text = desk, path, text
+        self.page: Page = text.page
+        self.offset, self.typed = offset, typed
+
+    def proposals(self) -> Iterator[Proposal]:
+        """What fits."""
+        tag = self.page.tag_at(self.offset)
+        if tag is None:
+            return self._content()
+        if self.offset <= tag.name_end:
+            return self._elements(tag.parent, tag.start + 1, tag.name_end, tag)
+        for attr in tag.attributes:
+            if attr.first >= 0 and attr.first <= self.offset <= attr.last:
+                return self._value(tag, attr)
+            if attr.start <= self.offset <= attr.end:
+                return self._attributes(tag, attr.start, attr.end, attr)
+        if self.page.text[self.offset - 1].isspace():
+            return self._attributes(tag, self.offset, self.offset, None)
+        return iter(())
+
+    # Elements -----------------------------------------------------------------
+
+    def _content(self) -> Iterator[Proposal]:
+        """Between tags: an end tag, names in a script, or a new element."""
+        ending = END_TAG.search(self.page.text, max(0, self.offset - 200), self.offset)
+        if ending is not None:
+            around = self.page.around(ending.start())
+            if around is not None:
+                after = "" if self.page.text[self.offset : self.offset + 1] == ">" else ">"
+                yield Proposal(
+                    f"/{around.name}", "element", ending.start(1), self.offset, around.name + after
+                )
+            return
+        around = self.page.around(self.offset)
+        if around is not None and around.key == "script":
+            yield from self._variables(around, self.page.text[around.end : self.offset])
+        elif self.typed in ("", "<"):
+            yield from self._elements(around, self.offset, self.offset, None)
+
+    def _elements(
+        self, parent: Tag | None, start: int, end: int, tag: Tag | None
+    ) -> Iterator[Proposal]:
+        """Elements that may stand in another; ``tag`` is what is there of one already."""
+        begin = "" if tag is not None else "<"
+        alone = tag is None or (not tag.attributes and not tag.finished)
+        if parent is None:
+            if self.page.root not in (None, tag):
+                return
+            for choice in roots():
+                opening = _opening(choice) if alone else choice.name
+                yield Proposal(
+                    choice.name,
+                    "element",
+                    start,
+                    end,
+                    begin + choice.name,
+                    begin + opening if alone else "",
+                    choice.element.source,
+                    element_text(choice.element),
+                )
+            return
+        for choice in children(parent):
+            yield Proposal(
+                choice.name,
+                "element",
+                start,
+                end,
+                begin + choice.name,
+                begin + _snippet(choice) if alone else "",
+                choice.element.source,
+                element_text(choice.element),
+            )
+        if tag is not None and not tag.finished and not tag.attributes:
+            yield Proposal(f"/{parent.name}", "element", start, end, f"/{parent.name}>")
+
+    def _attributes(self, tag: Tag, start: int, end: int, now: Attr | None) -> Iterator[Proposal]:
+        element = tag.element
+        if element is None:
+            return
+        given = {attr.name for attr in tag.attributes if attr is not now}
+        bare = now is None or now.first < 0
+        names: list[tuple[str, Attribute | None, bool]] = [
+            (name, *entry) for name, entry in attributes(element).items()
+        ]
+        if tag.parent is None:
+            names += [(name, None, False) for name in ("xmlns", "xml:lang")]
+        for name, item, expression in names:
+            other = name.removesuffix("-expr") if expression else f"{name}-expr"
+            if name in given or (other in given and item is not None and item.dynamic):
+                continue
+            yield Proposal(
+                name,
+                "attribute",
+                start,
+                end,
+                f'{name}=""' if bare else name,
+                f'{name}="$1"$0' if bare else "",
+                "required" if item is not None and item.required else "",
+                attribute_text(element, name) if item is not None else "",
+            )
+
+    # Values -------------------------------------------------------------------
+
+    def _value(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
+        vocabulary, element = tag.vocabulary, tag.element
+        if attr.name == "xmlns" or attr.name.startswith("xmlns:"):
+            yield from self._plain(attr, [*BY_NAMESPACE])
+            return
+        if vocabulary is None or element is None:
+            return
+        key = (vocabulary.name, tag.key, attr.name)
+        yield from self._plain(attr, values(vocabulary, element, attr.name))
+        if is_code(tag, attr.name):
+            yield from self._variables(tag, self.page.text[attr.first : self.offset])
+        elif key in REFERS:
+            yield from self._references(tag, attr, REFERS[key])
+        elif DEFINES.get(key) == "event":
+            yield from self._events(tag, attr, own=True)
+        if key in FILES:
+            yield from self._files(attr, FILES[key])
+        yield from self._plain(attr, _others(key))
+        if attr.name == "xml:lang" or key == ("robot", "voice", "lang"):
+            yield from self._plain(attr, ("en", "ja"))
+        if key[1:] == ("param", "name"):
+            yield from self._plain(attr, self._parameters(tag))
+
+    def _span(self, attr: Attr, words: bool = False) -> tuple[int, int]:
+        """What of a value a proposal replaces: all of it, or the word at the offset."""
+        start, end = attr.first, attr.last if attr.closed else self.offset
+        if words:
+            before = self.page.text[start : self.offset]
+            start = self.offset - len(before.split(" ")[-1])
+            after = self.page.text.find(" ", self.offset, end)
+            end = after if after >= 0 else end
+        return start, end
+
+    def _plain(self, attr: Attr, words: Iterable[str], kind: str = "value") -> Iterator[Proposal]:
+        start, end = self._span(attr)
+        for word in words:
+            yield Proposal(word, kind, start, end, escape(word))
+
+    def _references(self, tag: Tag, attr: Attr, use: Use) -> Iterator[Proposal]:
+        if use.kinds == ("event",):
+            yield from self._events(tag, attr)
+            return
+        if use.kinds == ("variable",):
+            yield from self._names_of_variables(tag, attr, use)
+            return
+        if use.kinds == ("command",):
+            yield from self._commands(tag, attr)
+            return
+        path, sign, start = self.path, "", self._span(attr, use.how == "list")
+        if use.how in ("#", "uri"):
+            file, sign, _ = attr.value.partition("#")
+            sign = f"{file}#"
+            target = self.desk.target(self.path, file) if file and use.how == "uri" else None
+            path = target or self.path
+        for found in self._known(path, use.kinds, tag):
+            name = found.mark.name
+            yield Proposal(
+                sign + name, "name", *start, escape(sign + name), "", _where(self, found)
+            )
+        if use.kinds == ("device",):
+            known = {found.mark.name for found in self._known(path, use.kinds, tag)}
+            if not known:
+                yield from self._plain(attr, DEVICES)
+
+    def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
+        found = self.desk.known(path, kinds)
+        if kinds == ("rule",) and path == self.path:
+            grammar = tag.inside("grammar")
+            home = grammar.start if grammar else -1
+            found = [one for one in found if one.mark.scope == home]
+        return found
+
+    def _events(self, tag: Tag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
+        """Events that may come, or with ``own`` those that this document handles."""
+        voice = dialect(self.page) == "voicexml"
+        known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
+        for kind, begins in (
+            ("sensor", ("touch.",)),
+            ("service", ("reply.", "error.service.")),
+            ("device", ("error.device.",)),
+        ):
+            for found in self.desk.known(self.path, (kind,)):
+                for begin in begins:
+                    known.setdefault(begin + found.mark.name, _where(self, found))
+        if tag.parent is not None and tag.parent.key in TABLE_4_2:
+            for begin in ("end.", "cancel."):
+                known[begin + tag.parent.key] = EVENTS[begin[:-1]]
+        for found in self.desk.known(self.path, ("event",)):
+            known.setdefault(found.mark.name, _where(self, found))
+        for mark in self.text.marks if own else ():
+            if mark.kind == ("event",) and mark.start != attr.first:
+                known.setdefault(mark.name, "handled here")
+        span = self._span(attr, True)
+        for name, doc in known.items():
+            if name != attr.value or not own:
+                yield Proposal(name, "event", *span, name, doc=doc)
+
+    def _commands(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
+        span = self._span(attr)
+        for found in self.desk.known(self.path, ("command",)):
+            yield Proposal(
+                found.mark.name, "name", *span, found.mark.name, detail=_where(self, found)
+            )
+        if tag.key != "command":
+            for row in TABLE_4_2.values():
+                yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
+
+    def _parameters(self, tag: Tag) -> list[str]:
+        """Names that a param may give: arguments of an added Command, variables of a form."""
+        holder = tag.parent
+        if holder is None:
+            return []
+        found: list[str] = []
+        if holder.key == "subdialog":
+            called = holder.get("src").strip()
+            for form in self.page.tags:
+                if form.key == "form" and called == f"#{form.get('id')}":
+                    found += [one.get("name") for one in form.children if one.key == "var"]
+        for one in self.desk.known(self.path, ("command",)) if holder.key == "command" else ():
+            if one.mark.name == holder.get("type"):
+                arguments = one.mark.tag.children
+                found += [child.get("name") for child in arguments if child.key == "argument"]
+        return [name for name in found if name]
+
+    def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
+        """Documents of the workspace, as seen from this one."""
+        span, folder = self._span(attr), self.path.parent
+        for path in self.desk.files():
+            text = self.desk.text(path)
+            if path == self.path or text is None:
+                continue
+            if wanted and dialect(text.top) not in wanted:
+                continue
+            try:
+                name = os.path.relpath(path, folder).replace(os.sep, "/")
+            except ValueError:  # another drive
+                continue
+            yield Proposal(name, "file", *span, escape(name))
+
+    # Variables ------------------------------------------------------------------
+
+    def _visible(self, tag: Tag) -> dict[str, str]:
+        """Variables that an expression in an element may use, with where they are declared."""
+        form = tag.inside("form", "menu")
+        home = form.start if form else -1
+        found: dict[str, str] = {}
+        for mark in self.text.marks:
+            if mark.defines and mark.kind == ("variable",) and mark.scope in (home, -1):
+                owner = form.get("id") if form and mark.scope == home else "the document"
+                found.setdefault(mark.name, f"<{mark.tag.name}> of {owner}")
+        return found
+
+    def _names_of_variables(self, tag: Tag, attr: Attr, use: Use) -> Iterator[Proposal]:
+        span = self._span(attr, use.how == "list")
+        for name, detail in self._visible(tag).items():
+            yield Proposal(name, "variable", *span, name, detail=detail)
+
+    def _variables(self, tag: Tag, before: str) -> Iterator[Proposal]:
+        match = WORD_BEFORE.search(before[-200:])
+        after = WORD_AFTER.match(self.page.text, self.offset)
+        word = (match["word"] or "") if match else ""
+        start, end = self.offset - len(word), after.end() if after else self.offset
+        of = match["of"] if match else None
+        known: dict[str, str] = {}
+        if of is None:
+            known = self._visible(tag) | SESSION
+        elif of in ("dialog", "document"):
+            known = self._visible(tag)
+        elif of == "sensor":
+            known = {
+                one.mark.name: _where(self, one) for one in self.desk.known(self.path, ("reading",))
+            }
+        elif of in MEMBERS:
+            known = dict.fromkeys(MEMBERS[of], of)
+        elif of.endswith("$"):
+            known = dict.fromkeys(SHADOWS, of)
+        for name, detail in known.items():
+            yield Proposal(name, "variable", start, end, name, detail=detail)
+
+
+def _where(asked: _Completion, found: Found) -> str:
+    """Where a name is given, as one says it to the author."""
+    tag = found.mark.tag
+    title = tag.get("title")
+    at = "" if found.path == asked.path else f" in {found.path.name}"
+    return f"<{tag.name}>{at}{f': {title}' if title else ''}"
+
+
+def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
+    """Values that stand in no table."""
+    if key == ("scenario", "scenario", "policy"):
+        return POLICIES
+    if key == ("voicexml", "property", "name"):
+        return PROPERTIES
+    return ()
+
+
+def _snippet(choice: Choice) -> str:
+    """An element with what it needs, and places to go on at."""
+    element, place = choice.element, 1
+    words = [choice.name]
+    for name in _needed(choice.vocabulary, element):
+        words.append(f'{name}="${place}"')
+        place += 1
+    if not element.children and not element.text:
+        return " ".join(words) + "/>$0"
+    return " ".join(words) + f">$0</{choice.name}>"
+
+
+def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
+    """Attributes that an element cannot be without, or most often has."""
+    needed = [item.name for item in element.attributes if item.required]
+    if vocabulary is VOICEXML:
+        for line in ALTERNATIVES.get(element.key, ()):
+            if line.endswith("!") and "content" not in line:
+                needed.append(line.split()[0])
+    if vocabulary is DIALOGUE and element.key == "goto":
+        needed.append("next")
+    return needed
+
+
+def _opening(choice: Choice) -> str:
+    """A whole new document."""
+    namespace = choice.vocabulary.namespace
+    begin = f'{choice.name} xmlns="{namespace}"'
+    if choice.vocabulary is VOICEXML:
+        begin += f' xmlns:p="{PRIMA_NAMESPACE}" version="2.1" xml:lang="en"'
+        return f'{begin}>\n  <form id="$1">\n    <block>$0</block>\n  </form>\n</{choice.name}>'
+    if choice.vocabulary is DIALOGUE:
+        begin += ' version="1.0" kind="${1|ea,fa|}" id="$2" xml:lang="en"'
+        body = '\n  <form id="$3">\n    <block>\n      $0\n      <exit/>\n    </block>\n  </form>\n'
+        return f"{begin}>{body}</{choice.name}>"
+    begin += ' version="1.0" id="$1"'
+    if choice.name == "scenario":
+        begin += ' world="$2" robot="$3"'
+    return f"{begin}>\n  $0\n</{choice.name}>"

@@ -1,0 +1,362 @@
+"""The documents that lie open, those on the disk, and which belong together."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote, unquote, urlsplit
+
+from prima.errors import DocumentError
+from prima.lsp.names import Mark, dialect, marks
+from prima.lsp.scan import Page
+from prima.lsp.tables import FILES, SHARED, resolve
+from prima.lsp.text import Lines
+from prima.markup.limits import LIMITS
+from prima.markup.reader import ENCODING, decode
+
+MOST_FILES = 2_000
+"""Documents of a workspace that are looked at."""
+MOST_FOLDERS = 5_000
+"""Folders in which they are looked for."""
+FEW_FOLDERS = 50
+"""Folders around a document that is in no folder of the workspace."""
+FRESH_SECONDS = 3.0
+"""How long a listing of the workspace counts."""
+SUFFIXES = (".xml", ".vxml", ".grxml")
+SKIPPED = frozenset(["node_modules", "__pycache__", "build", "dist", "target"])
+
+
+@dataclass(slots=True)
+class Text:
+    """A document's text, with what has been found out of it."""
+
+    text: str
+    version: int | None = None
+    stamp: tuple[int, int] = (0, 0)
+    _lines: Lines | None = None
+    _top: Page | None = None
+    _page: Page | None = None
+    _marks: list[Mark] | None = None
+
+    @property
+    def page(self) -> Page:
+        """Its tags."""
+        if self._page is None:
+            self._page = Page(self.text, self.lines)
+            resolve(self._page)
+        return self._page
+
+    @property
+    def top(self) -> Page:
+        """Its first tag alone, which is found faster."""
+        if self._top is None:
+            self._top = Page(self.text, self.lines, most=1)
+            resolve(self._top)
+        return self._top
+
+    @property
+    def lines(self) -> Lines:
+        """Its lines."""
+        if self._lines is None:
+            self._lines = Lines(self.text)
+        return self._lines
+
+    @property
+    def marks(self) -> list[Mark]:
+        """Its names."""
+        if self._marks is None:
+            self._marks = marks(self.page)
+        return self._marks
+
+    def data(self) -> bytes:
+        """The bytes that it will be saved as, by the encoding it declares."""
+        match = ENCODING.match(self.text[:1000].encode("ascii", "replace"))
+        try:
+            return self.text.encode(match[1].decode() if match else "utf-8")
+        except (LookupError, UnicodeEncodeError):
+            return self.text.encode("utf-8", "replace")
+
+
+@dataclass(slots=True)
+class Found:
+    """A name in a document."""
+
+    path: Path
+    mark: Mark
+
+
+def path_of(uri: str) -> Path | None:
+    """The file that a URI names; a document without a file gets a name of its own."""
+    parts = urlsplit(uri)
+    if parts.scheme == "untitled":
+        return Path("/untitled", unquote(parts.path).strip("/") or "document")
+    if parts.scheme != "file" or "\0" in unquote(parts.path):
+        return None
+    name = unquote(parts.path)
+    if os.name == "nt":
+        name = name.lstrip("/")
+    try:
+        return Path(name).resolve()
+    except (OSError, ValueError, RuntimeError):
+        return None
+
+
+def uri_of(path: Path) -> str:
+    """The URI of a file."""
+    return path.as_uri() if path.is_absolute() else quote(str(path))
+
+
+class Desk:
+    """All documents that may be asked about."""
+
+    def __init__(self) -> None:
+        self.open: dict[Path, Text] = {}
+        self.uris: dict[Path, str] = {}
+        """The URIs by which the editor knows open documents."""
+        self.folders: list[Path] = []
+        self._read: dict[Path, Text] = {}
+        self._listed: tuple[float, list[Path]] = (float("-inf"), [])
+
+    # Documents ----------------------------------------------------------------
+
+    def put(self, uri: str, text: str, version: int | None = None) -> Path | None:
+        """Take an open document's text."""
+        path = path_of(uri)
+        if path is not None:
+            self.open[path], self.uris[path] = Text(text, version), uri
+        return path
+
+    def drop(self, uri: str) -> Path | None:
+        """An open document is closed: its file counts again."""
+        path = path_of(uri)
+        if path is not None:
+            self.open.pop(path, None)
+            self.uris.pop(path, None)
+        return path
+
+    def unsaved(self) -> dict[Path, bytes]:
+        """The bytes of all open documents."""
+        return {path: text.data() for path, text in self.open.items()}
+
+    def uri(self, path: Path) -> str:
+        """The URI of a document, as the editor writes it."""
+        return self.uris.get(path) or uri_of(path)
+
+    def text(self, path: Path) -> Text | None:
+        """A document, open or on the disk; None where it cannot be read."""
+        if path in self.open:
+            return self.open[path]
+        try:
+            if not path.is_file():
+                return None
+            state = path.stat()
+            stamp = (state.st_mtime_ns, state.st_size)
+            kept = self._read.get(path)
+            if kept is not None and kept.stamp == stamp:
+                return kept
+            if state.st_size > LIMITS.bytes:
+                return None
+            made = Text(decode(path.name, path.read_bytes()), stamp=stamp)
+        except (OSError, ValueError, DocumentError):
+            return None
+        if len(self._read) >= MOST_FILES:
+            self._read.clear()
+        self._read[path] = made
+        return made
+
+    def asked(self, uri: str) -> tuple[Path, Text] | None:
+        """An open document by its URI."""
+        path = path_of(uri)
+        return (path, self.open[path]) if path is not None and path in self.open else None
+
+    # The workspace ------------------------------------------------------------
+
+    def forget(self) -> None:
+        """Files have been changed by somebody else."""
+        self._listed = (float("-inf"), [])
+
+    def files(self) -> list[Path]:
+        """The documents of the workspace and beside the open ones, and the open ones."""
+        since, listed = self._listed
+        if time.monotonic() - since > FRESH_SECONDS:
+            lone = {path.parent.parent for path in self.open if not self._has_folder(path)}
+            listed = [*_walk(self.folders, MOST_FOLDERS), *_walk(sorted(lone), FEW_FOLDERS)]
+            self._listed = (time.monotonic(), listed)
+        return sorted({*listed, *self.open})
+
+    def _has_folder(self, path: Path) -> bool:
+        return any(folder in path.parents for folder in self.folders)
+
+    def target(self, path: Path, name: str) -> Path | None:
+        """The file that a relative name in a document means."""
+        name = unquote(name.strip().partition("#")[0].partition("?")[0])
+        if not name or urlsplit(name).scheme or "\0" in name:
+            return None
+        try:
+            return (path.parent / name).resolve()
+        except (OSError, ValueError, RuntimeError):
+            return None
+
+    def named(self, path: Path) -> list[tuple[Path, int, int]]:
+        """The files that a document names: each with where its name stands."""
+        text = self.text(path)
+        found: list[tuple[Path, int, int]] = []
+        for tag in text.page.tags if text else ():
+            for attr in tag.attributes:
+                key = (tag.vocabulary.name if tag.vocabulary else "", tag.key, attr.name)
+                if key not in FILES or attr.first < 0:
+                    continue
+                target = self.target(path, attr.value)
+                if target is not None:
+                    space = len(attr.value) - len(attr.value.lstrip())
+                    length = len(attr.value.strip().partition("#")[0])
+                    first = attr.first + space
+                    found.append((target, first, first + length))
+        return found
+
+    def reading(self, path: Path) -> set[Path]:
+        """The files that count for a scenario or world: what it names, and what its world does."""
+        found: set[Path] = set()
+        for target, *_ in self.named(path):
+            found.add(target)
+            text = self.text(target)
+            if text is not None and dialect(text.top) == "world":
+                found |= {one for one, *_ in self.named(target)}
+        return found
+
+    def _scenes(self) -> Iterator[tuple[Path, set[Path]]]:
+        """Every scenario with all that belongs to it."""
+        for path in self.files():
+            text = self.text(path)
+            if text is None or "scenario" not in text.text or dialect(text.top) != "scenario":
+                continue
+            belongs = self.reading(path) | {path}
+            yield path, belongs
+
+    def related(self, path: Path) -> list[Path]:
+        """A document and those that are in a scenario with it."""
+        found = {path}
+        for _, belongs in self._scenes():
+            if path in belongs:
+                found |= belongs
+        return sorted(found)
+
+    def naming(self, path: Path) -> list[tuple[Path, int, int]]:
+        """Where documents of the workspace name a file."""
+        return [
+            (other, start, end)
+            for other in self.files()
+            for target, start, end in self.named(other)
+            if target == path
+        ]
+
+    # Names ----------------------------------------------------------------------
+
+    def uses(self, path: Path, mark: Mark) -> list[Found]:
+        """Every place where what a name means is named, its definition included."""
+        if mark.file:
+            return self._elsewhere(path, mark)
+        text = self.text(path)
+        own = [Found(path, one) for one in (text.marks if text else ()) if one.names(mark)]
+        if mark.shared:
+            return own + self._shared(path, mark)
+        if "form" in mark.kind or "rule" in mark.kind:
+            own += self._from_others(path, mark)
+        return own
+
+    def _shared(self, path: Path, mark: Mark) -> list[Found]:
+        found = []
+        for other in self.related(path):
+            text = self.text(other) if other != path else None
+            for one in text.marks if text else ():
+                if one.name == mark.name and not set(one.kind).isdisjoint(mark.kind):
+                    found.append(Found(other, one))
+        return found
+
+    def _elsewhere(self, path: Path, mark: Mark) -> list[Found]:
+        """The uses of a name of another file."""
+        target = self.target(path, mark.file)
+        text = self.text(target) if target is not None else None
+        for one in text.marks if text else ():
+            same = one.name == mark.name and not set(one.kind).isdisjoint(mark.kind)
+            if target is not None and one.defines and same:
+                return self.uses(target, one)
+        return []
+
+    def _from_others(self, path: Path, mark: Mark) -> list[Found]:
+        """Where other documents go to a dialog of this one."""
+        found = []
+        for other in self.files():
+            text = self.text(other)
+            if text is None or f"#{mark.name}" not in text.text:
+                continue
+            for one in text.marks:
+                same = one.name == mark.name and not set(one.kind).isdisjoint(mark.kind)
+                if one.file and same and self.target(other, one.file) == path:
+                    found.append(Found(other, one))
+        return found
+
+    def given(self, path: Path, mark: Mark) -> list[Found]:
+        """Where a name is given; in no scenario with its document, anywhere in the workspace."""
+        found = [one for one in self.uses(path, mark) if one.mark.defines]
+        if not found and mark.shared:
+            found = [one for one in self.known(path, mark.kind) if one.mark.name == mark.name]
+        return found
+
+    def known(self, path: Path, kinds: Iterable[str], anywhere: bool = True) -> list[Found]:
+        """Definitions of some kinds that a document may use, each name once.
+
+        Those of the scenarios that it is in; without any, those of the whole workspace.
+        """
+        wanted = frozenset(kinds)
+        text = self.text(path)
+        found = [
+            Found(path, one)
+            for one in (text.marks if text else ())
+            if one.defines and not wanted.isdisjoint(one.kind)
+        ]
+        if not SHARED.isdisjoint(wanted):
+            others = [one for one in self.related(path) if one != path]
+            found += self._defined(others, wanted)
+            if anywhere and not found:
+                found += self._defined(self.files(), wanted)
+        once: dict[str, Found] = {}
+        for one in found:
+            once.setdefault(one.mark.name, one)
+        return list(once.values())
+
+    def _defined(self, paths: Iterable[Path], wanted: frozenset[str]) -> list[Found]:
+        found = []
+        for path in paths:
+            text = self.text(path)
+            own = dialect(text.top) if text else ""
+            for one in text.marks if text else ():
+                mine = "event" in one.kind and own in ("dialogue", "voicexml")  # each its own
+                if one.defines and not wanted.isdisjoint(one.kind) and not mine:
+                    found.append(Found(path, one))
+        return found
+
+
+def _walk(roots: Iterable[Path], most: int) -> Iterator[Path]:
+    """Documents in folders, up to the limits; hidden folders and what tools make left out."""
+    waiting = deque(str(root) for root in roots)
+    folders = files = 0
+    while waiting and folders < most:
+        folders += 1
+        try:
+            entries = sorted(os.scandir(waiting.popleft()), key=lambda entry: entry.name)
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    if not entry.name.startswith(".") and entry.name not in SKIPPED:
+                        waiting.append(entry.path)
+                elif entry.name.lower().endswith(SUFFIXES) and entry.is_file():
+                    files += 1
+                    if files > MOST_FILES:
+                        return
+                    yield Path(entry.path).resolve()
+        except (OSError, ValueError):
+            continue

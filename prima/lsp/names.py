@@ -1,0 +1,215 @@
+"""Names in a text: where each is given and where it is used."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from prima.interpreter.names import (
+    GLOBALS,
+    IDENTIFIER,
+    INSERTED,
+    RESERVED,
+    declared_names,
+    free_names,
+    tokens_of,
+)
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
+from prima.voicexml.vocabulary import VOICEXML
+
+ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
+LETTERS = {"&lt;": "<", "&gt;": ">", "&amp;": "&", "&quot;": '"', "&apos;": "'"}
+WORD = re.compile(r"\S+")
+SCOPES = ("document", "dialog", "application")
+LONGEST_CODE = 100_000
+"""Characters of code beyond which its names are not looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A name in a text; ``scope`` is where the form or grammar begins that it is known in.
+
+    ``file`` is a relative file of which the name is, where it is another's.
+    """
+
+    kind: tuple[str, ...]
+    name: str
+    start: int
+    end: int
+    defines: bool
+    tag: Tag
+    scope: int = -1
+    file: str = ""
+
+    def names(self, other: Mark) -> bool:
+        """Whether this and another mark of the same document mean the same thing."""
+        return (
+            self.name == other.name
+            and self.scope == other.scope
+            and not set(self.kind).isdisjoint(other.kind)
+        )
+
+    @property
+    def shared(self) -> bool:
+        """Whether other documents may use the name too."""
+        return not SHARED.isdisjoint(self.kind)
+
+
+def plain(code: str) -> str:
+    """Code with its references read, each still as long as it was written."""
+    return ENTITY.sub(lambda match: LETTERS.get(match[0], " ").ljust(len(match[0])), code)
+
+
+def marks(page: Page) -> list[Mark]:
+    """All names of a page, in the order of the text."""
+    found = [mark for tag in page.tags if tag.element for mark in _of_tag(page, tag)]
+    return sorted(_scoped(found), key=lambda mark: mark.start)
+
+
+def _of_tag(page: Page, tag: Tag) -> Iterator[Mark]:
+    assert tag.vocabulary is not None
+    for attr in tag.attributes:
+        if attr.first < 0:
+            continue
+        key = (tag.vocabulary.name, tag.key, attr.name)
+        if key in DEFINES:
+            kind = DEFINES[key]
+            for start, end in _words(attr, 1):
+                yield Mark((kind,), page.text[start:end], start, end, True, tag, _home(kind, tag))
+        elif key in REFERS:
+            yield from _references(page, tag, attr, REFERS[key])
+        elif is_code(tag, attr.name):
+            yield from _code(plain(attr.value), attr.first, tag)
+        elif attr.name == "name" and tag.key == "param":
+            yield from _given(page, tag, attr)
+    if tag.key == "script" and not tag.empty and not tag.children:
+        yield from _script(page.text[tag.end : tag.content], tag)
+
+
+def _words(attr: Attr, most: int = 1000) -> list[tuple[int, int]]:
+    """Where the words of a value stand."""
+    spans = [(attr.first + m.start(), attr.first + m.end()) for m in WORD.finditer(attr.value)]
+    return spans[:most]
+
+
+def _home(kind: str, tag: Tag) -> int:
+    """Where the form or grammar begins in which a name is known; -1 for the document."""
+    if kind == "variable":
+        form = tag.inside("form", "menu") if tag.key not in ("form", "menu") else None
+        return form.start if form else -1
+    if kind == "rule":
+        grammar = tag.inside("grammar")
+        return grammar.start if grammar else -1
+    return -1
+
+
+def _references(page: Page, tag: Tag, attr: Attr, use: Use) -> Iterator[Mark]:
+    home = _home(use.kinds[0], tag)
+    for start, end in _words(attr, 1000 if use.how == "list" else 1):
+        file = ""
+        if use.how in ("#", "uri"):
+            path, sign, _ = page.text[start:end].partition("#")
+            if not sign or (path and use.how == "#"):
+                continue
+            file, start = path, start + len(path) + 1
+        if use.how == "code":
+            yield from _code(page.text[start:end], start, tag)
+        else:
+            name = page.text[start:end]
+            yield Mark(use.kinds, name, start, end, False, tag, home, file)
+
+
+def _code(code: str, first: int, tag: Tag) -> Iterator[Mark]:
+    """Variables that an expression uses."""
+    if len(code) > LONGEST_CODE:
+        return
+    home, free = _home("variable", tag), free_names(code)
+    for name, start in _names(code):
+        if name in free or (start and code[start - 1] == "."):
+            at = first + start
+            scope = home
+            if code[:start].rstrip().endswith(("document.", "application.")):
+                scope = -1
+            yield Mark(("variable",), name, at, at + len(name), False, tag, scope)
+
+
+def _names(code: str) -> Iterator[tuple[str, int]]:
+    """Names of variables in code, members left out, with where they stand."""
+    tokens = tokens_of(code)
+    texts = ["", "", *(token.text for token in tokens), ""]
+    for index, token in enumerate(tokens, 2):
+        if token.text.startswith("`"):
+            for inside in INSERTED.finditer(token.text):
+                for name, start in _names(inside[1]):
+                    yield name, token.start + inside.start(1) + start
+        if not IDENTIFIER.fullmatch(token.text) or token.text in RESERVED | GLOBALS:
+            continue
+        if texts[index - 1] in (".", "?."):
+            if texts[index - 2] not in SCOPES:
+                continue
+        elif texts[index + 1] == ":" and texts[index - 1] in ("{", ","):
+            continue
+        yield token.text, token.start
+
+
+def _script(code: str, tag: Tag) -> Iterator[Mark]:
+    """Names that a script declares, and those that it uses."""
+    inner = code.replace("<![CDATA[", " " * 9).replace("]]>", "   ")
+    inner = inner if "<![CDATA[" in code else plain(inner)
+    if len(inner) > LONGEST_CODE:
+        return
+    home, own, free = _home("variable", tag), declared_names(inner), free_names(inner)
+    told: set[str] = set()
+    for name, start in _names(inner):
+        at = tag.end + start
+        if name in own:
+            yield Mark(("variable",), name, at, at + len(name), name not in told, tag, home)
+            told.add(name)
+        elif name in free:
+            yield Mark(("variable",), name, at, at + len(name), False, tag, home)
+
+
+def _given(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
+    """What a subdialog gives is a variable of the form that it calls."""
+    caller = tag.parent
+    if caller is None or caller.key != "subdialog":
+        return
+    called = caller.get("src").strip()
+    for form in page.tags:
+        if form.key == "form" and called == f"#{form.get('id')}":
+            for start, end in _words(attr, 1):
+                defines = tag.vocabulary is DIALOGUE
+                name = page.text[start:end]
+                yield Mark(("variable",), name, start, end, defines, tag, form.start)
+
+
+def _scoped(found: list[Mark]) -> list[Mark]:
+    """Give names of variables that no form declares the document's scope."""
+    own = {(mark.name, mark.scope) for mark in found if mark.defines and "variable" in mark.kind}
+    return [
+        replace(mark, scope=-1)
+        if mark.kind == ("variable",) and (mark.name, mark.scope) not in own
+        else mark
+        for mark in found
+    ]
+
+
+def mark_at(found: list[Mark], offset: int) -> Mark | None:
+    """The name at an offset, or that ends there."""
+    return next((mark for mark in found if mark.start <= offset <= mark.end), None)
+
+
+def dialect(page: Page) -> str:
+    """The name of a page's vocabulary."""
+    root = page.root
+    return root.vocabulary.name if root is not None and root.vocabulary else ""
+
+
+def is_voice(tag: Tag) -> bool:
+    """Whether an element is of a VoiceXML document."""
+    while tag.parent is not None:
+        tag = tag.parent
+    return tag.vocabulary is VOICEXML

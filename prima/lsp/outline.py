@@ -1,0 +1,97 @@
+"""The parts of a document, and the files that it names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from prima.lsp.desk import Desk
+from prima.lsp.scan import Page, Tag
+
+NAMING = ("id", "name", "event", "src", "command", "sensor", "type", "item")
+SHOWN = {
+    "prima": "module",
+    "vxml": "module",
+    "scenario": "module",
+    "world": "module",
+    "robot": "module",
+    "form": "class",
+    "menu": "class",
+    **dict.fromkeys(("field", "block", "subdialog", "initial", "record", "transfer"), "method"),
+    **dict.fromkeys(("object", "iu-items"), "method"),
+    **dict.fromkeys(("on", "noinput", "nomatch", "help", "error", "catch"), "event"),
+    **dict.fromkeys(("link", "watch", "filled", "choice"), "event"),
+    "var": "variable",
+    "rule": "function",
+    "script": "function",
+    **dict.fromkeys(("place", "thing", "corner", "area", "person"), "object"),
+    **dict.fromkeys(("application", "service", "device", "adds", "gesture"), "object"),
+    **dict.fromkeys(("when", "answer"), "event"),
+}
+"""Elements that a list of a document's parts shows, with what sort of thing each is."""
+
+
+@dataclass(slots=True)
+class Part:
+    """An element in the list of a document's parts."""
+
+    name: str
+    detail: str
+    sort: str
+    start: int
+    end: int
+    name_start: int
+    name_end: int
+    parts: list[Part] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A file's name in a document, and the file."""
+
+    start: int
+    end: int
+    target: Path
+
+
+def outline(page: Page) -> list[Part]:
+    """The parts of a document, inside each other."""
+    top: list[Part] = []
+    made: dict[int, list[Part]] = {}
+    for tag in page.tags:
+        parts = made.get(id(tag.parent), top) if tag.parent else top
+        made[id(tag)] = parts
+        if tag.key in SHOWN and tag.element is not None:
+            part = _part(tag)
+            parts.append(part)
+            made[id(tag)] = part.parts
+    return top
+
+
+def _part(tag: Tag) -> Part:
+    attr = next((one for name in NAMING if (one := tag.attr(name)) and one.value), None)
+    name = attr.value if attr else ""
+    start, end = (attr.first, attr.last) if attr else (tag.start + 1, tag.name_end)
+    detail = tag.name
+    if not attr:
+        first = next((one for one in tag.attributes if one.first >= 0), None)
+        name = f"{tag.name} {first.name}={first.value[:40]}" if first else tag.name
+        detail = ""
+    return Part(
+        " ".join(name.split())[:80] or tag.name,
+        detail,
+        SHOWN[tag.key],
+        tag.start,
+        max(tag.until, tag.end),
+        start,
+        end,
+    )
+
+
+def links(desk: Desk, path: Path) -> list[Link]:
+    """The files that a document names and that are there."""
+    return [
+        Link(start, end, target)
+        for target, start, end in desk.named(path)
+        if target.is_file() or target in desk.open
+    ]

@@ -1,0 +1,97 @@
+"""What is wrong with a document while it is written: what ``prima validate`` says of it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from prima import loading
+from prima.errors import DocumentError, Problem, UsageError
+from prima.lsp.desk import Desk
+from prima.lsp.scan import Page
+from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
+from prima.lsp.text import Lines
+
+TAG = re.compile(r"</?[^\s<>/]*")
+WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A problem with the piece of text that it is about."""
+
+    problem: Problem
+    start: int
+    end: int
+
+
+def is_ours(page: Page) -> bool:
+    """Whether a text is, or is to become, a document of PRIMA's or VoiceXML's."""
+    root = page.root
+    if root is None:
+        return False
+    namespace = root.namespace
+    return (
+        namespace in BY_NAMESPACE
+        or "prima" in namespace
+        or root.local in ("prima", "vxml")
+        or (not namespace and root.local in BY_ROOT)
+    )
+
+
+def check(desk: Desk, path: Path) -> dict[Path, list[Problem]]:
+    """All problems that a document brings to light, by the file in which they are.
+
+    The texts of open documents count in place of their files.
+    """
+    text = desk.text(path)
+    if text is None or not is_ours(text.top):
+        return {path: []}
+    with loading.in_place_of_files(desk.unsaved()):
+        try:
+            problems = loading.validate([path])
+        except DocumentError as error:
+            problems = error.problems
+        except UsageError:
+            problems = []
+    found: dict[Path, list[Problem]] = {path: []}
+    for problem in problems:
+        found.setdefault(_resolved(path, problem.place.file), []).append(problem)
+    return found
+
+
+def _resolved(path: Path, file: str) -> Path:
+    try:
+        return (path.parent / file).resolve()
+    except (OSError, ValueError, RuntimeError):
+        return path
+
+
+def spot(lines: Lines, problem: Problem) -> Spot:
+    """Where a problem begins and ends in a text."""
+    text = lines.text
+    start = lines.place(problem.place.line, problem.place.column)
+    before, here = text[start - 1 : start], text[start : start + 1]
+    if here == "<":
+        match = TAG.match(text, start)
+    elif before in ('"', "'") and problem.code not in ("undeclared-variable", "bad-expression"):
+        end = text.find(before, start)
+        stop = text.find("<", start)
+        if end >= 0 and not 0 <= stop < end:
+            return Spot(problem, start, max(end, start))
+        match = WORD.match(text, start)
+    else:
+        match = WORD.match(text, start)
+    end = match.end() if match else start
+    if end == start and here not in ("", "\n", "\r"):
+        end = start + 1
+    return Spot(problem, start, end)
+
+
+def spots(desk: Desk, path: Path, problems: list[Problem]) -> list[Spot]:
+    """Problems of a file with the pieces of its text that they are about."""
+    text = desk.text(path)
+    if text is None:
+        return []
+    return [spot(text.lines, problem) for problem in sorted(set(problems))]

@@ -1,0 +1,211 @@
+"""Tags of a text that need not be well-formed: what stands where, while it is being written."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from prima.lsp.text import Lines
+from prima.markup.limits import LIMITS
+from prima.markup.vocabulary import Element, Vocabulary
+
+PIECE = re.compile(
+    r"<!--(?:.*?-->|.*)|<!\[CDATA\[(?:.*?\]\]>|.*)|<\?(?:.*?\?>|.*)|<![^>]*>?"
+    r"|</(?P<end>[^\s<>/]*)[^<>]*>?|<(?P<start>[^\s<>/\"'=!?]*)",
+    re.DOTALL,
+)
+"""A piece of markup; one that does not end goes on to the end of the text."""
+ATTRIBUTE = re.compile(
+    r"(?P<name>[^\s=<>/\"']+)(?P<is>\s*=\s*(?:\"(?P<double>[^\"<]*)(?P<d>\"?)"
+    r"|'(?P<single>[^'<]*)(?P<s>'?))?)?"
+)
+"""An attribute; its value ends at the quote, or before the next tag where the quote is missing."""
+
+
+@dataclass(slots=True, eq=False)
+class Attr:
+    """An attribute: its name's place, and its value as written with the value's place.
+
+    ``first`` is -1 where there is no value.
+    """
+
+    name: str
+    start: int
+    end: int
+    value: str
+    first: int
+    last: int
+    closed: bool
+
+
+@dataclass(slots=True, eq=False)
+class Tag:
+    """An element as written: ``start`` to ``end`` is its start tag, to ``until`` all of it."""
+
+    name: str
+    start: int
+    end: int
+    attributes: list[Attr]
+    parent: Tag | None
+    empty: bool = True
+    finished: bool = True
+    """Whether the start tag has its ``>``."""
+    close: tuple[int, int] | None = None
+    """Where the name stands in the end tag."""
+    content: int = -1
+    """Where the content ends."""
+    until: int = -1
+    children: list[Tag] = field(default_factory=list)
+    namespaces: dict[str, str] = field(default_factory=dict)
+    namespace: str = ""
+    vocabulary: Vocabulary | None = None
+    key: str = ""
+
+    @property
+    def local(self) -> str:
+        """The name without its prefix."""
+        return self.name.rpartition(":")[2]
+
+    @property
+    def prefix(self) -> str:
+        """The prefix with its colon, or nothing."""
+        return self.name[: self.name.find(":") + 1]
+
+    @property
+    def name_end(self) -> int:
+        """Where the name ends in the start tag."""
+        return self.start + 1 + len(self.name)
+
+    @property
+    def element(self) -> Element | None:
+        """What the tables know of it."""
+        return self.vocabulary.elements.get(self.key) if self.vocabulary else None
+
+    def get(self, name: str) -> str:
+        """An attribute's value as written."""
+        attr = self.attr(name)
+        return attr.value if attr else ""
+
+    def attr(self, name: str) -> Attr | None:
+        """An attribute."""
+        return next((one for one in self.attributes if one.name == name), None)
+
+    def inside(self, *keys: str) -> Tag | None:
+        """The nearest element of these keys around this one, itself included."""
+        tag: Tag | None = self
+        while tag is not None and tag.key not in keys:
+            tag = tag.parent
+        return tag
+
+
+class Page:
+    """A text and its tags in document order."""
+
+    def __init__(self, text: str, lines: Lines | None = None, most: int = 0) -> None:
+        self.text = text
+        self.lines = lines or Lines(text)
+        self.most = most or LIMITS.elements
+        """How many tags are looked at."""
+        self.tags: list[Tag] = []
+        self.ends: list[tuple[int, int, str]] = []
+        """End tags: where each name begins and ends."""
+        self.asides: list[tuple[int, int]] = []
+        """Comments, instructions and declarations."""
+        self._scan()
+
+    @property
+    def root(self) -> Tag | None:
+        """The first element that is named."""
+        return next((tag for tag in self.tags if tag.name), None)
+
+    def _scan(self) -> None:
+        text, position = self.text, 0
+        open_: list[Tag] = []
+        while match := PIECE.search(text, position):
+            position = match.end()
+            if match["end"] is not None:
+                self.ends.append((*match.span("end"), match["end"]))
+                self._close(open_, match)
+            elif match["start"] is not None:
+                tag = Tag(match["start"], match.start(), match.end(), [], None)
+                tag.parent = open_[-1] if open_ else None
+                position = self._attributes(tag)
+                self.tags.append(tag)
+                if tag.parent:
+                    tag.parent.children.append(tag)
+                if tag.name and not tag.empty:
+                    open_.append(tag)
+                if len(self.tags) >= self.most:
+                    break
+            elif not match[0].startswith("<![CDATA["):
+                self.asides.append(match.span())
+        for tag in open_:
+            tag.content = tag.until = len(text)
+
+    def _attributes(self, tag: Tag) -> int:
+        """Read the rest of a start tag; give where to go on."""
+        text, position = self.text, tag.end
+        while True:
+            while position < len(text) and text[position].isspace():
+                position += 1
+            if text.startswith("/>", position):
+                position += 2
+                break
+            if text.startswith(">", position):
+                position += 1
+                tag.empty = False
+                break
+            match = ATTRIBUTE.match(text, position)
+            if match is not None:
+                group = "double" if match["double"] is not None else "single"
+                first, last = match.span(group)
+                closed = bool(match["d"] or match["s"])
+                value = match[group] or ""
+                tag.attributes.append(
+                    Attr(match["name"], *match.span("name"), value, first, last, closed)
+                )
+                position = match.end()
+            elif position >= len(text) or text[position] == "<":
+                tag.finished = False
+                break
+            else:
+                position += 1  # a stray quote, stroke or sign
+        tag.end = tag.until = tag.content = position
+        return position
+
+    @staticmethod
+    def _close(open_: list[Tag], match: re.Match[str]) -> None:
+        """Close what an end tag closes, and what is open inside it."""
+        names = [tag.name for tag in open_]
+        if match["end"] not in names:
+            return
+        while True:
+            tag = open_.pop()
+            tag.content = match.start()
+            if tag.name == match["end"]:
+                tag.until, tag.close = match.end(), match.span("end")
+                return
+            tag.until = match.start()
+
+    def tag_at(self, offset: int) -> Tag | None:
+        """The element whose start tag holds an offset behind its ``<``."""
+        for tag in self.tags:
+            if tag.start < offset and (
+                offset < tag.end or (offset == tag.end and not tag.finished)
+            ):
+                return tag
+        return None
+
+    def around(self, offset: int) -> Tag | None:
+        """The innermost element whose content holds an offset."""
+        found = None
+        for tag in self.tags:
+            if tag.start > offset:
+                break
+            if tag.end <= offset <= tag.content and not tag.empty:
+                found = tag
+        return found
+
+    def aside(self, offset: int) -> bool:
+        """Whether an offset stands in a comment or an instruction."""
+        return any(start < offset < end for start, end in self.asides)

@@ -1,0 +1,352 @@
+"""The languages as an editor needs them: which element stands where, and what its names mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.scan import Page, Tag
+from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
+from prima.markup.vocabulary import (
+    Attribute,
+    Element,
+    Vocabulary,
+    attribute,
+    attributes_by_name,
+)
+from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.voicexml.check import SPEAKING
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, SRGS, VALUES, VOICEXML
+
+_PARTS = ("one-of", "item", "ruleref", "tag", "token")
+_REPEAT = (
+    attribute("repeat", "text", ""),
+    attribute("repeat-prob", "text", ""),
+    attribute("weight", "text", ""),
+)
+
+GRAMMAR = Vocabulary(
+    SRGS,
+    "srgs",
+    "grammar",
+    (
+        Element(
+            "grammar",
+            "",
+            VOICEXML.elements["grammar"].attributes,
+            ("rule", *_PARTS, "meta", "metadata", "lexicon"),
+            True,
+            source="SRGS 4",
+        ),
+        Element(
+            "rule",
+            "",
+            (
+                attribute("id", "id", "its name", "required"),
+                attribute("scope", "text", "", choices=("private", "public")),
+            ),
+            (*_PARTS, "example"),
+            True,
+            source="SRGS 3.1",
+        ),
+        Element("one-of", "", (), ("item",), source="SRGS 2.4"),
+        Element("item", "", _REPEAT, _PARTS, True, source="SRGS 2.5"),
+        Element(
+            "ruleref",
+            "",
+            (
+                attribute("uri", "text", ""),
+                attribute("special", "text", "", choices=("NULL", "VOID", "GARBAGE")),
+                attribute("type", "text", ""),
+            ),
+            source="SRGS 2.2",
+        ),
+        Element("tag", "", (), (), True, source="SRGS 2.6, SISR 1.0"),
+        Element("token", "", (), (), True, source="SRGS 2.1"),
+        Element("example", "", (), (), True, source="SRGS 3.3"),
+        Element("meta", "", VOICEXML.elements["meta"].attributes),
+        Element("metadata", "", (), (), True),
+        Element("lexicon", "", VOICEXML.elements["lexicon"].attributes),
+    ),
+)
+"""SRGS in XML, as it stands in VoiceXML documents."""
+
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, VOICEXML, GRAMMAR)
+BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
+BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
+
+
+def resolve(page: Page) -> None:
+    """Give every tag its vocabulary and key, as far as they can be told."""
+    for tag in page.tags:
+        parent = tag.parent
+        tag.namespaces = _namespaces(tag, parent.namespaces if parent else {})
+        tag.namespace = tag.namespaces.get(tag.prefix[:-1], "")
+        if parent is None or parent.vocabulary is None:
+            vocabulary = BY_NAMESPACE.get(tag.namespace)
+            if vocabulary is None and parent is None and not tag.prefix:
+                vocabulary = BY_ROOT.get(tag.local)  # as somebody begins to write
+            tag.vocabulary = vocabulary
+            tag.key = vocabulary.root if vocabulary and _is_root(vocabulary, tag) else tag.local
+        else:
+            tag.vocabulary, tag.key = _child(parent, tag)
+
+
+def _is_root(vocabulary: Vocabulary, tag: Tag) -> bool:
+    return vocabulary.elements[vocabulary.root].tag == tag.local
+
+
+def _namespaces(tag: Tag, outer: dict[str, str]) -> dict[str, str]:
+    own = {
+        attr.name[6:]: attr.value
+        for attr in tag.attributes
+        if attr.name == "xmlns" or attr.name.startswith("xmlns:")
+    }
+    return outer | own if own else outer
+
+
+def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
+    """The vocabulary and key of an element inside another; a misplaced one's are guessed."""
+    inner = parent.vocabulary
+    assert inner is not None
+    if inner is VOICEXML and parent.key == "grammar":
+        inner = GRAMMAR
+    if tag.namespace and tag.namespace != inner.namespace and tag.namespace in BY_NAMESPACE:
+        own = BY_NAMESPACE[tag.namespace]
+        if not (inner is GRAMMAR and own is VOICEXML):
+            return own, tag.local
+    key = inner.child(parent.key, tag.local)
+    if key is None:
+        key = next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
+    return inner, key
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """An element that may stand somewhere: its name as written there, and what it is."""
+
+    name: str
+    element: Element
+    vocabulary: Vocabulary
+
+
+def children(tag: Tag) -> list[Choice]:
+    """The elements that may stand in an element."""
+    element, vocabulary = tag.element, tag.vocabulary
+    if element is None or vocabulary is None:
+        return []
+    inner = vocabulary
+    if vocabulary is VOICEXML and tag.key == "grammar":
+        inner, element = GRAMMAR, GRAMMAR.elements["grammar"]
+    found = [
+        Choice(tag.prefix + inner.elements[key].tag, inner.elements[key], inner)
+        for key in element.children
+        if key in inner.elements
+    ]
+    prefix = next((p for p, uri in tag.namespaces.items() if uri == DIALOGUE.namespace and p), "")
+    acts = tag.key in SPEAKING or (inner is VOICEXML and VOICEXML.child(tag.key, "assign"))
+    if vocabulary is VOICEXML and prefix and acts:
+        found += [
+            Choice(f"{prefix}:{key}", DIALOGUE.elements[key], DIALOGUE) for key in sorted(COMMANDS)
+        ]
+    return found
+
+
+def roots() -> list[Choice]:
+    """The elements with which a document may begin."""
+    return [
+        Choice(one.elements[one.root].tag, one.elements[one.root], one)
+        for one in VOCABULARIES
+        if one is not GRAMMAR
+    ]
+
+
+def attributes(element: Element) -> dict[str, tuple[Attribute, bool]]:
+    """An element's attributes as written, with whether each is an expression."""
+    return attributes_by_name(element)
+
+
+def about(element: Element) -> str:
+    """What an element is, in a sentence."""
+    return element.doc or VOICEXML_ELEMENTS.get(element.tag, "")
+
+
+def about_attribute(item: Attribute) -> str:
+    """What an attribute is, in a phrase."""
+    return item.doc or VOICEXML_ATTRIBUTES.get(item.name, "")
+
+
+def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ...]:
+    """The values that an attribute may have, where they are few."""
+    item, expression = attributes(element).get(name, (None, False))
+    if item is None or expression:
+        return ()
+    if item.choices:
+        return item.choices
+    if item.kind == "boolean":
+        return ("true", "false")
+    if vocabulary is DIALOGUE and (element.key, name) == ("property", "value"):
+        return ("true", "false")
+    if vocabulary is VOICEXML:
+        if (element.key, name) == ("vxml", "version"):
+            return ("2.1", "2.0")
+        if (element.key, name) == ("field", "type"):
+            return ("boolean", "currency", "date", "digits", "number", "phone", "time")
+        kind = VALUES.get(f"{element.key} {name}") or VALUES.get(name, "")
+        return tuple(kind.split()) if kind not in ("time", "integer", "rate") else ()
+    return ()
+
+
+def is_code(tag: Tag, name: str) -> bool:
+    """Whether an attribute holds ECMAScript."""
+    element = tag.element
+    if element is None:
+        return False
+    if tag.vocabulary is VOICEXML:
+        return name in EXPRESSIONS
+    item, expression = attributes(element).get(name, (None, False))
+    return expression or (item is not None and item.kind == "expression")
+
+
+# Names ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """What an attribute's value names: the kinds, and how it is written.
+
+    ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces) or ``uri``
+    (a file, a ``#`` and a name).
+    """
+
+    kinds: tuple[str, ...]
+    how: str = ""
+
+
+_FORM, _POINT = Use(("form",), "#"), Use(("place", "thing"))
+_VARIABLES = Use(("variable",), "list")
+
+DEFINES: dict[tuple[str, str, str], str] = {
+    ("dialogue", "prima", "id"): "application",
+    ("dialogue", "form", "id"): "form",
+    ("dialogue", "rule", "id"): "rule",
+    **{
+        ("dialogue", key, "name"): "variable"
+        for key in ("var", "field", "block", "subdialog", "iu-items")
+    },
+    ("dialogue", "foreach", "item"): "variable",
+    ("dialogue", "watch", "name"): "event",
+    **{("dialogue", key, "event"): "event" for key in ("throw", "send", "link", "return")},
+    ("world", "place", "id"): "place",
+    ("world", "thing", "id"): "thing",
+    ("world", "corner", "event"): "event",
+    ("robot", "touch", "sensor"): "sensor",
+    ("robot", "device", "name"): "device",
+    ("robot", "gesture", "name"): "gesture",
+    ("robot", "adds", "command"): "command",
+    ("scenario", "application", "id"): "application",
+    ("scenario", "service", "name"): "service",
+    ("scenario", "event", "name"): "event",
+    ("scenario", "sensor", "name"): "reading",
+    ("voicexml", "form", "id"): "form",
+    ("voicexml", "menu", "id"): "form",
+    **{
+        ("voicexml", key, "name"): "variable"
+        for key in (
+            *("var", "field", "block", "initial", "record", "object", "subdialog"),
+            *("transfer", "data"),
+        )
+    },
+    ("voicexml", "foreach", "item"): "variable",
+    **{("voicexml", key, "event"): "event" for key in ("throw", "link", "return", "choice")},
+    ("srgs", "rule", "id"): "rule",
+}
+"""Attributes that give something its name, by vocabulary and key of the element."""
+
+REFERS: dict[tuple[str, str, str], Use] = {
+    ("dialogue", "goto", "next"): _FORM,
+    ("dialogue", "link", "next"): _FORM,
+    ("dialogue", "subdialog", "src"): _FORM,
+    ("dialogue", "goto", "nextitem"): Use(("variable",)),
+    ("dialogue", "assign", "name"): Use(("variable",), "code"),
+    **{("dialogue", key, "namelist"): _VARIABLES for key in ("clear", "return", "filled")},
+    ("dialogue", "ruleref", "uri"): Use(("rule",), "#"),
+    ("dialogue", "grammar", "root"): Use(("rule",)),
+    ("dialogue", "on", "event"): Use(("event",), "list"),
+    ("dialogue", "topological-move", "to"): Use(("place",)),
+    **{
+        ("dialogue", key, "toward"): _POINT
+        for key in ("turn-and-speak", "set-direction", "point-by-hand")
+    },
+    ("dialogue", "gesture", "name"): Use(("gesture",)),
+    ("dialogue", "command", "type"): Use(("command",)),
+    ("dialogue", "send", "to"): Use(("service",)),
+    ("world", "way", "from"): Use(("place",)),
+    ("world", "way", "to"): Use(("place",)),
+    ("robot", "adds", "devices"): Use(("device",), "list"),
+    ("robot", "allows", "command"): Use(("command",)),
+    ("robot", "substitute", "command"): Use(("command",)),
+    ("robot", "substitute", "by"): Use(("command",)),
+    ("scenario", "robot", "at"): Use(("place",)),
+    ("scenario", "person", "at"): _POINT,
+    ("scenario", "walk", "to"): _POINT,
+    ("scenario", "look", "at"): _POINT,
+    ("scenario", "touch", "sensor"): Use(("sensor",)),
+    ("scenario", "fail", "device"): Use(("device",)),
+    ("scenario", "repair", "device"): Use(("device",)),
+    ("scenario", "when", "doing"): Use(("command",)),
+    ("scenario", "when", "done"): Use(("command",)),
+    ("scenario", "when", "on"): Use(("event",)),
+    ("scenario", "unload", "application"): Use(("application",)),
+    ("voicexml", "goto", "next"): Use(("form",), "uri"),
+    ("voicexml", "link", "next"): Use(("form",), "uri"),
+    ("voicexml", "choice", "next"): Use(("form",), "uri"),
+    ("voicexml", "submit", "next"): Use(("form",), "uri"),
+    ("voicexml", "subdialog", "src"): Use(("form",), "uri"),
+    ("voicexml", "goto", "nextitem"): Use(("variable",)),
+    ("voicexml", "assign", "name"): Use(("variable",), "code"),
+    **{
+        ("voicexml", key, "namelist"): _VARIABLES
+        for key in (
+            "clear",
+            "return",
+            "filled",
+            "submit",
+            "subdialog",
+            "exit",
+            "disconnect",
+            "data",
+        )
+    },
+    ("voicexml", "catch", "event"): Use(("event",), "list"),
+    ("srgs", "ruleref", "uri"): Use(("rule",), "uri"),
+    ("voicexml", "grammar", "root"): Use(("rule",)),
+    ("srgs", "grammar", "root"): Use(("rule",)),
+}
+"""Attributes that name something, by vocabulary and key of the element."""
+
+FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
+    ("scenario", "scenario", "world"): ("world",),
+    ("scenario", "scenario", "robot"): ("robot",),
+    ("scenario", "application", "src"): ("dialogue", "voicexml"),
+    ("scenario", "reply", "src"): (),
+    ("world", "area", "application"): ("dialogue", "voicexml"),
+    ("voicexml", "vxml", "application"): ("voicexml",),
+    **{("voicexml", key, "next"): ("voicexml",) for key in ("goto", "submit", "link", "choice")},
+    ("voicexml", "subdialog", "src"): ("voicexml",),
+    ("voicexml", "grammar", "src"): ("srgs",),
+    ("srgs", "ruleref", "uri"): ("srgs",),
+    **{("voicexml", key, "src"): () for key in ("script", "audio", "data")},
+}
+"""Attributes that name a file, with the vocabularies of documents that fit."""
+
+SHARED = frozenset(
+    [
+        *("place", "thing", "sensor", "device", "gesture", "command", "service"),
+        *("application", "event", "reading"),
+    ]
+)
+"""Kinds of names that documents of one scenario share."""
+
+KIND_OF = {"variable": "variable", "event": "event"}
+"""The simple type that a name of a kind has; others are ids."""

@@ -1,0 +1,64 @@
+"""Places in a text as the Language Server Protocol counts them."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+
+LINE_END = re.compile(r"\r\n|\r|\n")
+UTF8, UTF16, UTF32 = "utf-8", "utf-16", "utf-32"
+"""What columns may count: bytes, units of two bytes (what every editor knows), characters."""
+
+
+def _width(letter: str, encoding: str) -> int:
+    if encoding == UTF32:
+        return 1
+    if encoding == UTF8:
+        return len(letter.encode(errors="replace"))
+    return 2 if letter > "\uffff" else 1
+
+
+class Lines:
+    """A text with its lines: lines, columns and offsets (in characters) count from 0."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.starts = [0, *(match.end() for match in LINE_END.finditer(text))]
+
+    def _end(self, line: int) -> int:
+        """Where a line ends, before its line end."""
+        if line + 1 >= len(self.starts):
+            return len(self.text)
+        end = self.starts[line + 1] - 1
+        return end - (self.text[end - 1 : end + 1] == "\r\n")
+
+    def offset(self, line: int, column: int, encoding: str = UTF16) -> int:
+        """The offset of a line and a column; what is beyond an end is that end."""
+        if line < 0:
+            return 0
+        if line >= len(self.starts):
+            return len(self.text)
+        start, end = self.starts[line], self._end(line)
+        text = self.text[start:end]
+        if text.isascii():
+            return start + min(max(column, 0), len(text))
+        units = 0
+        for index, letter in enumerate(text):
+            units += _width(letter, encoding)
+            if units > column:
+                return start + index
+        return end
+
+    def position(self, offset: int, encoding: str = UTF16) -> tuple[int, int]:
+        """The line and column of an offset."""
+        offset = min(max(offset, 0), len(self.text))
+        line = bisect_right(self.starts, offset) - 1
+        text = self.text[self.starts[line] : offset]
+        return line, len(text) if text.isascii() else sum(_width(x, encoding) for x in text)
+
+    def place(self, line: int, column: int) -> int:
+        """The offset of a line and column that count characters from 1."""
+        line = max(line, 1) - 1
+        if line >= len(self.starts):
+            return len(self.text)
+        return min(self.starts[line] + max(column, 1) - 1, self._end(line))
