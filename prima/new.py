@@ -14,7 +14,6 @@ from prima.markup.reader import parse
 from prima.sim.scenario import read_world
 from prima.sim.vocabulary import ROBOT, WORLD
 
-KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
 TEMPLATES = Path(__file__).parent / "templates"
 ANSWERS = {
     "Would you like something to drink?": "Yes.",
@@ -31,7 +30,7 @@ def write(kind: str, name: str) -> list[Path]:
     """Write a new document, and what a scenario lacks; gives the files written.
 
     Args:
-        kind: one of :data:`KINDS`.
+        kind: the name of a template.
         name: its file, with or without ``.xml`` (``.vxml``); its id is made of it.
 
     Raises:

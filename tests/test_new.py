@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from prima.cli.new import KINDS
 from prima.errors import UsageError
-from prima.new import KINDS, identifier, write
+from prima.new import identifier, write
 
 
 def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import click
 
 from prima.cli.common import Choice, tell
-from prima.new import KINDS, attempt, write
+
+KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
 
 
 @click.command()
@@ -24,6 +25,8 @@ def new(kind: str, name: str) -> None:
     prima new scenario visit
     prima run visit.xml
     """
+    from prima.new import attempt, write
+
     written = write(kind, name)
     for path in written:
         tell(f"written: {path}")
