@@ -9,7 +9,7 @@ from pathlib import Path
 
 from prima.errors import DocumentError, UsageError
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.loading import is_voicexml, read_file
+from prima.loading import is_voicexml, read_file, validate
 from prima.markup.reader import parse
 from prima.sim.scenario import read_world
 from prima.sim.vocabulary import ROBOT, WORLD
@@ -118,7 +118,7 @@ def _scenario(path: Path) -> list[Path]:
 
 
 def _documents(folder: Path) -> dict[str, list[Path]]:
-    """The documents of a folder by what they are, in the order of their names."""
+    """The documents of a folder that have no error, by what they are, in their names' order."""
     found: dict[str, list[Path]] = {"fa": [], "ea": [], "world": [], "robot": []}
     for path in sorted([*folder.glob("*.xml"), *folder.glob("*.vxml")]):
         kind = _kind(path)
@@ -128,13 +128,16 @@ def _documents(folder: Path) -> dict[str, list[Path]]:
 
 
 def _kind(path: Path) -> str:
+    """What a document is; nothing where it has errors: it could not be run."""
     try:
         data = read_file(path)
-        if is_voicexml(data):
-            return "ea"
         root = parse(str(path), data)
+        if any(problem.severity == "error" for problem in validate([path])):
+            return ""
     except (DocumentError, UsageError):
         return ""
+    if is_voicexml(data):
+        return "ea"
     if root.namespace == DIALOGUE.namespace:
         return root.get("kind")
     return {WORLD.namespace: "world", ROBOT.namespace: "robot"}.get(root.namespace, "")

@@ -76,3 +76,13 @@ def test_a_kind_that_is_none_is_guessed(tmp_path: Path) -> None:
 )
 def test_ids_are_made_of_names(name: str, made: str) -> None:
     assert identifier(name, "ea") == made
+
+
+def test_a_scenario_leaves_out_what_has_errors(tmp_path: Path) -> None:
+    prima("new", "ea", "cafe", cwd=tmp_path)
+    (tmp_path / "broken.xml").write_text(
+        (tmp_path / "cafe.xml").read_text().replace("speak", "speek")
+    )
+    assert prima("new", "scenario", "visit", cwd=tmp_path).returncode == 0
+    assert "broken" not in (tmp_path / "visit.xml").read_text()
+    assert prima("run", "visit.xml", cwd=tmp_path).returncode == 0
