@@ -13,6 +13,7 @@ import re
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -33,8 +34,10 @@ from prima.interpreter import (
     handling,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
+from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
 from prima.markup.limits import LIMITS
-from prima.markup.schema import XML_SCHEMA, make_schema
+from prima.markup.rnc import make_rnc
+from prima.markup.schema import XML_SCHEMA, make_catalog, make_locating_rules, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import failures, selector
 from prima.sim import rehearsal
@@ -42,6 +45,7 @@ from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
 from prima.transcript.record import Record
 from prima.values import KINDS, LONGEST_MS
+from prima.voicexml.vocabulary import EXPRESSIONS, VALUES, VOICEXML
 
 ROOT = Path(__file__).resolve().parent.parent
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO)
@@ -514,6 +518,35 @@ def fill(name: str, text: str) -> str:
     return filled
 
 
+def voicexml() -> Vocabulary:
+    """VoiceXML's elements with what an editor tells of them."""
+    elements = [
+        replace(
+            element,
+            doc=VOICEXML_ELEMENTS.get(element.tag, ""),
+            source=VOICEXML_SECTION.sub(r"VoiceXML \1", element.source),
+            attributes=tuple(_voicexml_attribute(element, one) for one in element.attributes),
+        )
+        for element in VOICEXML.elements.values()
+    ]
+    free = ("grammar", "metadata")
+    return Vocabulary(VOICEXML.namespace, VOICEXML.name, VOICEXML.root, elements, free=free)
+
+
+VOICEXML_SECTION = re.compile(r"^([0-9].*)")
+VOICEXML_KINDS = {"time": "duration", "integer": "integer", "rate": "text", "": "text"}
+
+
+def _voicexml_attribute(element: Element, item: Attribute) -> Attribute:
+    doc = VOICEXML_ATTRIBUTES.get(item.name, "")
+    values = VALUES.get(f"{element.key} {item.name}") or VALUES.get(item.name, "")
+    if item.name in EXPRESSIONS:
+        return replace(item, kind="expression", doc=doc)
+    if values in VOICEXML_KINDS:
+        return replace(item, kind=VOICEXML_KINDS[values], doc=doc)
+    return replace(item, choices=tuple(values.split()), doc=doc)
+
+
 def record_schema() -> str:
     """The JSON Schema of a transcript's record."""
     schema = {
@@ -532,7 +565,15 @@ def outputs(root: Path) -> dict[Path, str]:
     schemas, docs = root / "schemas", root / "docs"
     if not docs.is_dir():
         raise UsageError(f"{root} is no checkout: it has no docs folder.")
-    made = {schemas / f"{one.name}.xsd": make_schema(one) for one in VOCABULARIES}
+    kinds = (*VOCABULARIES, voicexml())
+    made = {schemas / f"{one.name}.xsd": make_schema(one) for one in kinds}
+    made |= {schemas / f"{one.name}.rnc": make_rnc(one) for one in kinds}
+    made[schemas / "catalog.xml"] = make_catalog(
+        {one.namespace: f"{one.name}.xsd" for one in kinds}
+    )
+    made[schemas / "schemas.xml"] = make_locating_rules(
+        {one.namespace: f"{one.name}.rnc" for one in kinds}
+    )
     made[schemas / "xml.xsd"] = XML_SCHEMA
     made[schemas / "transcript.schema.json"] = record_schema()
     for path in sorted(docs.glob("*.md")):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
 
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
@@ -13,9 +14,42 @@ XML_SCHEMA = """<?xml version="1.0" encoding="UTF-8"?>
   <xs:attribute name="lang" type="xs:string">
     <xs:annotation><xs:documentation>The language of the document, as in en or ja.</xs:documentation></xs:annotation>
   </xs:attribute>
+  <xs:attribute name="base" type="xs:string">
+    <xs:annotation><xs:documentation>What relative addresses are relative to.</xs:documentation></xs:annotation>
+  </xs:attribute>
 </xs:schema>
 """
-"""The one attribute of the xml namespace that documents use."""
+"""The attributes of the xml namespace that documents use."""
+
+
+def make_catalog(files: Mapping[str, str]) -> str:
+    """Give an OASIS XML catalogue that finds schemas by the namespaces of documents.
+
+    Args:
+        files: file names by namespaces.
+    """
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<catalog xmlns="urn:oasis:names:tc:entity:xmlns:xml:catalog" prefer="public">',
+    ]
+    for namespace, file in files.items():
+        lines.append(f'  <uri name="{namespace}" uri="{file}"/>')
+        lines.append(f'  <system systemId="{namespace}" uri="{file}"/>')
+    return "\n".join([*lines, "</catalog>", ""])
+
+
+def make_locating_rules(files: Mapping[str, str]) -> str:
+    """Give the rules by which Emacs finds RELAX NG schemas.
+
+    Args:
+        files: file names by namespaces.
+    """
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<locatingRules xmlns="http://thaiopensource.com/ns/locating-rules/1.0">',
+        *(f'  <namespace ns="{namespace}" uri="{file}"/>' for namespace, file in files.items()),
+    ]
+    return "\n".join([*lines, "</locatingRules>", ""])
 
 
 def make_schema(vocabulary: Vocabulary) -> str:
@@ -46,25 +80,36 @@ def _doc(text: str, indent: str) -> str:
     )
 
 
+ANYTHING = '<xs:any namespace="##any" processContents="skip"/>'
+FOREIGN = '<xs:any namespace="##other" processContents="lax"/>'
+
+
 def _complex_type(vocabulary: Vocabulary, element: Element) -> list[str]:
     mixed = ' mixed="true"' if element.text else ""
     source = f" ({element.source})" if element.source else ""
     lines = [f'  <xs:complexType name="{element.key}"{mixed}>', _doc(element.doc + source, "    ")]
-    if element.children:
+    held = [
+        f'<xs:element name="{vocabulary.elements[child].tag}" type="{child}"/>'
+        for child in element.children
+    ]
+    held += [FOREIGN] if held and vocabulary.open else []
+    held = [ANYTHING] if element.key in vocabulary.free else held
+    if held:
         lines.append('    <xs:choice minOccurs="0" maxOccurs="unbounded">')
-        for child in element.children:
-            tag = vocabulary.elements[child].tag
-            lines.append(f'      <xs:element name="{tag}" type="{child}"/>')
+        lines += [f"      {one}" for one in held]
         lines.append("    </xs:choice>")
     for item in element.attributes:
         lines += _attribute(item)
-    if element.key == vocabulary.root:
+    named = {item.name for item in element.attributes}
+    if element.key == vocabulary.root and "xml:lang" not in named:
         lines.append('    <xs:attribute ref="xml:lang"/>')
     return [*lines, "  </xs:complexType>"]
 
 
 def _attribute(item: Attribute) -> list[str]:
     use = ' use="required"' if item.required and not item.dynamic else ""
+    if item.name.startswith("xml:"):
+        return [f'    <xs:attribute ref="{item.name}"{use}/>']
     doc = item.doc + (f" (default: {item.default})" if item.default else "")
     if item.choices:
         values = "".join(f'<xs:enumeration value="{value}"/>' for value in item.choices)

@@ -63,6 +63,7 @@ class Vocabulary:
         root: str,
         elements: Iterable[Element],
         hints: Mapping[str, str] | None = None,
+        free: Iterable[str] = (),
     ) -> None:
         self.namespace = namespace
         self.name = name
@@ -70,6 +71,9 @@ class Vocabulary:
         self.elements = {element.key: element for element in elements}
         self.hints = dict(hints or {})
         """What to write instead of an element that authors expect but this language lacks."""
+        self.free = frozenset(free)
+        """Keys of elements that may hold anything; where there are any, elements of foreign
+        namespaces may stand among others'."""
         self._children = {
             key: {self.elements[child].tag: child for child in element.children}
             for key, element in self.elements.items()
@@ -77,6 +81,11 @@ class Vocabulary:
         self.tags = frozenset(element.tag for element in self.elements.values())
         self.attributes = {key: attributes_by_name(one) for key, one in self.elements.items()}
         """What :func:`attributes_by_name` gives, by key."""
+
+    @property
+    def open(self) -> bool:
+        """Whether elements of foreign namespaces may stand in elements that hold others."""
+        return bool(self.free)
 
     def child(self, key: str, tag: str) -> str | None:
         """The key of the element written ``tag`` inside the element ``key``, if allowed."""

@@ -1,0 +1,80 @@
+"""RELAX NG schemas (compact syntax) made from tables of elements, as Emacs reads them."""
+
+from __future__ import annotations
+
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.values import KINDS
+
+HEAD = """\
+# Made from the tables of elements by python -m prima.reference.
+default namespace = "{namespace}"
+namespace own = "{namespace}"
+namespace xsi = "http://www.w3.org/2001/XMLSchema-instance"
+datatypes xsd = "http://www.w3.org/2001/XMLSchema-datatypes"
+
+start = e-{root}
+"""
+ANYTHING = """
+anything = (attribute * { text } | text | element * { anything })*
+foreign = element * - own:* { anything }
+"""
+
+
+def make_rnc(vocabulary: Vocabulary) -> str:
+    """Give the RELAX NG schema of a kind of document in the compact syntax."""
+    parts = [HEAD.format(namespace=vocabulary.namespace, root=vocabulary.root)]
+    parts += [_element(vocabulary, element) for element in vocabulary.elements.values()]
+    if vocabulary.open:
+        parts.append(ANYTHING)
+    kinds = {
+        item.kind
+        for element in vocabulary.elements.values()
+        for item in element.attributes
+        if not item.choices
+    }
+    parts += ["\n", *(_kind(kind) for kind in sorted(kinds | {"expression"}))]
+    return "".join(parts)
+
+
+def _element(vocabulary: Vocabulary, element: Element) -> str:
+    parts = [_attribute(item) for item in element.attributes]
+    if element.key == vocabulary.root:
+        if all(item.name != "xml:lang" for item in element.attributes):
+            parts.append("attribute xml:lang { text }?")
+        parts.append("attribute xsi:* { text }*")
+    if element.key in vocabulary.free:
+        parts.append("(text | element * { anything })*")
+    else:
+        held = ["text"] if element.text else []
+        held += [f"e-{key}" for key in element.children]
+        held += ["foreign"] if vocabulary.open and element.children else []
+        if held:
+            parts.append("text" if held == ["text"] else f"({' | '.join(held)})*")
+    body = ",\n    ".join(parts) or "empty"
+    return f"\n{_doc(element.doc, element.source)}e-{element.key} =\n  element {element.tag} {{\n    {body}\n  }}\n"
+
+
+def _doc(doc: str, source: str) -> str:
+    text = " ".join(f"{doc} ({source})".split()) if source else doc
+    return f"## {text.strip()}\n" if text.strip() else ""
+
+
+def _attribute(item: Attribute) -> str:
+    if item.choices:
+        value = " | ".join(f'string "{choice}"' for choice in item.choices)
+    else:
+        value = f"kind-{item.kind}"
+    plain = f"attribute {item.name} {{ {value} }}"
+    expression = f"attribute {item.name}-expr {{ kind-expression }}"
+    if not item.dynamic:
+        return plain if item.required else f"{plain}?"
+    if item.required:
+        return f"({plain} | {expression})"
+    return f"{plain}?,\n    {expression}?"
+
+
+def _kind(kind: str) -> str:
+    row = KINDS[kind]
+    if kind == "text":
+        return "kind-text = text\n"
+    return f'kind-{kind} = xsd:token {{ pattern = "{row.pattern}" }}\n'
