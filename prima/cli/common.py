@@ -33,6 +33,8 @@ class Choice(click.Choice[str]):
         return str(value)
 
 
+PROGRESS_SECONDS = 0.5
+"""How often a terminal is told how far a long run is."""
 format_option = click.option(
     "--format",
     "form",
@@ -125,9 +127,28 @@ def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
     """Run with the transcript written line by line, so that nothing is lost on the way."""
     try:
         with open(output, "w", encoding="utf-8", buffering=1) as stream:
-            return rehearse(stream.write)
+            return rehearse(_with_progress(stream.write) if sys.stderr.isatty() else stream.write)
     except OSError as error:
         raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+
+
+def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
+    """Write lines, and tell a terminal now and then how far the run is."""
+    import time
+
+    told = time.monotonic()
+    count = 0
+
+    def note(line: str) -> None:
+        nonlocal told, count
+        write(line)
+        count += 1
+        if time.monotonic() - told > PROGRESS_SECONDS:
+            told = time.monotonic()
+            seconds = line.removeprefix('{"time":').partition(",")[0]
+            click.echo(f"\r{seconds} s, {count} records ", err=True, nl=False)
+
+    return note
 
 
 def start_watchdog() -> None:
