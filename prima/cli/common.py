@@ -127,7 +127,11 @@ def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
     """Run with the transcript written line by line, so that nothing is lost on the way."""
     try:
         with open(output, "w", encoding="utf-8", buffering=1) as stream:
-            return rehearse(_with_progress(stream.write) if sys.stderr.isatty() else stream.write)
+            if not sys.stderr.isatty():
+                return rehearse(stream.write)
+            made = rehearse(_with_progress(stream.write))
+            click.echo(f"\r{' ' * 60}\r", err=True, nl=False)
+            return made
     except OSError as error:
         raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
 
