@@ -9,7 +9,7 @@ the inbound values is a journal, and feeding them again a replay.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -58,6 +58,10 @@ if TYPE_CHECKING:
 
 AnyDocument: TypeAlias = "Document | VoiceDocument"
 App: TypeAlias = "Interpreter | VoiceInterpreter"
+
+
+watchers: list[Callable[[App], None]] = []
+"""Told of every interpreter that is made: what tests are covered by is seen from here."""
 
 
 class Session:
@@ -419,6 +423,8 @@ def interpreter_of(
 
         app = VoiceInterpreter(document, arguments)
     app.began = began
+    for watch in watchers:
+        watch(app)
     return app
 
 

@@ -26,8 +26,8 @@ LAYERS = [
     {"prices"},
     {"export", "loading", "web"},
     {"api"},
-    {"certificate", "examples", "lsp", "new", "report", "study"},
-    {"cli", "__init__", "reference", "pictures"},
+    {"certificate", "examples", "lsp", "new", "report", "study", "testing"},
+    {"cli", "__init__", "pytest_plugin", "reference", "pictures"},
     {"__main__"},
 ]
 """Lowest first; parts of one layer do not know each other."""
@@ -80,6 +80,14 @@ INSIDE = {
         {"__init__"},
     ],
     "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],
+    "testing": [
+        {"watching", "finding", "golden"},
+        {"checking", "coverage"},
+        {"running"},
+        {"telling"},
+        {"junit"},
+        {"__init__"},
+    ],
     "sim": [
         {"vocabulary", "voice"},
         {"scenario"},

@@ -1,0 +1,251 @@
+"""prima test."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import (
+    POLICIES,
+    Choice,
+    coloured,
+    format_option,
+    limit_option,
+    print_json,
+    put,
+    raise_limits,
+    start_watchdog,
+    tell,
+)
+from prima.errors import UsageError
+
+if TYPE_CHECKING:
+    from prima.testing.coverage import Coverage
+    from prima.testing.running import Result
+
+COLOURS = {"passed": "32", "failed": "31", "error": "31", "invalid": "31"}
+MOST_JOBS = 64
+
+
+@click.command()
+@click.argument("paths", nargs=-1, type=click.Path())
+@click.option("-k", "word", metavar="WORD", default="", help="Only scenarios with it in the path.")
+@click.option("--policy", help=f"Run under this policy: {POLICIES}.")
+@click.option(
+    "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Run so many at once."
+)
+@click.option(
+    "--compare",
+    "compare",
+    type=Choice(["text", "behavior"]),
+    default="text",
+    help="How tables are compared; behavior allows times to be off by less than 0.5 s.",
+)
+@click.option("--update", is_flag=True, help="Write tables anew that differ, or are not there.")
+@click.option("-y", "--yes", is_flag=True, help="With --update: do not ask.")
+@click.option("--coverage", "cover", is_flag=True, help="Tell what of the documents was reached.")
+@click.option("--coverage-xml", type=click.Path(), help="Write coverage here (Cobertura).")
+@click.option(
+    "--fail-under",
+    type=click.FloatRange(0, 100),
+    metavar="PERCENT",
+    help="Exit with 1 if less of the documents was reached.",
+)
+@click.option("--junit", "junit_file", type=click.Path(), help="Write results here (JUnit XML).")
+@limit_option
+@format_option
+def test(
+    paths: tuple[str, ...],
+    word: str,
+    policy: str | None,
+    jobs: int,
+    compare: str,
+    update: bool,
+    yes: bool,
+    cover: bool,
+    coverage_xml: str | None,
+    fail_under: float | None,
+    junit_file: str | None,
+    limits: tuple[str, ...],
+    form: str,
+) -> None:
+    """Run scenarios, and check what they expect.
+
+    PATHS are scenarios, or folders with scenarios; without any, it is this folder. A
+    scenario says what it expects by <expect>, <never> and <in-order>; a table beside it
+    (NAME.txt for NAME.xml) is compared with that of the run. One without either passes if
+    no application ends by an error.
+
+    Exit code 0 if all is as expected, 1 if not, 3 if a run ended by an error.
+
+    \b
+    prima test
+    prima test documents/scenarios/touched-on-the-way.xml --coverage
+    prima test documents/scenarios -k situations --jobs 2 --junit results.xml
+    prima test my-scenario.xml --update
+    """
+    from prima.testing.coverage import merge
+    from prima.testing.finding import find
+    from prima.testing.running import Choice as How
+    from prima.testing.running import run_all
+
+    _check_options(update, yes, policy, form)
+    raise_limits(limits)
+    if limits and jobs > 1:
+        raise UsageError("--limit works in one process: leave out --jobs.")
+    found = find(paths or ["."])
+    chosen = [path for path in found if word.casefold() in path.casefold()]
+    if not chosen:
+        raise UsageError(f'None of {len(found)} scenarios has "{word}" in its path.')
+    cover = cover or coverage_xml is not None or fail_under is not None
+    start_watchdog()
+    results: list[Result] = []
+    coverage: Coverage = {}
+    for result in run_all(chosen, How(policy, compare, cover), min(jobs, len(chosen)), _begin):
+        results.append(result)
+        merge(coverage, result.coverage)
+        result.coverage = {}
+        _progress(len(results), len(chosen))
+    if form == "text":
+        _report(results)
+    if update:
+        _update(results, set(paths), yes)
+    _finish(results, coverage if cover else None, fail_under, form)
+    _write(results, coverage, junit_file, coverage_xml)
+    under = fail_under is not None and _under(coverage, fail_under)
+    statuses = {result.status for result in results}
+    if "error" in statuses:
+        raise Exit(3)
+    if under or statuses != {"passed"}:
+        raise Exit(1)
+
+
+def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> None:
+    if yes and not update:
+        raise UsageError("--yes goes with --update.")
+    if update and policy is not None:
+        raise UsageError("A table is that of the scenario's own policy: leave out --policy.")
+    if update and form == "json":
+        raise UsageError("--update shows the differences first: leave out --format json.")
+    if policy is not None:
+        from prima.loading import FAVOURITE
+        from prima.scheduler.selection import policy_named
+
+        try:
+            policy_named(policy)
+        except UsageError as error:
+            raise UsageError(f"{error} {FAVOURITE}") from None
+
+
+def _begin() -> None:
+    """What a process of its own needs: Ctrl-C is for the first one, scripts are watched over."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    start_watchdog()
+
+
+def _progress(done: int, total: int) -> None:
+    if sys.stderr.isatty() and total > 1:
+        click.echo(f"\r{done} of {total} scenarios", err=True, nl=done == total)
+
+
+def _paint(text: str, status: str) -> str:
+    return f"\033[{COLOURS[status]}m{text}\033[0m" if coloured() else text
+
+
+def _report(results: list[Result]) -> None:
+    """Each result in a line, then what was not as expected."""
+    from prima.cli.common import clean
+    from prima.testing.telling import format_result, row
+
+    wide = max(len(result.path) for result in results)
+    for result in results:
+        click.echo(_paint(clean(row(result, wide)), result.status), color=coloured())
+    for result in results:
+        told = format_result(result)
+        if told:
+            click.echo(_paint(f"\n{clean(result.path)}", result.status), color=coloured())
+            put(told)
+
+
+def _finish(
+    results: list[Result], coverage: Coverage | None, fail_under: float | None, form: str
+) -> None:
+    from prima.testing.coverage import coverage_data, format_coverage
+    from prima.testing.running import result_data
+    from prima.testing.telling import counts, summary
+
+    if form == "json":
+        print_json(
+            {
+                "counts": counts(results),
+                "scenarios": [result_data(result) for result in results],
+                "coverage": None if coverage is None else coverage_data(coverage),
+            }
+        )
+        return
+    if coverage is not None:
+        put("\n" + format_coverage(coverage))
+    put(f"\n{summary(results)}")
+    if coverage is not None and fail_under is not None and _under(coverage, fail_under):
+        tell(f"prima: less than {fail_under:g}% of the documents was reached.")
+
+
+def _under(coverage: Coverage, percent: float) -> bool:
+    from prima.testing.coverage import total
+
+    return total(coverage) < percent
+
+
+def _write(
+    results: list[Result], coverage: Coverage, junit_file: str | None, coverage_xml: str | None
+) -> None:
+    from prima.testing.junit import cobertura, junit
+
+    for path, data in (
+        (junit_file, junit(results) if junit_file else b""),
+        (coverage_xml, cobertura(coverage) if coverage_xml else b""),
+    ):
+        if path:
+            try:
+                with open(path, "wb") as stream:
+                    stream.write(data)
+            except OSError as error:
+                raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+
+
+# Expected tables -------------------------------------------------------------------
+
+
+def _update(results: list[Result], named: set[str], yes: bool) -> None:
+    """Write the tables of runs that are else as expected; each has been shown before."""
+    from prima.testing.golden import write_golden
+
+    for result in results:
+        new = result.golden == "" and result.path in named
+        if not (result.golden == "differs" or new):
+            continue
+        if result.failures:
+            tell(f"{result.file}: not written: the run was not as expected.")
+            continue
+        if new:
+            put(f"\n{result.table}")
+        if not _agreed(result, yes):
+            continue
+        write_golden(result.file, result.table)
+        tell(f"{result.file}: written.")
+        result.status, result.golden, result.difference = "passed", "same", ""
+
+
+def _agreed(result: Result, yes: bool) -> bool:
+    """Whether the author wants a table written."""
+    if yes:
+        return True
+    if not sys.stdin.isatty():
+        tell(f"{result.file}: not written. Look at it, then add --yes.")
+        return False
+    return click.confirm(f"Write {result.file}?", err=True)

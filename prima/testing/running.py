@@ -1,0 +1,194 @@
+"""Running scenarios as tests: one result each, which may come from another process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter
+from typing import Any, Literal
+
+from prima import api
+from prima.errors import DocumentError, Place, RunError
+from prima.loading import Loaded, load_scenario
+from prima.sim.scenario import Scenario
+from prima.testing.checking import Failure, check, make_run
+from prima.testing.coverage import Coverage, covered
+from prima.testing.golden import difference, golden_of, read_golden
+from prima.testing.watching import Marks, States, watching
+
+Status = Literal["passed", "failed", "error", "invalid"]
+STATUSES: tuple[Status, ...] = ("passed", "failed", "error", "invalid")
+"""As expected; not as expected; the run ended by an error; documents are wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """How scenarios are tested: the policy (None for their own), how tables are compared."""
+
+    policy: str | None = None
+    compare: str = "text"
+    coverage: bool = False
+
+
+@dataclass(slots=True)
+class Result:
+    """What became of one scenario."""
+
+    path: str
+    name: str = ""
+    status: Status = "passed"
+    expectations: int = 0
+    failures: list[Failure] = field(default_factory=list)
+    golden: Literal["", "same", "differs", "skipped"] = ""
+    """How the run compares with the expected table, if there is one."""
+    difference: str = ""
+    table: str = ""
+    """The run's table, where the expected one is not there or differs."""
+    seconds: float = 0.0
+    """How long it took."""
+    simulated: float = 0.0
+    """How long the run was, by its own clock (s)."""
+    coverage: Coverage = field(default_factory=dict)
+
+    @property
+    def file(self) -> Path:
+        """Where the expected table stands, or would."""
+        return golden_of(Path(self.path))
+
+    @property
+    def checked(self) -> bool:
+        """Whether anything is expected at all, but that it runs."""
+        return bool(self.expectations) or self.golden in ("same", "differs")
+
+
+def run_one(path: str, choice: Choice) -> Result:
+    """Test one scenario.
+
+    Raises:
+        UsageError: the file or its expected table cannot be read; there is no such policy.
+    """
+    began = perf_counter()
+    made = Result(path)
+    try:
+        loaded = load_scenario(path)
+    except DocumentError as error:
+        made.status = "invalid"
+        made.failures = [
+            Failure(problem.place, f"{problem.message} {problem.remedy} [{problem.code}]".strip())
+            for problem in error.problems
+            if problem.severity == "error"
+        ]
+    else:
+        _rehearse(loaded, choice, made)
+    made.seconds = perf_counter() - began
+    return made
+
+
+def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
+    scenario = loaded.cast.scenario
+    made.name, made.expectations = scenario.id, len(scenario.expectations)
+    states, marks = States(), Marks() if choice.coverage else None
+    with watching(states, marks):
+        transcript = api.rehearse(loaded, choice.policy)
+    if marks is not None:
+        made.coverage = covered(marks)
+    made.simulated = transcript.records[-1]["time"]
+    rows = transcript.rows()
+    made.failures = check(scenario, make_run(transcript.records, rows, states))
+    if made.failures:
+        made.status = "failed"
+    own = choice.policy in (None, scenario.policy)
+    _compare(transcript.table(), choice.compare, own, made)
+    unexpected = _unexpected(transcript.failures, scenario)
+    if transcript.outcome == "limit":
+        unexpected.append("The run made more records than a run may.")
+    if unexpected:
+        made.status = "error"
+        made.failures += [Failure(Place(made.path), message) for message in unexpected]
+
+
+def _compare(table: str, by: str, own: bool, made: Result) -> None:
+    """Compare with the expected table, which is that of the scenario's own policy."""
+    golden = read_golden(made.file)
+    made.table = table if own else ""
+    if golden is None:
+        return
+    if not own:
+        made.golden = "skipped"
+        return
+    made.difference = difference(golden, table, by)
+    made.golden = "differs" if made.difference else "same"
+    if made.difference:
+        made.status = "failed"
+    else:
+        made.table = ""
+
+
+def _unexpected(failures: Iterable[str], scenario: Scenario) -> list[str]:
+    """Errors that ended applications, but those that the scenario itself expects."""
+    expected = {
+        one.words["ends"]
+        for one in scenario.expectations
+        if "ends" in one.words and not one.never and one.reason
+    }
+    return [
+        f"The application {failure.rstrip(': ')}."
+        for failure in failures
+        if failure.partition(":")[0] not in expected
+    ]
+
+
+def run_all(
+    paths: list[str], choice: Choice, jobs: int = 1, begin: Callable[[], None] | None = None
+) -> Iterator[Result]:
+    """Test scenarios; the results come in order.
+
+    Args:
+        paths: the scenarios.
+        choice: how they are tested.
+        jobs: in how many processes.
+        begin: what each of these does first.
+
+    Raises:
+        UsageError: as :func:`run_one`.
+        RunError: a script did not come back, so that a process was ended.
+    """
+    if jobs == 1:
+        yield from (run_one(path, choice) for path in paths)
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(jobs, get_context("spawn"), begin) as pool:
+        try:
+            yield from pool.map(run_one, paths, [choice] * len(paths))
+        except BrokenProcessPool:
+            raise RunError("a document's script does not come back; the tests are ended.") from None
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def result_data(result: Result) -> dict[str, Any]:
+    """A result as plain data."""
+    return {
+        "scenario": result.path,
+        "name": result.name,
+        "status": result.status,
+        "expectations": result.expectations,
+        "golden": result.golden or None,
+        "seconds": round(result.seconds, 3),
+        "simulated": result.simulated,
+        "difference": result.difference or None,
+        "failures": [
+            {
+                "file": one.place.file,
+                "line": one.place.line,
+                "column": one.place.column,
+                "message": one.message,
+                "rows": one.rows.splitlines(),
+            }
+            for one in result.failures
+        ],
+    }
