@@ -220,6 +220,8 @@ def test_a_wheel_holds_schemas_and_documents_and_works_from_any_folder(tmp_path:
         f"assert path.is_relative_to({str(target)!r})\n"
         "assert prima.validate([path]) == []\n"
         "assert len(prima.rehearse(path).rows()) > 20\n"
+        "from prima.report import make\n"
+        "assert '<script>' in make([prima.rehearse(path)])\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)
 

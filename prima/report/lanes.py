@@ -1,0 +1,160 @@
+"""What a timeline shows of a run: its bars and flags, from the records alone, in linear time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from prima.messages import Record
+from prima.transcript.table import Row, describe
+
+MOST_APPS = 24
+"""Applications that have a lane of their own; the others have none."""
+MOST_DEVICES = 16
+"""Devices that have a lane of their own."""
+MOST_ON_FLOOR = 8
+"""Streams of the stack of the floor that are named."""
+
+
+@dataclass(slots=True)
+class Bar:
+    """Something that lasts, in seconds; ``end`` is less than 0 until it is known."""
+
+    begin: float
+    end: float = -1.0
+    name: str = ""
+    app: str = ""
+    text: str = ""
+    row: int = -1
+    """The table's row that tells of it, or -1."""
+    devices: tuple[str, ...] = ()
+    cuts: list[float] = field(default_factory=list)
+    """Where one loop ends and the next begins, or where a window opens or closes."""
+
+
+@dataclass(slots=True)
+class Lanes:
+    """All that a timeline shows of one run."""
+
+    seconds: float
+    apps: list[str]
+    devices: list[str]
+    behaviors: list[Bar]
+    away: list[Bar]
+    """When streams are suspended."""
+    held: list[Bar]
+    """When behaviours are held back."""
+    floor: list[Bar]
+    streams: list[Bar]
+
+
+def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
+    """The lanes of a run with its table's rows."""
+    seconds = float(max((record["time"] for record in records), default=0.0))
+    apps = list(dict.fromkeys(r["app"] for r in records if r["phase"] == "load"))
+    apps = list(dict.fromkeys([*apps, *(row.app for row in rows if row.app)]))
+    behaviors = _behaviors(records, rows)
+    devices = sorted({device for bar in behaviors for device in bar.devices})
+    lanes = Lanes(
+        seconds,
+        apps[:MOST_APPS],
+        devices[:MOST_DEVICES],
+        behaviors,
+        _between(records, "tree", {"suspend"}, {"resume", "stream-end"}),
+        _between(records, "behavior", {"hold"}, {"start", "cancel", "fail"}),
+        _floor(records),
+        _streams(records),
+    )
+    for bars in (lanes.behaviors, lanes.away, lanes.held, lanes.floor, lanes.streams):
+        for bar in bars:
+            bar.end = bar.end if bar.end >= 0 else seconds
+    return lanes
+
+
+def _base(behavior: str) -> str:
+    return behavior.partition(".")[0]
+
+
+def _behaviors(records: Iterable[Record], rows: Iterable[Row]) -> list[Bar]:
+    """Every AB that ran; loops that follow one another without a gap are one bar."""
+    row_of = {(row.behavior, row.time): row.number for row in rows if row.behavior}
+    last_row: dict[str, int] = {}
+    asked: dict[str, Record] = {}
+    made: list[Bar] = []
+    last: dict[str, Bar] = {}
+    for record in records:
+        phase, behavior, time = record["phase"], record.get("behavior") or "", record["time"]
+        name = _base(behavior)
+        bar = last.get(name)
+        if phase == "request":
+            asked[name] = record
+        elif phase == "start" and bar is not None and bar.end == time and not record.get("resumed"):
+            bar.cuts.append(time)
+            bar.end = -1.0
+        elif phase == "start":
+            request = asked.get(name, record)
+            row = row_of.get((behavior, time), last_row.get(name, -1))
+            last_row[name] = row
+            unit = record["command"] == "iu"
+            words = describe(record["command"], record.get("text"), request.get("args"))
+            devices = tuple(record.get("devices") or ())[:MOST_DEVICES]
+            bar = Bar(time, -1.0, name, record["app"], "unit" if unit else words, row, devices)
+            last[name] = bar
+            made.append(bar)
+        elif phase in ("end", "cancel", "fail", "interrupt") and bar is not None and bar.end < 0:
+            bar.end = time
+    return made
+
+
+def _between(records: Iterable[Record], key: str, begin: set[str], end: set[str]) -> list[Bar]:
+    """From the first record of some phases about a thing to the next of others about it."""
+    made: list[Bar] = []
+    under_way: dict[str, Bar] = {}
+    for record in records:
+        name = _base(record.get(key) or "")
+        if not name:
+            continue
+        if record["phase"] in begin and name not in under_way:
+            app = record.get("app") or name.partition(":")[0].partition("#")[0]
+            why = f"{record.get('by') or 'another'} ({record.get('rule') or 'no rule'})"
+            under_way[name] = Bar(record["time"], -1.0, name, app, why)
+            made.append(under_way[name])
+        elif record["phase"] in end and name in under_way:
+            under_way.pop(name).end = record["time"]
+    return [bar for bar in made if bar.end < 0 or bar.end > bar.begin]
+
+
+def _floor(records: Iterable[Record]) -> list[Bar]:
+    """Who holds the floor, from and until when; its text names the stack beneath."""
+    made: list[Bar] = []
+    for record in records:
+        if record["phase"] != "floor":
+            continue
+        if made and made[-1].end < 0:
+            made[-1].end = record["time"]
+        stack = (record.get("floor") or [])[-MOST_ON_FLOOR:]
+        if stack:
+            app = stack[-1].partition(":")[0]
+            made.append(Bar(record["time"], -1.0, stack[-1], app, " on ".join(reversed(stack))))
+    return [bar for bar in made if bar.end < 0 or bar.end > bar.begin]
+
+
+def _streams(records: Iterable[Record]) -> list[Bar]:
+    """Every Communication Stream, from its first request to its end, with its windows."""
+    made: list[Bar] = []
+    under_way: dict[str, Bar] = {}
+    for record in records:
+        tree = record.get("tree") or ""
+        if not tree:
+            continue
+        if record["phase"] == "request" and tree not in under_way:
+            app = record["app"]
+            under_way[tree] = Bar(record["time"], -1.0, tree, app, f"stream {tree}")
+            made.append(under_way[tree])
+        elif record["phase"] == "window" and tree in under_way:
+            cuts = under_way[tree].cuts
+            if not cuts or cuts[-1] != record["time"]:
+                cuts.append(record["time"])
+        elif record["phase"] == "stream-end" and tree in under_way:
+            under_way.pop(tree).end = record["time"]
+    return made

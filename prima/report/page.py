@@ -1,0 +1,351 @@
+"""The page as text: everything that a document or transcript says is escaped here."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from html import escape
+from importlib.resources import files
+from string import Template
+from typing import Any
+
+from prima.messages import Json
+from prima.report.lanes import Bar, Lanes
+from prima.report.view import View
+from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
+from prima.transcript.rules import RULES
+from prima.transcript.table import Row, printable
+
+WHO = {"R": "robot", "U": "user", "E": "surroundings"}
+LETTERS = "AB"
+PART = 50
+"""Rows of a table's part."""
+KINDS = {
+    "moved": "comes in another order",
+    "added": "is new",
+    "lost": "is gone",
+    "split": "an interrupted Command goes on here, as it did not before",
+    "joined": "is no longer split here",
+    "changed": "says something else",
+    "delayed": "comes at least half a second later or earlier",
+}
+
+
+def page(views: Sequence[View]) -> str:
+    """The page of one run, or of two with what differs."""
+    difference = compare(views[0].rows, views[1].rows) if len(views) == 2 else None
+    style, script = _part("report.css"), _part("report.js")
+    title = " and ".join(view.title for view in views)
+    body = {
+        "title": text(title),
+        "heading": text("Two runs compared" if difference else title),
+        "policy": (
+            "default-src 'none'; base-uri 'none'; form-action 'none';"
+            f" style-src '{_hash(style)}'; script-src '{_hash(script)}'"
+        ),
+        "style": style,
+        "script": script,
+        "kind": "two" if difference else "one",
+        "heads": "".join(_head(view, index, len(views)) for index, view in enumerate(views)),
+        "figures": "".join(_figure(index, len(views)) for index in range(len(views))),
+        "maps": "".join(_map(view, index, len(views)) for index, view in enumerate(views)),
+        "table": _differences(views, difference) if difference else _table(views[0]),
+        "data": json_text(_data(views, difference)),
+    }
+    return Template(_part("template.html")).substitute(body)
+
+
+def text(what: str) -> str:
+    """Text that cannot be taken for markup."""
+    return escape(printable(what))
+
+
+def json_text(data: Json | dict[str, Any]) -> str:
+    """JSON that can stand in a script element: nothing in it ends or opens one."""
+    made = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for letter in "<>&\u2028\u2029":
+        made = made.replace(letter, f"\\u{ord(letter):04x}")
+    return made
+
+
+def _part(name: str) -> str:
+    return (files("prima.report") / name).read_text(encoding="utf-8")
+
+
+def _hash(content: str) -> str:
+    """A source of the page's own, as a content security policy names it."""
+    return "sha256-" + base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
+
+
+# Heads ---------------------------------------------------------------------------------------
+
+
+def _named(index: int, runs: int) -> str:
+    return f"Run {LETTERS[index]}" if runs > 1 else "The run"
+
+
+def _head(view: View, index: int, runs: int) -> str:
+    facts = "".join(f"<div><dt>{text(a)}</dt><dd>{text(b)}</dd></div>" for a, b in view.facts)
+    measures = "".join(
+        f'<div title="{text(meaning)}"><dt>{text(name)}</dt><dd>{text(value)}</dd></div>'
+        for name, value, meaning in view.measures
+    )
+    meanings = "".join(f"<li>{text(a)}: {text(c)}</li>" for a, _, c in view.measures)
+    listed = "".join(
+        f"<li>{text(name)} <code>{text(digest[:12])}</code></li>" for name, digest in view.files
+    )
+    held = f"<p>Files, with the beginning of their digests:</p><ul>{listed}</ul>" if listed else ""
+    cut = f'<p class="cut">The transcript is not whole: {text(view.cut)}</p>' if view.cut else ""
+    name = _named(index, runs)
+    title = f'{text(name)}: <span class="run-title">{text(view.title)}</span>' if runs > 1 else name
+    return (
+        f'<section class="run-head" aria-labelledby="head-{index}">'
+        f'<h2 id="head-{index}">{title}</h2>{cut}'
+        f'<dl class="facts">{facts}</dl><dl class="measures">{measures}</dl>'
+        f"<details><summary>About {text(name.lower() if runs == 1 else name)}</summary>"
+        f"<p>Made from {text(view.name)}. What is counted:</p><ul>{meanings}</ul>{held}</details>"
+        "</section>\n"
+    )
+
+
+def _figure(index: int, runs: int) -> str:
+    label = f"Timeline of run {LETTERS[index]}" if runs > 1 else "Timeline"
+    heading = f"<h3>{_named(index, runs)}</h3>" if runs > 1 else ""
+    return (
+        f'{heading}<div class="timeline" id="timeline-{index}" tabindex="0" role="group"'
+        f' aria-label="{label}" aria-describedby="keys"></div>\n'
+    )
+
+
+def _map(view: View, index: int, runs: int) -> str:
+    if view.walk.source == "run":
+        told = "Places as the simulation had them when the run was made again."
+    elif view.walk.plan is not None:
+        told = (
+            "The run could not be made again alike, so only the places that the robot"
+            " reported are shown; between them its way is a straight line."
+        )
+    elif view.walk.robot:
+        told = (
+            "Only the places that the robot reported: a transcript holds neither the map nor"
+            " the user's way. With --scenario the report shows both."
+        )
+    else:
+        told = (
+            "The robot reported no places in this run."
+            " With --scenario the report shows the map and the user."
+        )
+    drawn = bool(view.walk.robot or view.walk.plan)
+    frame = f'<div class="map" id="map-{index}"></div>' if drawn else ""
+    label = f"<h3>{_named(index, runs)}</h3>" if runs > 1 else ""
+    return (
+        f'<div class="place">{label}{frame}<p class="told">{told}</p>'
+        f'<h3 class="now-head">At <span class="clock"></span></h3>'
+        f'<ul class="now" id="now-{index}"></ul></div>\n'
+    )
+
+
+# Tables --------------------------------------------------------------------------------------
+
+
+def _what(view: View, row: Row) -> str:
+    """What a row does, with the language of what it says."""
+    said = view.spoken.get(row.number)
+    if said is None:
+        return text(row.what)
+    words, lang = said
+    before, found, after = row.what.partition(words)
+    if not found:
+        return text(row.what)
+    return f'{text(before)}<bdi lang="{text(lang)}">{text(words)}</bdi>{text(after)}'
+
+
+def _marks(row: Row) -> str:
+    """What stands before the number in the printed table, in words."""
+    made = []
+    if row.star:
+        made.append('<abbr title="works in loops until it is interrupted">loops</abbr>')
+    if row.bracket:
+        made.append('<abbr title="part of an Information Unit">unit</abbr>')
+    if row.event:
+        made.append('<abbr title="an event, and no behaviour">event</abbr>')
+    return f' <span class="marks">{" ".join(made)}</span>' if made else ""
+
+
+def _who(view: View, row: Row) -> str:
+    """The two cells of who does it: whose doing, and the application."""
+    who = WHO.get(row.actor, "")
+    if not row.app:  # a narrow page has only the second
+        return f'<td role="cell">{who}</td><td role="cell"><span class="narrow">{who}</span></td>'
+    apps = view.lanes.apps
+    number = apps.index(row.app) % 6 if row.app in apps else 5
+    return f'<td role="cell">{who}</td><td role="cell" class="app app{number}">{text(row.app)}</td>'
+
+
+def _row(number: int, kind: str, label: str, cells: str) -> str:
+    """A row that can be opened. The roles stay where a style makes it no table's row."""
+    return (
+        f'<tr role="row" id="row-{number}" class="row {kind}"><th role="rowheader" scope="row">'
+        '<button type="button" class="open" tabindex="-1" aria-expanded="false">'
+        f"{label}</button></th>{cells}</tr>"
+    )
+
+
+def _whole_table(kind: str, caption: str, heads: Sequence[tuple[str, str]], rows: list[str]) -> str:
+    """A table whose rows stand in parts: a browser need not lay out those out of sight."""
+    parts = "\n".join(
+        f'<tbody role="rowgroup">{"".join(rows[place : place + PART])}</tbody>'
+        for place in range(0, len(rows), PART)
+    )
+    head = "".join(
+        f'<th role="columnheader" scope="col" class="{name}">{title}</th>' for title, name in heads
+    )
+    return (
+        f'<table role="table" class="rows{kind}"><caption>{text(caption)}</caption>'
+        f'<thead role="rowgroup"><tr role="row">{head}</tr></thead>\n{parts}</table>'
+    )
+
+
+def _table(view: View) -> str:
+    """The transcript's table, whole: it can be read, searched and printed without any script."""
+    lines = [
+        _row(
+            row.number,
+            f"who-{row.actor}",
+            str(row.number),
+            f'<td role="cell" class="time">{row.time:.2f}</td>{_who(view, row)}'
+            f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}</td>'
+            f'<td role="cell">{text(row.rule)}</td>',
+        )
+        for row in view.rows
+    ]
+    caption = f"What was done, by whom, and by which rule. {len(view.rows)} rows."
+    heads = [
+        ("Row", "first"),
+        ("Seconds", "time"),
+        ("Who", "who"),
+        ("Application", "by"),
+        ("Behaviour", "what"),
+        ("Rule", "rule"),
+    ]
+    return _whole_table("", caption, heads, lines)
+
+
+def _differences(views: Sequence[View], difference: Difference) -> str:
+    """Both transcripts side by side, in the order of the second."""
+    lines = [_change(views, index, change) for index, change in enumerate(difference.changes)]
+    counts = difference.counts
+    listed = "".join(
+        f"<li>{_badge(kind)} {counts[kind]}: {meaning}</li>"
+        for kind, meaning in KINDS.items()
+        if counts[kind]
+    )
+    found = f'<ul class="counts">{listed}</ul>' if listed else "<p>The two runs are alike.</p>"
+    choice = (
+        '<p class="choice"><label><input type="checkbox" id="only"> Show only what differs'
+        "</label></p>"
+    )
+    caption = f"What both runs did, from run A to run B: {summary_line(difference)}."
+    heads = [
+        ("Change", "first"),
+        ("Seconds in A", "time"),
+        ("Seconds in B", "time"),
+        ("Who", "who"),
+        ("Application", "by"),
+        ("Behaviour", "what"),
+    ]
+    return f"{found}{choice}{_whole_table(' diff', caption, heads, lines)}"
+
+
+def _badge(kind: str) -> str:
+    mark = MARKS[kind]  # type: ignore[index]
+    return f'<span class="kind {kind}"><span aria-hidden="true">{text(mark)}</span> {kind}</span>'
+
+
+def _change(views: Sequence[View], index: int, change: Change) -> str:
+    row, view = change.after or change.before, views[1 if change.after else 0]
+    assert row is not None
+    told = remark(change)
+    said = f' <span class="remark">({text(told)})</span>' if told else ""
+    label = _badge(change.kind) if change.kind != "same" else '<span class="kind">same</span>'
+    return _row(
+        index,
+        f"kind-{change.kind}",
+        f'{label}<span class="hidden">, row {index}</span>',
+        f"{_time(change.before)}{_time(change.after)}{_who(view, row)}"
+        f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}{said}</td>',
+    )
+
+
+def _time(row: Row | None) -> str:
+    if row is None:
+        return '<td role="cell" class="time"><span aria-hidden="true">–</span></td>'
+    number = f'<span class="number">#{row.number}</span>'
+    return f'<td role="cell" class="time">{row.time:.2f} {number}</td>'
+
+
+# Data ----------------------------------------------------------------------------------------
+
+
+def _data(views: Sequence[View], difference: Difference | None) -> dict[str, Any]:
+    used = {row.rule for view in views for row in view.rows}
+    used |= {told[2] for view in views for why in view.whys for told in why.get("told", [])}
+    data: dict[str, Any] = {
+        "runs": [_run(view) for view in views],
+        "rules": {rule: RULES[rule] for rule in sorted(used) if rule in RULES},
+    }
+    if difference is not None:
+        data["changes"] = [
+            [
+                change.kind,
+                change.before.number if change.before else -1,
+                change.after.number if change.after else -1,
+            ]
+            for change in difference.changes
+        ]
+        data["marks"] = MARKS
+    return data
+
+
+def _run(view: View) -> dict[str, Any]:
+    lanes = view.lanes
+    return {
+        "title": printable(view.title),
+        "seconds": lanes.seconds,
+        "apps": [printable(app)[:200] for app in lanes.apps],
+        "devices": [printable(device)[:200] for device in lanes.devices],
+        "rows": [_row_data(view, row) for row in view.rows],
+        "whys": view.whys,
+        "names": view.names,
+        "bars": [_bar(bar, lanes) for bar in lanes.behaviors],
+        "away": [_bar(bar, lanes) for bar in lanes.away],
+        "held": [_bar(bar, lanes) for bar in lanes.held],
+        "floor": [_bar(bar, lanes) for bar in lanes.floor],
+        "streams": [_bar(bar, lanes) for bar in lanes.streams],
+        "walk": asdict(view.walk),
+    }
+
+
+def _row_data(view: View, row: Row) -> list[Any]:
+    """Time, who, application, what, whether an event; of what is said its language and place."""
+    made = [row.time, row.actor, printable(row.app)[:200], row.what, int(row.event)]
+    words, lang = view.spoken.get(row.number, ("", ""))
+    place = row.what.find(words) if words else -1
+    return [*made, lang, _units(row.what[:place]), _units(words)] if place >= 0 else made
+
+
+def _units(words: str) -> int:
+    """How long a text is for JavaScript, which counts in UTF-16."""
+    return len(words.encode("utf-16-le")) // 2
+
+
+def _bar(bar: Bar, lanes: Lanes) -> list[Any]:
+    """Begin, end, name, application, text, row, devices, cuts."""
+    app = lanes.apps.index(bar.app) if bar.app in lanes.apps else -1
+    devices = [lanes.devices.index(one) for one in bar.devices if one in lanes.devices]
+    words = printable(bar.text)
+    words = words if len(words) <= 300 else words[:300] + "…"
+    return [bar.begin, bar.end, printable(bar.name)[:200], app, words, bar.row, devices, bar.cuts]

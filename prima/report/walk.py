@@ -1,0 +1,188 @@
+"""Where the robot and the user were, and the map they were on.
+
+A transcript holds only what the robot reported: its pose at each end of a motion. With the
+scenario at hand the run is made again, and the simulation tells the rest; but only where the
+same records come out of it, since else it was another run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from prima.errors import UsageError
+from prima.messages import Json, Record
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
+    from prima.loading import Loaded
+    from prima.sim.scenario import Map
+    from prima.sim.world import World
+
+MOST_POSES = 60_000
+"""Poses that a page holds of each of robot and user."""
+MOVED = 0.03
+"""Metres from which a change of place is kept."""
+TURNED = 4.0
+"""Degrees from which a change of heading is kept."""
+FARTHEST = 1e6
+"""Metres from the origin beyond which a reported place is not believed."""
+
+Pose = tuple[float, float, float, float]
+"""Time (s), x and y (m), heading (degrees)."""
+
+
+@dataclass(slots=True)
+class Walk:
+    """The ways of robot and user, and the map as plain data if it is known."""
+
+    robot: list[Pose] = field(default_factory=list)
+    person: list[Pose] = field(default_factory=list)
+    plan: dict[str, Json] | None = None
+    source: str = "reports"
+    """``run`` where the simulation tells, ``reports`` where only the transcript does."""
+    camera: tuple[float, float] | None = None
+    """The camera's angle (degrees) and range (m)."""
+    radius: float = 0.2
+
+
+def reported(records: Iterable[Record]) -> list[Pose]:
+    """The poses that a transcript's motions end with."""
+    poses: list[Pose] = []
+    for record in records:
+        data = record.get("data") if record["phase"] in ("end", "halted") else None
+        if not isinstance(data, dict):
+            continue
+        x, y, heading = (_number(data.get(name)) for name in ("x", "y", "heading"))
+        if x is None or y is None or heading is None or len(poses) >= MOST_POSES:
+            continue
+        poses.append((float(record["time"]), x, y, heading))
+    return poses
+
+
+def _number(value: object) -> float | None:
+    """A number that may be a place, or None."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return float(value) if abs(value) < FARTHEST else None
+
+
+def walk_of(transcript: Transcript, loaded: Loaded | None) -> Walk:
+    """The ways of a transcript's run; with its scenario, also the map and the user.
+
+    Raises:
+        UsageError: the scenario's files are not those that the transcript was made with.
+    """
+    if loaded is None:
+        return Walk(reported(transcript.records))
+    check_files(transcript, loaded)
+    profile = loaded.cast.robot
+    walk = _again(transcript, loaded) or Walk(reported(transcript.records))
+    walk.plan = plan_of(loaded.cast.world)
+    walk.camera = (profile.camera_angle, profile.camera_range)
+    walk.radius = profile.radius
+    return walk
+
+
+def check_files(transcript: Transcript, loaded: Loaded) -> None:
+    """See that a scenario's files are those of a transcript's head.
+
+    Raises:
+        UsageError: they are not.
+    """
+    head = transcript.records[0]
+    told = head["data"].get("files") if head["phase"] == "run" else None
+    if not isinstance(told, dict) or not told:
+        message = "the transcript does not tell which files it was made with; leave out --scenario."
+        raise UsageError(f"{transcript.name}: {message}")
+    for name, digest in loaded.files.items():
+        if digest != told.get(name) and digest not in told.values():
+            known = name in told
+            message = "has changed since" if known else "is no file of"
+            remedy = "Run it again, or leave out --scenario."
+            raise UsageError(f"{name} {message} {transcript.name} was made. {remedy}" if known
+                             else f"{name} {message} the run of {transcript.name}. {remedy}")  # fmt: skip
+
+
+def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
+    """Make the run again and watch it; None where something else comes out."""
+    from prima.scheduler.selection import policy_named
+    from prima.sim.rehearsal import Rehearsal
+    from prima.transcript.lines import finished
+
+    head = transcript.records[0]["data"]
+    policy, bound = head.get("policy"), head.get("bound")
+    try:
+        rehearsal = Rehearsal(loaded.cast, policy_named(str(policy)), bound)
+    except (UsageError, TypeError):
+        return None
+    watch = Watch(rehearsal.world)
+    expected: Sequence[Record] = transcript.records
+    place = 1
+    for records in rehearsal.run():
+        for record in records:
+            if place < len(expected) and finished(record) != expected[place]:
+                return None
+            place += 1
+        watch.look()
+        if place >= len(expected):
+            break  # a transcript that was cut off ends here
+    if place < len(expected):
+        return None
+    return Walk(watch.robot, watch.person, source="run")
+
+
+class Watch:
+    """Keeps where robot and user are, whenever that has changed."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self.robot: list[Pose] = []
+        self.person: list[Pose] = []
+        self._before: dict[str, Pose] = {}
+        """The last poses seen, kept or not: where a rest ends."""
+
+    def look(self) -> None:
+        """Take in where they are now."""
+        world = self._world
+        time = world.time / 1000
+        x, y = world.position
+        turned = world.heading + world.pan
+        self._keep(self.robot, "robot", (time, round(x, 3), round(y, 3), round(turned, 1)))
+        if world.person is not None:
+            x, y = world.person
+            self._keep(self.person, "person", (time, round(x, 3), round(y, 3), 0.0))
+
+    def _keep(self, poses: list[Pose], who: str, pose: Pose) -> None:
+        before = self._before.get(who)
+        self._before[who] = pose
+        if len(poses) >= MOST_POSES:
+            return
+        if not poses or before is None:
+            poses.append(pose)
+            return
+        last = poses[-1]
+        if not _differs(last, pose):
+            return
+        if before[0] > last[0]:
+            poses.append(before)
+        poses.append(pose)
+
+
+def _differs(a: Pose, b: Pose) -> bool:
+    way = max(abs(a[1] - b[1]), abs(a[2] - b[2]))
+    turn = abs((a[3] - b[3] + 180.0) % 360.0 - 180.0)
+    return way > MOVED or turn > TURNED
+
+
+def plan_of(world: Map) -> dict[str, Json]:
+    """A world as plain data, in metres."""
+    return {
+        "walls": [[*a, *b] for a, b in world.walls],
+        "ways": [[*world.places[a], *world.places[b]] for a, b in world.ways],
+        "places": [[name, *at] for name, at in world.places.items()],
+        "things": [[name, *at] for name, at in world.things.items()],
+        "corners": [[corner.id, *corner.at, corner.radius] for corner in world.corners],
+        "areas": [[area.title, *area.low, *area.high] for area in world.areas],
+    }
