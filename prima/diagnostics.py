@@ -58,7 +58,7 @@ def excerpt(line: str, column: int) -> tuple[str, str]:
 
 def _plain(text: str) -> str:
     """Text without control characters, which a terminal would obey."""
-    return "".join(one if one.isprintable() or one in "\t\n" else "\ufffd" for one in text)
+    return "".join(one if one.isprintable() or one in "\t\n\u3000" else "\ufffd" for one in text)
 
 
 def _width(letter: str) -> int:

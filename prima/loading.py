@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from html import escape
+from itertools import islice
 from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -384,7 +385,8 @@ class _Reading:
             return made_of(str(target), content)
         except UsageError as error:
             message = str(error).removeprefix(f"{target}: ")
-            self.problems.append(Problem(place, "error", "no-such-file", f'"{name}" {message}'))
+            told = f'"{name}" {message}'
+            self.problems.append(Problem(place, "error", "no-such-file", told, _nearby(target)))
         except DocumentError as error:
             self.problems += error.problems
         return None
@@ -457,6 +459,17 @@ class _Reading:
             self.problems.append(Problem(place, "error", "no-such-name", *problem))
 
 
+def _nearby(path: Path) -> str:
+    """The file beside that a name which leads nowhere most likely means."""
+    try:
+        beside = [one.name for one in islice(path.parent.iterdir(), MOST_BESIDE)]
+    except (OSError, ValueError):
+        return ""
+    return did_you_mean(path.name, [one for one in beside if one != path.name])
+
+
+MOST_BESIDE = 300
+"""How many files of a folder are looked at for one that was meant."""
 FAVOURITE = "fixed:APP prefers the application APP."
 """What to write for a policy that prefers one application."""
 

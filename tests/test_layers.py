@@ -26,7 +26,7 @@ LAYERS = [
     {"prices"},
     {"export", "loading", "web"},
     {"api"},
-    {"certificate", "examples", "lsp", "new", "report", "study", "testing"},
+    {"certificate", "examples", "graph", "lsp", "new", "report", "study", "talk", "testing"},
     {"cli", "__init__", "pytest_plugin", "reference", "pictures"},
     {"__main__"},
 ]
@@ -79,10 +79,16 @@ INSIDE = {
         {"server"},
         {"__init__"},
     ],
+    "graph": [
+        {"layout", "model"},
+        {"run", "svg", "words"},
+        {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
+        {"__init__"},
+    ],
     "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],
     "testing": [
-        {"watching", "finding", "golden"},
-        {"checking", "coverage"},
+        {"watching", "golden"},
+        {"checking", "coverage", "finding"},
         {"running"},
         {"telling"},
         {"junit"},

@@ -1767,7 +1767,7 @@ def test_what_is_wrong_has_a_code(body: str, code: str) -> None:  # 1.5 and each
         ('<vxml xmlns="http://www.w3.org/2001/vxml"/>', ["1:1 missing-attribute"]),
         ('<vxml version="1.0" xmlns="http://www.w3.org/2001/vxml"/>', ["1:16 bad-value"]),
         ('<vxml version="2.0"><form/></vxml>', ["1:1 no-namespace"]),
-        ('<vxml version="2.0" xmlns="http://www.w3.org/2001/VXML"/>', ["1:1 wrong-namespace"]),
+        ('<vxml version="2.0" xmlns="http://www.w3.org/2001/VXML"/>', ["1:28 wrong-namespace"]),
         ('<vml version="2.0" xmlns="http://www.w3.org/2001/vxml"/>', ["1:1 wrong-root"]),
         ('<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">\n <form>\n  <blok/></form></vxml>',
          ["3:3 unknown-element"]),

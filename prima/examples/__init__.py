@@ -47,7 +47,11 @@ def examples(code: str) -> tuple[Example, Example]:
 
 def _example(code: str, which: str) -> Example:
     path = next((FOLDER / code).glob(f"{which}.*"))
-    problems = [_named(problem) for problem in _problems(code, path)]
+    problems = [
+        _named(problem)
+        for problem in _problems(code, path)
+        if problem.severity != "note" or problem.code == code
+    ]
     return Example(path.name, path.read_text(encoding="utf-8"), problems)
 
 

@@ -122,9 +122,14 @@ class Builder:
         ]
         if all(has):
             self.exclusive(node, *has)
-        elif not any(has):
+        elif not any(has) and not self.strange(node):
             message = f"<{node.tag}> needs either {first} or {second}."
             self.problem(node, "missing-attribute", message)
+
+    @staticmethod
+    def strange(node: Node) -> bool:
+        """Whether an element has an attribute that is not known: told, and likely what is missing."""
+        return not node.attributes.keys() <= DIALOGUE.attributes[node.key].keys()
 
     def exclusive(self, node: Node, first: str, second: str) -> None:
         """Note that two attributes exclude each other."""
@@ -364,11 +369,15 @@ class Builder:
                 self.problem(child, "empty-answer", "This option has nothing to say.")
             elif fold(said) in answers.options:
                 self.problem(
-                    child, "duplicate-answer", f'"{said}" is an option of this field already.'
+                    child,
+                    "duplicate-answer",
+                    f'"{said}" is an option of this field already.',
+                    "Remove one of them.",
                 )
             answers.options.setdefault(fold(said), child.get("value", said))
         answers.grammars = [read_grammar(self.problem, child) for child in node.all("grammar")]
-        if not (answers.options or answers.grammars or answers.type):
+        strange = any(not child.key for child in node.nodes)  # told already
+        if not (answers.options or answers.grammars or answers.type or strange):
             self.problem(
                 node,
                 "no-answer",
@@ -561,7 +570,7 @@ class Builder:
         """Whether a Command has what it needs, beyond what its schema asks."""
         required = {name for name, item in row.arguments.items() if item.required}
         missing = missing_argument(row, args) if required <= args.keys() else ""
-        if missing:
+        if missing and not self.strange(node):
             self.problem(node, "missing-attribute", missing)
         if excluding := excluding_arguments(row, args):
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache, lru_cache
@@ -33,6 +34,7 @@ from prima.interpreter.elements import (
     Script,
     StepTemplate,
     Subdialog,
+    Text,
     Throw,
     Unit,
     all_acts,
@@ -40,7 +42,7 @@ from prima.interpreter.elements import (
     run_commands,
     unit_commands,
 )
-from prima.interpreter.events import Events, silent_fields
+from prima.interpreter.events import Events, handlers_of, silent_fields, takes
 from prima.interpreter.expressions import (
     ScriptError,
     check_expression,
@@ -48,6 +50,7 @@ from prima.interpreter.expressions import (
     plain_context,
 )
 from prima.interpreter.names import declared_names, free_names
+from prima.markup.slips import half
 from prima.markup.tree import Node
 from prima.values import read_value
 
@@ -60,6 +63,13 @@ SYLLABLES = ("ja", "zh", "ko")
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
+STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+ASSIGNMENT = re.compile(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
+BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+"""What expressions and texts are looked through for."""
+
+LEAVES, LISTS = (str, int, frozenset), (list, tuple)
+"""Values in which no expression stands, and those that hold others."""
 VARIABLES = frozenset({"event", "_event", "_message", "session", "sensor"})
 """What the language itself declares."""
 ABSENT = {
@@ -84,6 +94,7 @@ def check_commands(
 ) -> list[Problem]:
     """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
     problems = _outside_units(document, commands)
+    heard = {name for handler in handlers_of(document) for name in handler.events}
     for command in document_commands(document):
         row = commands.get(command.type)
         if row is None or row.substitute:
@@ -98,7 +109,10 @@ def check_commands(
             )
             if row is not None:
                 message += f" With the extension x6 {row.substitute} takes its place."
-            hint = "" if known else did_you_mean(command.type, commands)
+            event = f"error.unsupported.{command.type}"
+            handled = any(takes(name, event) for name in heard)
+            handle = "" if handled else f'Handle it: <on event="{event}">.'
+            hint = handle if known else did_you_mean(command.type, commands)
             severity: Severity = "warning" if known else "error"
             problems.append(
                 Problem(command.node.place, severity, "unsupported-command", message, hint)
@@ -245,9 +259,10 @@ class Checker:
             names = {item.name for item in items}
             if act.item not in names:
                 message = f'There is no form item "{act.item}" to go to.'
-                self.note(
-                    act.node, "no-such-item", message, did_you_mean(act.item, names), "nextitem"
-                )
+                remedy = did_you_mean(act.item, names)
+                if act.item in self.document.forms:
+                    remedy = f'It is a form: write next="#{act.item}".'
+                self.note(act.node, "no-such-item", message, remedy, "nextitem")
 
     def _leads(self, form: Form | None) -> Leads:
         """Where content of a form (or the document's) leads to."""
@@ -455,9 +470,10 @@ class Checker:
             self._expression(value, known)
         elif isinstance(value, Script):
             self._script(value, known)
-        elif isinstance(value, list | tuple):
+        elif isinstance(value, LISTS):
             for part in value:
-                self._walk(part, known, every)
+                if not isinstance(part, LEAVES):
+                    self._walk(part, known, every)
         elif isinstance(value, dict):
             self._walk(list(value.values()), known, every)
         else:
@@ -465,7 +481,9 @@ class Checker:
             if names:
                 self._variables(value, known)
             for name in names:
-                self._walk(getattr(value, name), known, every)
+                part = getattr(value, name)
+                if part and not isinstance(part, LEAVES):
+                    self._walk(part, known, every)
 
     def _variables(self, value: object, known: set[str]) -> None:
         if isinstance(value, Assign):
@@ -482,10 +500,12 @@ class Checker:
                 if name not in known:
                     self._undeclared(value.node.attribute_place("namelist"), name, known)
 
-    def _undeclared(self, place: Place, name: str, known: set[str]) -> None:
+    def _undeclared(self, place: Place, name: str, known: set[str], bare: bool = False) -> None:
         shown = {word for word in known | VARIABLES if not word.startswith("$")}
         remedy = ABSENT.get(name) or did_you_mean(name, shown)
         remedy = remedy or f'Declare it: <var name="{name}"/>.'
+        if bare and name not in ABSENT:
+            remedy = f"{remedy} For the text itself write '{name}'."
         message = f'The variable "{name}" is not declared.'
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
@@ -493,7 +513,20 @@ class Checker:
         if self._compiles(expr, check_expression):
             for name, start in free_names(expr.code).items():
                 if name not in known:
-                    self._undeclared(_place_in(expr, start), name, known)
+                    bare = expr.code.strip() == name and expr.node.tag != "value"
+                    self._undeclared(_place_in(expr, start), name, known, bare)
+            self._assigns(expr)
+
+    def _assigns(self, expr: Expression) -> None:
+        """A condition that gives a variable a value, where a comparison was meant."""
+        if expr.attribute not in ("cond", "when"):
+            return
+        found = ASSIGNMENT.search(STRINGS.sub(lambda text: "_" * len(text[0]), expr.code))
+        if found:
+            message = "This condition gives a variable a value; it does not compare."
+            place = _place_in(expr, found.start(1))
+            problem = Problem(place, "warning", "assigning-condition", message, "Write ==.")
+            self.problems.append(problem)
 
     def _script(self, act: Script, known: set[str]) -> None:
         if self._compiles(act.code, check_script):
@@ -502,9 +535,12 @@ class Checker:
                     message = f'The script uses "{name}", which nothing declares.'
                     place = _place_in(act.code, start)
                     code = "undeclared-variable"
-                    self.problems.append(Problem(place, "warning", code, message))
+                    remedy = ABSENT.get(name, "") or did_you_mean(name, known | VARIABLES)
+                    self.problems.append(Problem(place, "warning", code, message, remedy))
 
     def _compiles(self, expr: Expression, check: Callable[[Any, str], None]) -> bool:
+        if expr.attribute and expr.attribute not in expr.node.attributes:
+            return False  # it is missing, which has been told
         try:
             check(_context(), expr.code)
         except ScriptError as error:
@@ -512,9 +548,26 @@ class Checker:
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
             message = f'"{shown}" is not ECMAScript: {error}.'
             place = expr.node.code_place(expr.attribute, error.line, error.column)
-            self.problems.append(Problem(place, "error", "bad-expression", message))
+            remedy = self._expression_remedy(expr.code)
+            self.problems.append(Problem(place, "error", "bad-expression", message, remedy))
             return False
         return True
+
+    @staticmethod
+    def _expression_remedy(code: str) -> str:
+        """What to write for an expression that is none, where that is a common slip."""
+        bare = STRINGS.sub("", code)
+        wide = [
+            one for one in bare if one != half(one) and half(one).isascii() and half(one).strip()
+        ]
+        if wide:
+            return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
+        if re.search(r"=\s+=", bare):
+            return "Write == without a space."
+        for word, right in (("and", "&amp;&amp;"), ("or", "||"), ("not", "!")):
+            if re.search(rf"\b{word}\b", bare):
+                return f"Write {right} for {word}."
+        return ""
 
     # Commands -----------------------------------------------------------------
 
@@ -522,6 +575,7 @@ class Checker:
         for form, content, _ in self.document.contents():
             for act in all_acts(content):
                 if isinstance(act, Run):
+                    self._braces(act.steps, form)
                     self._branches(act.steps)
                     self._endless(act.steps, form)
                     self._long_units(act.steps)
@@ -529,6 +583,22 @@ class Checker:
             for item in all_items(form.items):
                 if isinstance(item, Unit):
                     self._long_unit(item.node, self._unit_text(item))
+                for prompt in item.prompts if isinstance(item, Field) else ():
+                    self._literal(prompt.node, prompt.text, form)
+
+    def _braces(self, steps: list[StepTemplate], form: Form | None) -> None:
+        """Text with a variable in braces, as other languages write a value."""
+        for command in run_commands(steps):
+            self._literal(command.node, command.text, form)
+
+    def _literal(self, node: Node, text: Text | None, form: Form | None) -> None:
+        known = self.known_in(form) if form else self.shared
+        for part in text or ():
+            found = BRACES.search(part) if isinstance(part, str) else None
+            if found and found[1] in known:
+                message = f'"{found[0]}" is said as it stands.'
+                remedy = f'Write <value expr="{found[1]}"/>.'
+                self.note(node, "literal-value", message, remedy, severity="warning")
 
     def _branches(self, steps: list[StepTemplate]) -> None:
         """U3: branches of a par that share a device run one after the other."""
@@ -546,7 +616,8 @@ class Checker:
                         f"This branch shares {', '.join(sorted(both))} with another:"
                         " they run one after the other."
                     )
-                    self.note(node, "shared-device", message, severity="warning")
+                    remedy = "Write them one after the other, in a <seq>."
+                    self.note(node, "shared-device", message, remedy, severity="warning")
                     return
 
     @staticmethod
@@ -685,7 +756,8 @@ class Checker:
             if isinstance(act, Goto | Return | Exit) and index + 1 < len(content):
                 node = content[index + 1].node
                 message = f"<{node.tag}> stands behind <{act.node.tag}> and is never reached."
-                self.note(node, "dead-content", message, severity="warning")
+                remedy = f"Put it before <{act.node.tag}>, or remove it."
+                self.note(node, "dead-content", message, remedy, severity="warning")
                 return
             for branch in getattr(act, "branches", ()):
                 self._dead(branch[1])

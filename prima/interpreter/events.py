@@ -52,6 +52,8 @@ DEFAULTS = ("noinput", "nomatch", "help")
 """Thrown events that end nothing where no handler takes them."""
 NEAR = 0.8
 """How alike names are of which one is taken for a slip of the other."""
+FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
+"""How the names of standard events begin."""
 OWN = ("end", "cancel", "interrupted")
 """What begins an event of the application's own Commands."""
 
@@ -162,7 +164,7 @@ class Events:
     def _unraised(self, name: str) -> tuple[str, str] | None:
         """What is wrong with the name of a handler, and the name that was probably meant."""
         first, _, rest = name.partition(".")
-        if any(takes(name, one) for one in (*STANDARD, *self._own)):
+        if "," in name or any(takes(name, one) for one in (*STANDARD, *self._own)):
             return None
         if first in OWN:
             if any(takes(rest, one) for one in self.commands):
@@ -180,6 +182,8 @@ class Events:
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
         nearest = HABITS.get(name, "") or near(name, {*STANDARD, *self._own})
+        if not nearest and rest and first not in FIRST and near(first, FIRST):
+            nearest = f"{near(first, FIRST)}.{rest}"
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
     def _unheard(self, one: Raised, meant: set[str]) -> Problem | None:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from prima.errors import Problem
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.reader import read_tree
+from prima.markup.tree import Node
+
+WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
+"""Codes of what a whole document lacks, which may stand in an element that is not understood."""
 
 
 def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
@@ -22,5 +28,28 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     builder = Builder(root)
     document = builder.document()
     problems += builder.problems
-    problems += check_document(document)
+    strange = list(_strange(root))
+    found = check_document(document)
+    problems += [one for one in found if not (strange and _follows(one, strange))]
     return document, sorted(set(problems))
+
+
+def _strange(root: Node) -> Iterator[Node]:
+    """The elements that are not understood, with all that they hold."""
+    stack = [(root, False)]
+    while stack:
+        node, strange = stack.pop()
+        strange = strange or not node.key
+        if strange:
+            yield node
+        stack += [(child, strange) for child in node.nodes]
+
+
+def _follows(problem: Problem, strange: list[Node]) -> bool:
+    """Whether a problem most likely follows from elements that are not understood."""
+    if problem.code == "unreachable":
+        named = {
+            text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"
+        }
+        return any(f'"{name}"' in problem.message for name in named)
+    return problem.code in WHOLE

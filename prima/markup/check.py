@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
-from prima.errors import DocumentError, Problem, did_you_mean, one_of
+from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of
+from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.values import read_value
@@ -37,12 +39,13 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
             if root.tag == tag:
                 return vocabulary
             message = f"The root element is <{root.tag}>; it must be <{tag}>."
-            raise DocumentError([Problem(root.place, "error", "wrong-root", message)])
+            remedy = f"Begin with <{tag}>."
+            raise DocumentError([Problem(root.place, "error", "wrong-root", message, remedy)])
     own = DOCUMENTS.get(root.namespace)
     if own:
         wanted = one_of(DOCUMENTS.get(name, "a VoiceXML document") for _, name in expected)
         message = f"This is {own}; {wanted} is needed here."
-        remedy = REMEDIES.get((own, wanted), "")
+        remedy = REMEDIES.get((own, wanted), f"Name the file of {wanted}.")
         raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
     tag = "prima" if root.tag == "vxml" else root.tag
@@ -51,7 +54,8 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     message = f"The root element <{root.tag}> has {found}."
     near = did_you_mean(root.namespace, [namespace for _, namespace in expected])
     remedy = near or f"Begin with {wanted}."
-    raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
+    place = root.source.place(root.index, "xmlns", value=True)
+    raise DocumentError([Problem(place, "error", "wrong-namespace", message, remedy)])
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
@@ -62,7 +66,7 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
         node = stack.pop()
         element = vocabulary.elements[node.key]
         _check_attributes(node, element, vocabulary.attributes[node.key], node is root, problems)
-        _check_text(node, element, problems)
+        _check_text(node, element, vocabulary, problems)
         for child in node.nodes:
             key = vocabulary.child(node.key, child.tag)
             if key is None or child.namespace != vocabulary.namespace:
@@ -82,18 +86,36 @@ def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
         remedy = remedy or did_you_mean(tag, vocabulary.tags)
         return Problem(child.place, "error", "unknown-element", f"There is no <{tag}>.", remedy)
     message = f"<{tag}> cannot stand in <{parent.tag}>."
-    remedy = f"It may stand in {one_of(vocabulary.parents(tag))}."
+    remedy = misplaced_remedy(tag, parent, vocabulary)
     return Problem(child.place, "error", "misplaced-element", message, remedy)
 
 
-def _check_text(node: Node, element: Element, problems: list[Problem]) -> None:
-    if element.text or not node.text:
+def _check_text(
+    node: Node, element: Element, vocabulary: Vocabulary, problems: list[Problem]
+) -> None:
+    if element.text or not node.content or not node.text:
         return
     shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
-    problems.append(
-        Problem(node.place, "error", "stray-text", f'<{node.tag}> holds text: "{shown}".',
-                "Say it with <speak>, or remove it.")
-    )  # fmt: skip
+    message = f'<{node.tag}> holds text: "{shown}".'
+    remedy = text_remedy(node, "speak" in vocabulary.tags)
+    problems.append(Problem(_text_place(node), "error", "stray-text", message, remedy))
+
+
+def _text_place(node: Node) -> Place:
+    """Where an element's own text begins, if it can be told for certain; else the element."""
+    before: Node | None = None
+    for item in node.content:
+        if isinstance(item, Node):
+            before = item
+        elif item.strip():
+            if before is None:
+                return node.source.inside(node.index, "", len(item) - len(item.lstrip()))
+            source, start = node.source, node.source.tag(before.index)
+            word = item.split()[0]
+            ends = re.compile(rf">\s*({re.escape(word)})")
+            found = ends.search(source.text, start)
+            return source.at(found.start(1)) if found else node.place
+    return node.place
 
 
 def _check_attributes(
@@ -103,30 +125,51 @@ def _check_attributes(
     root: bool,
     problems: list[Problem],
 ) -> None:
+    unknown: list[str] = []
     for name, text in node.attributes.items():
         if root and name in EVERYWHERE:
             continue
         entry = known.get(name)
         if entry is None:
-            problems.append(_unknown_attribute(node, name, list(known)))
+            unknown.append(name)
             continue
         message = _value_problem(*entry, text)
         if message:
             place = node.attribute_place(name)
             problems.append(Problem(place, "error", "bad-value", f'{name} "{text}" {message}'))
+    missing: list[Attribute] = []
     for item in element.attributes:
         if not item.required or item.name in node.attributes:
             continue
         if f"{item.name}-expr" not in node.attributes:
-            message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
-            problems.append(Problem(node.place, "error", "missing-attribute", message))
+            missing.append(item)
+    for name in unknown:
+        problems.append(_unknown_attribute(node, name, element, list(known), missing))
+    for item in missing:
+        message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
+        value = item.choices[0] if len(item.choices) == 1 else "..."
+        remedy = f'Write {item.name}="{value}".'
+        problems.append(Problem(node.place, "error", "missing-attribute", message, remedy))
 
 
-def _unknown_attribute(node: Node, name: str, known: list[str]) -> Problem:
-    remedy = did_you_mean(name, known)
+def _unknown_attribute(
+    node: Node, name: str, element: Element, known: list[str], missing: list[Attribute]
+) -> Problem:
+    """An attribute that is not known; what is missing and meant by it is told with it."""
+    wanted = [item.name for item in missing]
     if name == "xml:lang":
         remedy = "It stands on the root element alone."
-    elif not remedy:
+    elif near := did_you_mean(name, wanted):
+        remedy = near
+        missing[:] = [item for item in missing if f'"{item.name}"' not in near]
+    elif missing:
+        item = missing.pop(0)
+        remedy = f'Write {item.name}="...": {item.doc}.'
+    elif element.text and name in TEXTS:
+        remedy = f"Write the text inside: <{node.tag}>...</{node.tag}>."
+    else:
+        remedy = did_you_mean(name, known)
+    if not remedy:
         remedy = f"It may have {one_of(known)}." if known else "It has no attributes."
     message = f'<{node.tag}> has no attribute "{name}".'
     place = node.attribute_place(name, value=False)
@@ -142,5 +185,7 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> str:
     try:
         read_value("expression" if is_expression else item.kind, text)
     except ValueError as error:
-        return str(error)
+        right = "" if is_expression else meant(item.kind, text)
+        wrong = str(error).partition(". ")[0].rstrip(".")
+        return f'{wrong}. Write "{right}".' if right else str(error)
     return ""

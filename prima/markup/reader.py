@@ -36,7 +36,7 @@ ENCODINGS = frozenset(
 """Encodings that are read, by the names that :func:`codecs.lookup` gives them."""
 REMEDIES = (
     (r"Opening and ending tag mismatch: (\S+) line (\d+) and (\S+)",
-     "The <{0}> of line {1} is still open here: write </{0}>."),
+     "The <{0}> of line {1} is still open here: write </{0}>, or end its own tag with />."),
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
     (r"Char 0x0|PCDATA invalid Char value 0|Invalid character",
      "Remove the character; an editor may not show it. Save the file as UTF-8."),
@@ -255,10 +255,66 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
             "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed.",
         )
     remedy = _remedy(message)
+    place, message, remedy = _clearer(source, place, message, remedy)
     if TEMPLATE.search(source.text):
         remedy = "A server makes the document from this: run what it makes."
     message = f"This is not well-formed XML: {message.rstrip('.')}."
     return _error(place, "not-xml", message, remedy)
+
+
+WIDE = {
+    **dict.fromkeys("“”„″＂「」『』", 'A typographic quote stands here: write ".'),
+    **dict.fromkeys("‘’‚＇", "A typographic quote stands here: write '."),
+    **dict.fromkeys(
+        "\u3000\u00a0\u2003\u202f", "A space of another kind stands here: type an ordinary one."
+    ),
+    "＝": "An equals sign of full width stands here: write =.",
+    "／": "A slash of full width stands here: write /.",
+    "＞": "A bracket of full width stands here: write >.",
+}
+"""Characters that editors put in place of those of XML, and what to write."""
+WORDS = (
+    (r"xmlParseEntityRef: no name", "an & stands alone"),
+    (r"EntityRef: expecting ';'", "an & begins no character's name, or lacks its ;"),
+    (r"AttValue: \" or ' expected", "an attribute's value has no quotes"),
+    (r"Specification mandates value for attribute (\S+)", 'the attribute "{0}" has no value'),
+    (r"attributes construct error", "an attribute is written wrongly"),
+    (r"error parsing attribute name", "what stands here is no attribute"),
+    (r"Opening and ending tag mismatch: (\S+) line (\d+) and (\S+)", "</{2}> does not end <{0}>"),
+    (r"Premature end of data in tag (\S+) line (\d+)", "the file ends inside <{0}>"),
+    (r"StartTag: invalid element name", "a < begins no tag"),
+    (r"Unescaped '<' not allowed in attributes values", "a < stands in an attribute's value"),
+    (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
+)
+"""The parser's words, and plainer ones."""
+OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
+
+
+def _clearer(source: Source, place: Place, message: str, remedy: str) -> tuple[Place, str, str]:
+    """The parser's place, message and remedy, nearer to the mistake and in plainer words."""
+    lines = source.text.split("\n")
+    line = lines[place.line - 1] if place.line <= len(lines) else ""
+    if match := re.search(r"tag mismatch: (\S+) line (\d+) and (\S+)", message):
+        start = line.rfind("</", 0, place.column)
+        place = place._replace(column=start + 1) if start >= 0 else place
+        if match[1].startswith("／"):
+            opened = int(match[2])
+            column = lines[opened - 1].find("／") + 1 if opened <= len(lines) else 1
+            place, remedy = Place(source.file, opened, max(column, 1)), WIDE["／"]
+    elif match := re.search(r"Namespace prefix (\S+) on", message):
+        start = line.rfind(f"<{match[1]}:", 0, place.column)
+        place = place._replace(column=start + 1) if start >= 0 else place
+    elif "'<' not allowed in attributes" in message:
+        before = "\n".join([*lines[: place.line - 1], line[: place.column - 1]])
+        quote = OPEN_QUOTE.search(before[-10_000:])
+        if quote and "\n" in quote[0]:
+            at = source.at(len(before) - len(quote[0]) + quote[0].index(quote[1]))
+            return at, "a quote that is opened here is not closed", "Write the other quote."
+    wrong = WIDE.get(line[place.column - 1 : place.column])
+    for words, plain in WORDS:
+        if match := re.search(words, message):
+            message = plain.format(*match.groups())
+    return place, message, wrong or remedy
 
 
 def _remedy(message: str) -> str:

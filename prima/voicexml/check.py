@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of
@@ -34,6 +34,14 @@ from prima.voicexml.vocabulary import (
 VERSIONS = ("2.0", "2.1")
 MOST_ALIKE = 5
 """Of problems that say the same, so many are told, each with its place."""
+HABITS = {
+    "speak": "Write <prompt>.",
+    "say": "Write <prompt>.",
+    "on": 'Write <catch event="...">.',
+    "send": "Write <submit>.",
+    "iu": "VoiceXML has no units; an application of PRIMA's own language has.",
+}
+"""What to write for elements of other languages."""
 INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
 FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
 SPEAKING = frozenset(
@@ -165,7 +173,9 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
 def _misplaced(child: Node, node: Node) -> Problem:
     if child.tag not in VOICEXML.tags:
         message = f"There is no <{child.tag}> in VoiceXML."
-        hint = did_you_mean(child.tag, VOICEXML.tags)
+        hint = HABITS.get(child.tag) or did_you_mean(child.tag, VOICEXML.tags)
+        if child.tag in COMMANDS and child.tag not in HABITS:
+            hint = f'It is a Command of PRIMA: write <p:{child.tag}>, with xmlns:p="{PRIMA_NAMESPACE}".'
         return Problem(child.place, "error", "unknown-element", message, hint)
     message = f"<{child.tag}> cannot stand in <{node.tag}>."
     remedy = f"It may stand in {one_of(VOICEXML.parents(child.tag))}."
@@ -333,6 +343,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
                 _compile(node, name, problems, context)
         if node.key == "script" and node.own_text.strip():
             _compile(node, "", problems, context)
+        if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
+            problems += _grammar_problems(node, root.get("xml:lang", "en"))
         for name in ("next", "src"):
             target = node.get(name)
             if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
@@ -341,6 +353,25 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
                 place = node.attribute_place(name)
                 problems.append(Problem(place, "warning", "no-such-form", message, hint))
     return problems
+
+
+def _grammar_problems(node: Node, lang: str) -> list[Problem]:
+    """What is wrong with a grammar inside the document; what it refers to elsewhere is not read."""
+    from prima.grammar import GrammarError, load
+
+    mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"
+    try:
+        load(node, lang=node.get("xml:lang", lang), mode=mode, lenient=True)
+    except GrammarError as error:
+        return [
+            problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())
+            for problem in error.problems
+            if problem.code != "not-fetched"
+        ]
+    return []
+
+
+LATER = "When it is to listen, this will be error.grammar or error.unsupported."
 
 
 def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> None:

@@ -1,0 +1,103 @@
+"""What an author most likely meant: values and elements as they should have been written."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from prima.errors import one_of
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Vocabulary
+from prima.values import read_value
+
+UNITS = {
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), 1000),
+    **dict.fromkeys(("m", "min", "mins", "minute", "minutes"), 60_000),
+    **dict.fromkeys(("h", "hour", "hours"), 3_600_000),
+    **dict.fromkeys(("msec", "msecs", "millisecond", "milliseconds"), 1),
+    "S": 1000,
+    "MS": 1,
+}
+"""Units of time that are not those of documents, in ms."""
+MEASURE = re.compile(r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*")
+NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*")
+TRUTHS = {"yes": "true", "1": "true", "on": "true", "no": "false", "0": "false", "off": "false"}
+LONG = 100
+"""Letters of a value beyond which no guess is made."""
+INSIDE = {
+    "field": "Write it into a <prompt>.",
+    "when": "Write it into a <say>.",
+    "form": "Say it with <speak> in a <block>.",
+    "prima": "Say it with <speak> in a <block> of a <form>.",
+    "value": 'Write an expression: <value expr="..."/>.',
+    "goto": "Remove it; the tag ends with />.",
+}
+"""Where text belongs that stands directly in an element."""
+INSTEAD = {
+    "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
+    "option": "It is an answer that a <field> takes.",
+}
+"""What to write instead of an element that stands where it makes no sense at all."""
+TEXTS = ("text", "value", "say", "content", "message", "name")
+"""Attributes that authors give to what holds its text inside."""
+
+
+def half(text: str) -> str:
+    """Text in characters of half width, as keyboards for English give."""
+    straight = re.sub("[“”„«»]", '"', text)
+    return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
+
+
+def meant(kind: str, text: str) -> str:
+    """A value of a kind that a wrong text most likely means, or nothing."""
+    if len(text) > LONG:
+        return ""
+    for guess in (half(text), _guess(kind, half(text))):
+        try:
+            if guess and guess != text:
+                read_value(kind, guess)
+                return guess
+        except ValueError:
+            continue
+    return ""
+
+
+def _guess(kind: str, text: str) -> str:
+    if kind == "duration" and (match := MEASURE.fullmatch(text)):
+        number, unit = match[1].replace(",", "."), match[2]
+        if unit in ("", "s", "ms"):
+            return f"{number}{unit or 's'}"
+        return f"{float(number) * UNITS[unit] / 1000:g}s" if unit in UNITS else ""
+    if kind in ("number", "integer") and (match := NUMBER.fullmatch(text)):
+        return match[1].replace(",", ".")
+    if kind == "boolean":
+        return TRUTHS.get(text.strip().lower(), text.strip().lower())
+    if kind in ("event", "events"):
+        return re.sub(r"\s*,\s*", " ", text.strip())
+    return ""
+
+
+def text_remedy(node: Node, spoken: bool) -> str:
+    """Where the text belongs that an element may not hold; ``spoken`` in an application."""
+    if node.tag in INSIDE and (spoken or node.tag == "when"):
+        return INSIDE[node.tag]
+    return "Say it with <speak>, or remove it." if spoken else "Remove it."
+
+
+def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
+    """What to do with an element that stands where it may not."""
+    allowed = vocabulary.parents(tag)
+    if parent.tag in ("else", "elseif"):
+        return (
+            f"<{parent.tag}> only divides the <if>: end its tag with />, and write this behind it."
+        )
+    inside = [
+        one
+        for one in vocabulary.children(parent.key)
+        if vocabulary.child(vocabulary.child(parent.key, one) or "", tag)
+    ]
+    if "block" in inside or len(inside) == 1:
+        return f"Put it into a <{'block' if 'block' in inside else inside[0]}>."
+    if set(allowed) & set(vocabulary.parents(parent.tag)):
+        return f"Move it out of the <{parent.tag}>."
+    return INSTEAD.get(tag) or f"It may stand in {one_of(allowed)}."

@@ -1,0 +1,155 @@
+"""Mistakes as newcomers make them, and the examples of every code: one message, in its place."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from prima import api
+from prima.codes import CODES
+from prima.diagnostics import TOKEN
+from prima.errors import Problem, UsageError
+from prima.examples import FOLDER, Example, beside, data, examples, shown
+
+ROOT = Path(__file__).parent.parent
+MISTAKES = Path(__file__).parent / "mistakes"
+EXPECTED: dict[str, dict[str, str]] = tomllib.loads(
+    (MISTAKES / "expected.toml").read_text(encoding="utf-8")
+)
+
+
+def prima(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "prima", *words],
+        cwd=ROOT,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=60,
+    )
+
+
+def problems_of(path: Path) -> list[Problem]:
+    return [one for one in api.validate([path]) if one.severity != "note"]
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_a_mistake_is_told_once_in_its_place_with_a_remedy(name: str) -> None:
+    expected = EXPECTED[name]
+    found = problems_of(MISTAKES / name)
+    assert len(found) == 1, found
+    place, _, code, message, remedy = found[0]
+    assert f"{place.line}:{place.column} {code}" == expected["at"]
+    assert Path(place.file) == MISTAKES / expected.get("in", name)
+    line = Path(place.file).read_text(encoding="utf-8").split("\n")[place.line - 1]
+    token = TOKEN.match(line, place.column - 1)
+    assert (token[0] if token else "") == expected["under"]
+    assert expected["says"] in (remedy or message)
+
+
+def test_every_mistake_is_expected() -> None:
+    files = {path.name for path in MISTAKES.iterdir() if path.suffix in (".xml", ".vxml")}
+    assert files == set(EXPECTED) and len(files) >= 50
+
+
+def test_what_mistakes_name_beside_them_is_right() -> None:
+    for name in ("museum", "robot", "speaker", "ask", "bow"):
+        assert problems_of(MISTAKES / "beside" / f"{name}.xml") == []
+
+
+# The examples of the codes ----------------------------------------------------------
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_the_wrong_example_of_a_code_has_that_problem_alone(code: str) -> None:
+    wrong, right = examples(code)
+    assert [problem.code for problem in wrong.problems] == [code]
+    assert right.problems == []
+    place = wrong.problems[0].place
+    assert _lines(wrong, place.file)[place.line - 1].strip()
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_a_code_is_explained_with_its_place(code: str) -> None:
+    text = shown(code)
+    wrong = examples(code)[0]
+    assert text.startswith(CODES[code])
+    assert f"[{code}]\n" in text and "^" in text
+    assert "\nRight" in text and "Traceback" not in text
+    assert data(code)["problems"][0]["line"] == wrong.problems[0].place.line
+
+
+def _lines(example: Example, name: str) -> list[str]:
+    path = FOLDER / name
+    text = example.text if name == example.name else path.read_text(encoding="utf-8")
+    return text.split("\n")
+
+
+def test_every_folder_of_examples_is_a_code() -> None:
+    folders = {path.name for path in FOLDER.iterdir() if path.is_dir()} - {"__pycache__"}
+    assert folders == set(CODES)
+
+
+def test_documents_beside_examples_are_right() -> None:
+    for path in FOLDER.glob("*.xml"):
+        assert problems_of(path) == [], path.name
+    assert set(beside("mode")) == {"keys.grxml", "towns.gram"}
+
+
+NOTERS = {"Problem", "problem", "note", "unsupported", "refuse", "_error"}
+"""What the package calls to tell a problem; its code is one of the first arguments."""
+
+
+def test_no_code_is_emitted_that_is_not_explained() -> None:
+    found: dict[str, str] = {}
+    for path in (ROOT / "prima").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            called = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            if called in NOTERS:
+                place = {"Problem": 2, "unsupported": 2, "refuse": 2}.get(called, 1)
+                given: Any = node.args[place] if len(node.args) > max(place, 2) else None
+                if isinstance(given, ast.Constant) and isinstance(given.value, str):
+                    found[given.value] = f"{path.name}:{node.lineno}"
+    assert len(found) > 50
+    assert {code: place for code, place in found.items() if code not in CODES} == {}
+
+
+# prima explain ------------------------------------------------------------------------
+
+
+def test_explain_lists_all_codes() -> None:
+    listed = prima("explain")
+    assert listed.returncode == 0 and listed.stderr == ""
+    lines = listed.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == sorted(CODES)
+    assert all(len(line) <= 100 for line in lines)
+    told = json.loads(prima("explain", "--format", "json").stdout)
+    assert {one["code"]: one["explanation"] for one in told} == CODES
+
+
+def test_explain_shows_the_wrong_example_the_message_and_the_right_one() -> None:
+    told = prima("explain", "misplaced-element")
+    assert told.returncode == 0
+    assert "wrong.xml:3:5: error: <speak> cannot stand in <form>. Put it into a <block>." in (
+        told.stdout
+    )
+    assert "    3 |     <speak>Hello.</speak>\n      |     ^~~~~~\n" in told.stdout
+    as_json = json.loads(prima("explain", "too-deep", "--format", "json").stdout)
+    assert as_json["problems"][0]["code"] == "too-deep"
+    assert as_json["right"]["text"].startswith("<prima ")
+
+
+def test_explain_guesses_a_misspelt_code() -> None:
+    told = prima("explain", "no-anser")
+    assert told.returncode == 2 and told.stdout == ""
+    assert 'There is no code "no-anser". Did you mean "no-answer"?' in told.stderr
+    with pytest.raises(UsageError, match="prima explain lists them"):
+        examples("zzz")
