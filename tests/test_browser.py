@@ -406,6 +406,8 @@ def hostile(transcript: api.Transcript) -> api.Transcript:
         for name in ("text", "message", "source", "rule", "by"):
             if name in record:
                 record[name] = HOSTILE
+        if record["phase"] == "decision":
+            record.update(losers=["__proto__", "constructor", HOSTILE], rule="toString")
     return api.Transcript(records, HOSTILE, cut=HOSTILE)
 
 

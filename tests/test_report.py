@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from prima import api
 from prima.errors import UsageError
@@ -21,6 +23,7 @@ from prima.report.lanes import make_lanes
 from prima.report.page import json_text, text
 from prima.report.view import language
 from prima.report.walk import Walk, reported, walk_of
+from prima.transcript.lines import read_lines
 from prima.transcript.rules import RULES
 from prima.transcript.table import Row
 from tests.generated_report import long_run
@@ -206,6 +209,36 @@ def test_a_record_that_lacks_something_is_told() -> None:
             del record["tree"]
     with pytest.raises(UsageError, match="lacks what its phase has"):
         make([api.Transcript(records, "bad.jsonl")])
+
+
+VALUES: list[Any] = [None, "", "x", -1, 1e999, True, [], {}, ["x", 1], {"x": [1]}, EVIL]
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_odd_records_give_a_page_or_a_message(data: st.DataObject) -> None:
+    """What the model lets through of a stranger's transcript, and what it need not."""
+    records = json.loads(json.dumps(run().records))
+    for _ in range(data.draw(st.integers(1, 12))):
+        record = data.draw(st.sampled_from(records))
+        name = data.draw(
+            st.sampled_from(sorted(record.keys() - {"time", "phase", "actor"}) or ["x"])
+        )
+        where = record
+        if isinstance(record.get(name), dict) and record[name] and data.draw(st.booleans()):
+            where, name = record[name], data.draw(st.sampled_from(sorted(record[name])))
+        if data.draw(st.booleans()):
+            where.pop(name, None)
+        else:
+            where[name] = data.draw(st.sampled_from(VALUES))
+    lines = api.Transcript(records, "x").dumps().splitlines(keepends=True)
+    try:
+        held = list(read_lines("x", lines))
+        page = make([api.Transcript(held, "x")], [api.load_scenario(SCENARIO)])
+    except UsageError:
+        return
+    Outline(page)
+    data_of(page)
 
 
 @pytest.mark.parametrize("keep", [1, 2, 6, 20, 60, 120])

@@ -564,7 +564,7 @@
     const list = make("ul", {});
     for (const [when, text, rule, rivals] of why.told || []) {
       const item = make("li", {}, `${seconds(when)}: ${text}`);
-      if (data.rules[rule]) item.append(make("div", { class: "told" }, `${rule}: ${data.rules[rule]}.`));
+      if (Object.hasOwn(data.rules, rule)) item.append(make("div", { class: "told" }, `${rule}: ${data.rules[rule]}.`));
       if (rivals.length) {
         const others = make("ul", {});
         for (const name of rivals) {

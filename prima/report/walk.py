@@ -113,9 +113,11 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
 
     head = transcript.records[0]["data"]
     policy, bound = head.get("policy"), head.get("bound")
+    if bound is not None and (not isinstance(bound, int) or bound < 1):
+        return None
     try:
         rehearsal = Rehearsal(loaded.cast, policy_named(str(policy)), bound)
-    except (UsageError, TypeError):
+    except UsageError:
         return None
     watch = Watch(rehearsal.world)
     expected: Sequence[Record] = transcript.records
