@@ -7,11 +7,11 @@ everything below them works on text and values.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from prima.codes import CODES
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
@@ -30,6 +30,7 @@ from prima.messages import Record
 from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
+    from prima.export import Exported
     from prima.sim.services import Web
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
@@ -173,18 +174,79 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
     """
+    cut: list[str] | None = [] if partial else None
+    records = list(_records(path, cut))
+    return Transcript(records, str(path), cut=" ".join(cut or ()))
+
+
+def _records(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
+    """A transcript's records one by one; see :func:`read`."""
     from prima.transcript.lines import MAX_LINE, read_lines
 
     try:
-        with Path(path).open(encoding="utf-8-sig") as stream:
+        with Path(path).open(encoding="utf-8-sig", errors="surrogateescape") as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
-            cut: list[str] | None = [] if partial else None
-            records = list(read_lines(str(path), lines, cut))
+            yield from read_lines(str(path), (_decoded(path, line) for line in lines), cut)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
-    return Transcript(records, str(path), cut=" ".join(cut or ()))
+
+
+def _decoded(path: str | Path, line: str) -> str:
+    """A line that is UTF-8; one at which the file ends may be cut off within a letter."""
+    wrong = re.search("[\udc80-\udcff]", line)
+    if wrong is None:
+        return line
+    if line.endswith("\n"):
+        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.")
+    return line[: wrong.start()]
+
+
+def export(
+    transcript: Transcript | str | Path,
+    to: str,
+    output: str | Path | IO[bytes],
+    languages: Mapping[str, str] | None = None,
+) -> Exported:
+    """Write a transcript in another tool's format (docs/exports.md).
+
+    Args:
+        transcript: a transcript, or the path of one, which is then read piece by piece as far
+            as it goes.
+        to: ``eaf``, ``textgrid``, ``vtt``, ``mcap`` or ``csv``.
+        output: the file to write, by its path or open for bytes.
+        languages: language tags (BCP 47) by application; under the empty name, that of all
+            others and of the user.
+
+    Raises:
+        UsageError: no such format, tag or application, or no file to read from or write to.
+    """
+    from prima.export import Exported, checked, timeline, write
+
+    tags = checked(to, languages or {})
+    held = transcript if isinstance(transcript, Transcript) else None
+    if not isinstance(transcript, Transcript) and not Path(transcript).is_file():
+        held = read(transcript, partial=True)  # a pipe can be read only once
+    name = str(transcript) if held is None else held.name
+    cut = [held.cut] if held and held.cut else []
+
+    def records(told: list[str]) -> Iterable[Record]:
+        return _records(name, told) if held is None else held.records
+
+    made = timeline(name, records(cut))
+    made.check_names(tags)
+    if not isinstance(output, str | Path):
+        write(to, made, records([]), tags, VERSION, output)
+    else:
+        path = Path(output)
+        if path.exists() and Path(name).exists() and path.samefile(name):
+            raise UsageError(f"{output}: this is the transcript itself: name another file.")
+        made.parts()  # may be refused: before a file is overwritten
+        try:
+            with path.open("wb") as stream:
+                write(to, made, records([]), tags, VERSION, stream)
+        except OSError as error:
+            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+    return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut))
 
 
 def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
@@ -267,6 +329,6 @@ def explain_row(transcript: Transcript, number: int) -> str:
 
 __all__ = [
     "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Transcript",
-    "UsageError", "diff", "documents_folder", "explain", "explain_row", "load", "load_scenario",
+    "UsageError", "diff", "documents_folder", "explain", "explain_row", "export", "load", "load_scenario",
     "read", "rehearse", "replay", "stage", "validate",
 ]  # fmt: skip

@@ -1,0 +1,65 @@
+"""prima export."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import tell
+from prima.errors import UsageError
+
+
+@click.command()
+@click.argument("transcript", type=click.Path())
+@click.option(
+    "--to",
+    metavar="FORMAT",
+    help="eaf (ELAN), textgrid (Praat), vtt (captions), mcap (Foxglove) or csv;"
+    " by default what OUTPUT's suffix tells.",
+)
+@click.option("-o", "--output", type=click.Path(), help="The file to write; else to stdout.")
+@click.option(
+    "--lang",
+    "langs",
+    multiple=True,
+    metavar="[APP=]TAG",
+    help="In what language it is spoken, by all or by one application; for eaf.",
+)
+def export(transcript: str, to: str | None, output: str | None, langs: tuple[str, ...]) -> None:
+    """Write a transcript in the format of another tool.
+
+    Who said and did what, the events, the devices, the streams, the floor, each
+    decision's rule and the reactions stand in tiers; docs/exports.md says which.
+
+    \b
+    prima export mediated.jsonl --to eaf -o mediated.eaf
+    prima export mediated.jsonl --to csv
+    prima export mediated.jsonl -o mediated.TextGrid --lang en --lang guide=ja
+    """
+    from prima import api
+
+    output = None if output == "-" else output
+    form = to.lower() if to else Path(output or "").suffix.lower()[1:]
+    if not form:
+        raise UsageError("say in what format: --to eaf, textgrid, vtt, mcap or csv.")
+    if output is None and form == "mcap" and sys.stdout.isatty():
+        raise UsageError("mcap is no text for a terminal: name a file with -o.")
+    made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
+    if output:
+        amount = f"{made.tiers} tiers with {made.marks} intervals and points"
+        tell(f"{output}: {amount} of {made.seconds:.1f} s")
+    else:
+        sys.stdout.buffer.flush()
+    if made.cut:
+        tell(f"prima: {made.cut}")
+        raise Exit(2)
+
+
+def _languages(langs: Iterable[str]) -> dict[str, str]:
+    """``APP=TAG`` and ``TAG`` as the interface wants them."""
+    pairs = (lang.rpartition("=") for lang in langs)
+    return {app: tag for app, _, tag in pairs}

@@ -1,0 +1,65 @@
+"""Praat's TextGrid in its long text format."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.export.timeline import Interval, Part, Tier, Timeline
+
+
+def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
+    """The file, in pieces: interval tiers without gaps, and point tiers."""
+    # Praat wants a tier at least, even of a run in which nothing happened.
+    parts = timeline.parts() or [Part("run", Tier("run", "events", "robot"), [])]
+    ends = (_end(mark) for part in parts if not part.tier.points for mark in part.marks)
+    end = max(1, timeline.end, *ends)
+    yield (
+        'File type = "ooTextFile"\nObject class = "TextGrid"\n\n'
+        f"xmin = 0\nxmax = {_seconds(end)}\ntiers? <exists>\n"
+        f"size = {len(parts)}\nitem []:\n"
+    )
+    for number, part in enumerate(parts, 1):
+        points = part.tier.points
+        shown = part.marks if points else _filled(part.marks, end)
+        kind, what = ("TextTier", "points") if points else ("IntervalTier", "intervals")
+        yield (
+            f'    item [{number}]:\n        class = "{kind}"\n        name = {_quoted(part.name)}\n'
+            f"        xmin = 0\n        xmax = {_seconds(end)}\n"
+            f"        {what}: size = {len(shown)}\n"
+        )
+        for place, mark in enumerate(shown, 1):
+            yield f"        {what} [{place}]:\n"
+            if points:
+                yield f"            number = {_seconds(mark.start)}\n"
+                yield f"            mark = {_quoted(mark.text)}\n"
+            else:
+                yield f"            xmin = {_seconds(mark.start)}\n"
+                yield f"            xmax = {_seconds(_end(mark))}\n"
+                yield f"            text = {_quoted(mark.text)}\n"
+
+
+def _end(mark: Interval) -> int:
+    """When an interval ends; each has to last at least 1 ms."""
+    return max(mark.end, mark.start + 1)
+
+
+def _filled(marks: list[Interval], end: int) -> list[Interval]:
+    """Intervals with empty ones between them, from 0 to the end."""
+    filled: list[Interval] = []
+    last = 0
+    for mark in marks:
+        if mark.start > last:
+            filled.append(Interval(last, mark.start, ""))
+        filled.append(mark)
+        last = _end(mark)
+    if last < end:
+        filled.append(Interval(last, end, ""))
+    return filled
+
+
+def _seconds(time: int) -> str:
+    return f"{time / 1000:.3f}".rstrip("0").rstrip(".")
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"'

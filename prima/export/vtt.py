@@ -1,0 +1,42 @@
+"""WebVTT (W3C): what the applications and the user say, as captions with voices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.export.timeline import Interval, Tier, Timeline, clean
+
+
+def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
+    """The file, in pieces: a cue for each utterance, and notes of what happens besides."""
+    told: list[tuple[Interval, Tier]] = [
+        (mark, tier)
+        for tier in timeline.tiers
+        if tier.kind in ("says", "user-says", "user-does", "events")
+        for mark in tier.marks
+    ]
+    told.sort(key=lambda one: (one[0].start, not one[1].points))
+    yield "WEBVTT\n"
+    head = [
+        f"{name}: {timeline.head[name]}"
+        for name in ("scenario", "policy")
+        if timeline.head.get(name)
+    ]
+    if head:
+        yield f"\nNOTE {_escaped(clean(', '.join(head)))}\n"
+    for mark, tier in told:
+        if tier.points:
+            yield f"\nNOTE {_time(mark.start)} {_escaped(mark.text)}\n"
+        elif mark.text:
+            end = max(mark.end, mark.start + 1)
+            voice = _escaped(tier.who)
+            yield f"\n{_time(mark.start)} --> {_time(end)}\n<v {voice}>{_escaped(mark.text)}</v>\n"
+
+
+def _time(time: int) -> str:
+    seconds, milliseconds = divmod(time, 1000)
+    return f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}.{milliseconds:03}"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
