@@ -37,6 +37,7 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
+from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Handling
 from prima.messages import (
     Action,
@@ -165,9 +166,14 @@ class Interpreter(Bounds):
 
     def answer(self, run: int, text: str) -> Json:
         """The value of the asking field for what the user said, or None if it takes no such."""
+        answers = self.answers(run)
+        return answers.match(text) if answers is not None else None
+
+    def answers(self, run: int) -> Answers | None:
+        """What the asking field takes, if a field asks."""
         fiber = self._waiting.get(run)
         item = fiber.frame.item if fiber is not None else None
-        return item.answers.match(text) if isinstance(item, Field) else None
+        return item.answers if isinstance(item, Field) else None
 
     @property
     def deadline(self) -> int | None:

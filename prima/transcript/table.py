@@ -76,6 +76,60 @@ def make_rows(records: Iterable[Record]) -> list[Row]:
     return rows
 
 
+class Growing:
+    """The table of a run that goes on: rows are made of its records as they come.
+
+    What only a later record tells is not waited for. A unit's rows begin with ``+`` and go on
+    with a bar: which is its last is not known yet. What the camera has seen has its row as
+    soon as somebody minds.
+    """
+
+    def __init__(self) -> None:
+        self.rows: list[Row] = []
+        self._asked: dict[str, Record] = {}
+        self._handled: set[int] = set()
+        self._ignored: dict[int, Record] = {}
+        """Events that nobody has minded yet, by their serial numbers."""
+        self._collided: set[tuple[str, str]] = set()
+        self._units: set[str] = set()
+        """Units that have a row and go on."""
+
+    def add(self, records: Iterable[Record]) -> list[Row]:
+        """Take in the records of an instant, times in seconds; gives the rows they make."""
+        held = list(records)
+        before = len(self.rows)
+        for record in held:
+            if record.get("cause"):
+                self._handled.add(record["cause"])
+            if record["phase"] == "request":
+                self._asked[record["behavior"]] = record
+        minded = [self._ignored.pop(one) for one in sorted(self._handled & self._ignored.keys())]
+        for record in (*minded, *held):
+            self._add(record)
+        return self.rows[before:]
+
+    def _add(self, record: Record) -> None:
+        if record["phase"] == "event" and record["actor"] == "robot" and "serial" in record:
+            if record["serial"] not in self._handled:
+                self._ignored[record["serial"]] = record
+        elif record["phase"] == "collision":
+            pair = (_base(record["behavior"]), _base(record.get("by") or ""))
+            if pair in self._collided:
+                return
+            self._collided.add(pair)
+        row = _row(record, self._asked, self._handled)
+        if row is not None:
+            row.number = len(self.rows)
+            if row.unit and row.unit not in self._units:
+                self._units.add(row.unit)
+                row.bracket = "+"
+            elif self._units:
+                row.bracket = "|"
+            self.rows.append(row)
+        if record["phase"] in ("end", "cancel", "fail", "interrupt"):
+            self._units.discard(record.get("behavior") or "")
+
+
 def _base(behavior: str) -> str:
     return behavior.partition(".")[0]
 
@@ -328,21 +382,28 @@ def printable(text: str) -> str:
 def format_rows(rows: list[Row], why: bool = False) -> str:
     """The table as text: star and bracket, number, who, application, behaviour, event."""
     apps = max([3, *(width(row.app) for row in rows)])
-    shown = [printable(row.what) for row in rows]
-    column = min(max([8, *(width(what) for what in shown)]), 76)
-    head = f"       No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
-    lines = [head + ("  Rule" if why else "")]
-    for row, what in zip(rows, shown, strict=True):
-        mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
-        left = (
-            f"  {mark}  {row.number:>4} {row.time:>7.2f}  {row.actor:<3}  {_pad(row.app, apps)}  "
-        )
-        pieces = _wrap(what, column)
-        event = "o" if row.event else " "
-        tail = f"  {event}      {row.rule}" if why else f"  {event}"
-        lines.append((left + _pad(pieces[0], column) + tail).rstrip())
-        lines += [" " * width(left) + piece for piece in pieces[1:]]
+    column = min(max([8, *(width(printable(row.what)) for row in rows)]), 76)
+    lines = [format_head(apps, column, why)]
+    for row in rows:
+        lines += format_row(row, apps, column, why)
     return "\n".join(lines) + "\n"
+
+
+def format_head(apps: int, column: int, why: bool = False) -> str:
+    """The table's head, for columns of applications and behaviours as wide as given."""
+    head = f"       No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
+    return head + ("  Rule" if why else "")
+
+
+def format_row(row: Row, apps: int, column: int, why: bool = False) -> list[str]:
+    """The lines of one row under such a head."""
+    mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
+    left = f"  {mark}  {row.number:>4} {row.time:>7.2f}  {row.actor:<3}  {_pad(row.app, apps)}  "
+    pieces = _wrap(printable(row.what), column)
+    event = "o" if row.event else " "
+    tail = f"  {event}      {row.rule}" if why else f"  {event}"
+    first = (left + _pad(pieces[0], column) + tail).rstrip()
+    return [first, *(" " * width(left) + piece for piece in pieces[1:])]
 
 
 def _wrap(text: str, columns: int) -> list[str]:

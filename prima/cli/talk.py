@@ -1,0 +1,319 @@
+"""prima talk."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import (
+    POLICIES,
+    clean,
+    coloured,
+    format_option,
+    limit_option,
+    put,
+    raise_limits,
+    start_watchdog,
+    tell,
+    why_option,
+)
+from prima.cli.terminal import Keyboard, Piped, Typist, edit_lines, ending_well
+from prima.errors import RunError, UsageError
+
+if TYPE_CHECKING:
+    from prima.loading import Loaded
+    from prima.messages import Record
+    from prima.sim.services import Web
+    from prima.talk import Conversation, Game
+    from prima.transcript.table import Row
+
+WIDE = 60
+"""Columns of the behaviour where no terminal says how many there are."""
+COLOURS = {"U": "cyan", "E": "yellow"}
+"""Colours of rows, by who does it."""
+
+
+@click.command()
+@click.argument("scenario", type=click.Path(), required=False)
+@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
+@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@click.option(
+    "--step", is_flag=True, help="Let time wait for you: the default unless in a terminal."
+)
+@click.option(
+    "--real-time", is_flag=True, help="Let time go on by itself: the default in a terminal."
+)
+@click.option("--save", "target", type=click.Path(), help="Write the session here at its end.")
+@click.option(
+    "--scripted", is_flag=True, help="Let the scenario's user do what it says as well as you."
+)
+@click.option("--policy", help=f"The mediator's policy: {POLICIES}.")
+@why_option
+@click.option(
+    "--allow-host",
+    "hosts",
+    metavar="HOST[:PORT]",
+    multiple=True,
+    help="Let VoiceXML documents fetch from this host; without, no network is used.",
+)
+@limit_option
+@format_option
+def talk(
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    step: bool,
+    real_time: bool,
+    target: str | None,
+    scripted: bool,
+    policy: str | None,
+    why: bool,
+    hosts: tuple[str, ...],
+    limits: tuple[str, ...],
+    form: str,
+) -> None:
+    """Play the user of a run: type what he says and does, and see what the robot makes of it.
+
+    A line is said; /touch head, /walk 3 0.5, /message from Ann: I'm late and others are
+    done; /help names them all. An empty line lets time go on, and the end of input ends the
+    session. /save FILE or --save FILE keeps it as a scenario, for prima run.
+
+    Exit code 3 if an application ended by an error; 1 if a line from a file or pipe was wrong.
+
+    \b
+    prima talk documents/scenarios/touched-on-the-way.xml
+    prima talk --fa documents/fa/follow.xml --ea documents/ea/guide.xml --save visit.xml
+    printf '/wait 5s\\n/touch head\\nNever mind.\\n' | prima talk --ea documents/ea/guide.xml
+    """
+    from prima import api
+    from prima.talk import Conversation, Game
+
+    raise_limits(limits)
+    if (scenario is None) == (not fas and not eas):
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if step and real_time:
+        raise UsageError("Write --step or --real-time, not both.")
+    loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas)
+    for problem in loaded.problems:
+        if problem.severity != "note":
+            tell(str(problem))
+    start_watchdog()
+    folder = os.path.dirname(scenario or "")
+    sink = _write if form == "json" else None
+    game = Game(loaded, folder, policy, scripted, _web(hosts), sink)
+    terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
+    real = real_time or (terminal and not step)
+    screen = Screen(game, why, form == "json", terminal)
+    names = loaded.files if scenario is not None else [*loaded.files][1:]
+    sources = [os.path.join(folder, name) for name in names]
+    conversation = Conversation(game, screen, real, sources)
+    if target is not None:
+        conversation.check_target(target)
+    if form == "json":
+        _write([_head(game, loaded)])
+    _greet(game, screen)
+    with ending_well(lambda: _keep(conversation, target)):
+        try:
+            _converse(conversation, screen)
+        finally:
+            _keep(conversation, target)
+    if game.stopped == "limit":
+        raise RunError("the run made more records than a run may.")
+    if game.failures:
+        raise Exit(3)
+    if conversation.wrong and not terminal:
+        raise Exit(1)
+
+
+def _keep(conversation: Conversation, target: str | None) -> None:
+    """Write the session where --save says."""
+    if target is not None:
+        conversation.save(target)
+        tell(f"Saved {target}.")
+
+
+def _web(hosts: tuple[str, ...]) -> Web | None:
+    from prima import api
+
+    return api._web(list(hosts))
+
+
+def _write(records: list[Record]) -> None:
+    """Records as JSON lines, to stdout."""
+    from prima.transcript.lines import line
+
+    for record in records:
+        sys.stdout.write(line(record))
+    sys.stdout.flush()
+
+
+def _head(game: Game, loaded: Loaded) -> Record:
+    """The first record: without the scenario's digest, as its user is another one."""
+    from prima.api import VERSION
+
+    scenario = game.cast.scenario
+    own = os.path.basename(loaded.cast.scenario.node.source.file)
+    return {
+        "time": 0,
+        "phase": "run",
+        "actor": "mediator",
+        "data": {
+            "version": VERSION,
+            "scenario": scenario.id,
+            "policy": game.policy,
+            "bound": None,
+            "date": scenario.date,
+            "applications": [doc.id for doc in game.cast.documents],
+            "files": {name: digest for name, digest in loaded.files.items() if name != own},
+        },
+    }
+
+
+def _greet(game: Game, screen: Screen) -> None:
+    if game.scene.left_out:
+        tell("The scenario's user is you: what he does there is left out; --scripted keeps it.")
+    if screen.interactive:
+        tell("Type what you say, /help for commands, /quit to end.")
+
+
+class Screen:
+    """Prints rows, answers and messages; above the line that is being typed, if there is one."""
+
+    def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
+        from prima.transcript.table import width
+
+        self.interactive = interactive
+        self.typist: Typist | None = None
+        self._why = why
+        self._json = json
+        self._apps = max([3, *(width(name) for name in game.names.applications)])
+        self._headed = False
+
+    def rows(self, rows: list[Row]) -> None:
+        """Show rows as they happen."""
+        from prima.transcript.table import format_head, format_row
+
+        if self._json:
+            return
+        column = self._column()
+        lines = [] if self._headed else [format_head(self._apps, column, self._why)]
+        self._headed = True
+        for row in rows:
+            text = "\n".join(format_row(row, self._apps, column, self._why))
+            colour = COLOURS.get(row.actor) if coloured() else None
+            lines.append(click.style(clean(text), fg=colour) if colour else clean(text))
+        self._print("\n".join(lines), styled=True)
+
+    def _column(self) -> int:
+        if not self.interactive:
+            return WIDE
+        import shutil
+
+        rest = 35 + self._apps + (6 if self._why else 0)
+        return min(max(shutil.get_terminal_size((100, 24)).columns - rest, 24), 76)
+
+    def show(self, text: str) -> None:
+        """Show what was asked for: among records, that is a message."""
+        if self._json:
+            self.tell(text)
+        else:
+            self._print(text)
+
+    def tell(self, text: str) -> None:
+        """Tell what has gone wrong, or has been done."""
+        if self.typist is not None:
+            self.typist.clear()
+        tell(text)
+        if self.typist is not None:
+            self.typist.restore()
+
+    def _print(self, text: str, styled: bool = False) -> None:
+        if self.typist is not None:
+            self.typist.clear()
+        if styled:
+            click.echo(text)
+        else:
+            put(text)
+        sys.stdout.flush()
+        if self.typist is not None:
+            self.typist.restore()
+
+
+def _converse(conversation: Conversation, screen: Screen) -> None:
+    """Read lines and carry them out until the session ends."""
+    if screen.interactive:
+        _edit_lines(conversation)
+    if not conversation.real:
+        _step_by_step(conversation, screen)
+    elif screen.interactive:
+        with Keyboard("> ") as keyboard:
+            screen.typist = keyboard
+            _real_time(conversation, keyboard)
+            screen.typist = None
+    else:
+        _real_time(conversation, Piped())
+    conversation.close()
+
+
+def _edit_lines(conversation: Conversation) -> None:
+    from prima.talk.typed import complete
+
+    edit_lines(lambda text: complete(text, conversation.game.names, conversation.options))
+
+
+def _step_by_step(conversation: Conversation, screen: Screen) -> None:
+    """Time waits for every line."""
+    piped = Piped()
+    alone = sys.stdin is not None and sys.stdin.isatty() and not screen.interactive
+    conversation.begin()
+    while not conversation.done:
+        try:
+            if screen.interactive:
+                text: str | None = input(conversation.prompt)
+            else:
+                if alone:
+                    click.echo(conversation.prompt, nl=False, err=True)
+                text = piped.line(None)
+        except EOFError:
+            click.echo()
+            return
+        except UnicodeDecodeError:
+            conversation.refuse("The line is not UTF-8.")
+            continue
+        if text is None:
+            return
+        conversation.line(text)
+
+
+def _real_time(conversation: Conversation, typist: Typist) -> None:
+    """Time goes on by itself while somebody types."""
+    import time
+
+    game = conversation.game
+    start = time.monotonic()
+    while not conversation.done:
+        now = round((time.monotonic() - start) * 1000)
+        due = conversation.pass_time(now)
+        if conversation.done:
+            return
+        wait = None if due is None else max(due - now, 0) / 1000
+        try:
+            text = typist.line(wait)
+        except TimeoutError:
+            continue
+        except UnicodeDecodeError:
+            conversation.refuse("The line is not UTF-8.")
+            typist.ready()
+            continue
+        if text is None:
+            return
+        now = round((time.monotonic() - start) * 1000)
+        conversation.pass_time(now)
+        conversation.line(text)
+        if game.clock < now:  # it has gone back
+            start = time.monotonic() - game.clock / 1000
+        typist.ready()

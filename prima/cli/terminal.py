@@ -1,0 +1,232 @@
+"""Lines that somebody types, or a pipe gives, while time may go on meanwhile."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Protocol
+
+LONGEST_BYTES = 8004
+"""What is kept of a line: more than a line may have."""
+
+
+class Typist(Protocol):
+    """Gives lines one by one."""
+
+    def line(self, wait: float | None) -> str | None:
+        """The next line, or None at the end of input.
+
+        Raises:
+            TimeoutError: there is none within so many seconds.
+            UnicodeDecodeError: it is not UTF-8.
+        """
+
+    def ready(self) -> None:
+        """The last line has been carried out: the next one may be typed."""
+
+    def clear(self) -> None:
+        """Take what is being typed off the screen."""
+
+    def restore(self) -> None:
+        """Put it there again."""
+
+
+class Piped:
+    """Lines of a pipe or file, each kept only as far as a line may go."""
+
+    def __init__(self) -> None:
+        self._held = b""
+        self._over = sys.stdin is None
+        self._cut = False
+        """Whether the rest of a line is passed over."""
+
+    def line(self, wait: float | None) -> str | None:
+        """See :class:`Typist`."""
+        import select
+
+        while b"\n" not in self._held:
+            if self._over:
+                last, self._held = self._held, b""
+                return last.decode() if last else None
+            if wait is not None and not select.select([0], [], [], wait)[0]:
+                raise TimeoutError
+            got = os.read(0, 65536)
+            self._over = not got
+            self._take(got)
+        line, _, self._held = self._held.partition(b"\n")
+        return line.decode()
+
+    def _take(self, got: bytes) -> None:
+        """Keep what was read; of a line that is too long, its beginning."""
+        for piece in got.splitlines(keepends=True):
+            ends = piece.endswith(b"\n")
+            begun = len(self._held) - self._held.rfind(b"\n") - 1
+            self._held += piece.rstrip(b"\n")[: max(LONGEST_BYTES - begun, 0)]
+            self._held += b"\n" if ends else b""
+
+    def ready(self) -> None:
+        """Nothing waits to be asked."""
+
+    def clear(self) -> None:
+        """Nothing is on the screen."""
+
+    def restore(self) -> None:
+        """Nothing is on the screen."""
+
+
+class Keyboard:
+    """Lines typed at a terminal by somebody whom rows do not disturb; use as a context.
+
+    Lines are edited in a thread of their own. All else, and all that is printed, belongs to
+    the thread that asks for them.
+    """
+
+    def __init__(self, prompt: str) -> None:
+        import queue
+        import threading
+
+        self._prompt = prompt
+        self._lines: queue.Queue[str | UnicodeDecodeError | None] = queue.Queue()
+        self._asked = threading.Semaphore(1)
+        self._typing = True
+        self._thread = threading.Thread(target=self._read, daemon=True)
+
+    def __enter__(self) -> Keyboard:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._typing:
+            sys.stdout.write("\n")
+        sys.stdout.flush()
+
+    def _read(self) -> None:
+        while True:
+            self._asked.acquire()
+            try:
+                self._lines.put(input(self._prompt))
+            except UnicodeDecodeError as error:
+                self._lines.put(error)
+            except (EOFError, OSError, ValueError):
+                self._lines.put(None)
+                return
+
+    def line(self, wait: float | None) -> str | None:
+        """See :class:`Typist`."""
+        import queue
+
+        try:
+            # Without a time the wait could not be interrupted on every system.
+            got = self._lines.get(timeout=3600.0 if wait is None else wait)
+        except queue.Empty:
+            raise TimeoutError from None
+        self._typing = got is None
+        if isinstance(got, UnicodeDecodeError):
+            raise got
+        return got
+
+    def ready(self) -> None:
+        """See :class:`Typist`."""
+        self._typing = True
+        self._asked.release()
+
+    def clear(self) -> None:
+        """See :class:`Typist`."""
+        if self._typing:
+            sys.stdout.write("\r\x1b[K")
+            sys.stdout.flush()
+
+    def restore(self) -> None:
+        """See :class:`Typist`."""
+        if self._typing:
+            sys.stdout.write(self._prompt + _typed())
+            sys.stdout.flush()
+
+
+@contextmanager
+def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
+    """Give the terminal back as it was, however the session ends.
+
+    An interrupt, or the end of the terminal, ends the process at once: an exception would be
+    lost or changed in compiled modules, or while a line is edited.
+
+    Args:
+        on_signal: is called before that; what it raises is lost.
+    """
+    restore = _restoring()
+
+    def end(number: int, _frame: object) -> None:
+        restore()
+        if os.isatty(2):
+            os.write(2, b"\n")  # after the line that was begun
+        with suppress(Exception):
+            sys.stdout.flush()
+        with suppress(Exception):
+            on_signal()
+        os.write(2, b"prima: interrupted\n")
+        os._exit(128 + number)
+
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {number: signal.signal(number, end) for number in numbers}
+    try:
+        yield
+    finally:
+        restore()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _restoring() -> Callable[[], None]:
+    """What gives the terminal back as it is now; nothing where there is none."""
+    try:
+        import termios
+    except ImportError:
+        return lambda: None
+    try:
+        state = termios.tcgetattr(0)
+    except termios.error:
+        return lambda: None
+
+    def restore() -> None:
+        with suppress(termios.error):
+            termios.tcsetattr(0, termios.TCSANOW, state)
+
+    return restore
+
+
+def _typed() -> str:
+    """What has been typed of the line so far."""
+    try:
+        import readline
+
+        return readline.get_line_buffer()
+    except ImportError:
+        return ""
+
+
+def edit_lines(complete: Callable[[str], list[str]]) -> None:
+    """Let lines be edited, recalled and completed, where the system has the means.
+
+    Args:
+        complete: gives the lines that a line may become.
+    """
+    try:
+        import readline
+    except ImportError:
+        return
+    found: list[str] = []
+
+    def choose(text: str, state: int) -> str | None:
+        if state == 0:
+            found[:] = complete(text)[:50]
+        return found[state] if state < len(found) else None
+
+    readline.set_completer_delims("")
+    readline.set_completer(choose)
+    readline.parse_and_bind(
+        "bind ^I rl_complete" if "libedit" in (readline.__doc__ or "") else "tab: complete"
+    )

@@ -1,0 +1,321 @@
+"""The conversation with the author: his lines are carried out, and questions answered."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Protocol
+
+from prima.errors import UsageError
+from prima.scheduler.behavior import Behavior, State
+from prima.talk.game import Game
+from prima.talk.scene import MARK, seconds
+from prima.talk.typed import Line, help_text, read_line
+from prima.transcript.table import Row, describe
+from prima.transcript.why import Reasons
+from prima.values import read_value
+
+
+class Screen(Protocol):
+    """Where the author reads."""
+
+    interactive: bool
+    """Whether a person sits before it."""
+
+    def rows(self, rows: list[Row]) -> None:
+        """Show rows as they happen."""
+
+    def show(self, text: str) -> None:
+        """Show what was asked for."""
+
+    def tell(self, text: str) -> None:
+        """Tell what has gone wrong, or has been done."""
+
+
+class Conversation:
+    """Carries out an author's lines.
+
+    Args:
+        game: the session.
+        screen: where he reads.
+        real: whether time goes on by itself, in :meth:`pass_time`.
+        sources: files that are never written over.
+    """
+
+    def __init__(
+        self, game: Game, screen: Screen, real: bool = False, sources: Iterable[str] = ()
+    ) -> None:
+        self.game = game
+        self.screen = screen
+        self.real = real
+        self.done = False
+        """Whether the author has had enough, or the run cannot go on."""
+        self.wrong = 0
+        """How many lines were not understood."""
+        self.options: list[str] = []
+        """Some of what the question that listens takes."""
+        self._sources = {os.path.realpath(path) for path in sources}
+        self._failures = 0
+        self._told = ""
+        self._controls: dict[str, Callable[[str], None]] = {
+            "go": self._go,
+            "step": self._step,
+            "wait": self._go,
+            "back": self._back,
+            "undo": self._undo,
+            "why": self._why,
+            "who": self._who,
+            "save": self._save,
+            "help": lambda rest: self.screen.show(help_text(rest)),
+            "quit": self._quit,
+        }
+
+    # Time -----------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """Let time go on until the robot waits for the user for the first time."""
+        self._show(self.game.go())
+
+    def pass_time(self, now: int) -> int | None:
+        """Let time go on until ``now`` (ms); gives when something is due next, if ever."""
+        self._show(self.game.run(now))
+        return self.game.due()
+
+    def _show(self, some: Iterable[list[Row]]) -> None:
+        for rows in some:
+            if rows:
+                self.screen.rows(rows)
+            failures = self.game.failures
+            for failure in failures[self._failures :]:
+                self.screen.tell(f"prima: {failure.rstrip(': ')}. The session goes on.")
+            self._failures = len(failures)
+        self.options = self.game.options()
+        self._tell_state()
+
+    def _tell_state(self) -> None:
+        """Tell once why time has stopped, where nothing asks for an answer."""
+        state = self.game.stopped
+        if state:
+            self.done = True
+            why = "a run lasts no longer than a day"
+            why = "the run made more records than a run may" if state == "limit" else why
+            self.screen.tell(f"prima: {why}; the session is over.")
+            return
+        if self.game.over:
+            state = "Every application has ended; /load puts one in again."
+        elif self.game.due() is None:
+            state = "Nothing more happens by itself."
+        if state and state != self._told and self.screen.interactive:
+            self.screen.tell(state)
+        self._told = state
+
+    @property
+    def prompt(self) -> str:
+        """What stands before the author's next line."""
+        asks = self.game.asks
+        who = f" {asks.app.name} listens" if asks is not None else ""
+        return f"{seconds(self.game.clock)}{who}> "
+
+    def close(self) -> None:
+        """End the session."""
+        if not self.game.ended:
+            rows = self.game.finish()
+            if rows:
+                self.screen.rows(rows)
+
+    # Lines ----------------------------------------------------------------------------
+
+    def line(self, text: str) -> None:
+        """Carry out a line; what is wrong with it is told."""
+        try:
+            line = read_line(text)
+            if self.real and line.control in ("go", "step", "wait"):
+                if text.strip():
+                    raise UsageError("Time goes on by itself here; with --step it waits for you.")
+            elif line.control == "wait":
+                self._wait(line.linger)
+            elif line.control:
+                self._controls[line.control](line.rest)
+            else:
+                self._do(line)
+        except UsageError as error:
+            self.wrong += 1
+            self.screen.tell(str(error))
+
+    def refuse(self, message: str) -> None:
+        """Tell of a line that could not even be read."""
+        self.wrong += 1
+        self.screen.tell(message)
+
+    def _do(self, line: Line) -> None:
+        self.game.do(line, think=not self.real)
+        self._told = ""
+        if self.real:
+            return
+        self._show(self.game.end_line())
+        if line.linger:
+            self._show(self.game.run(self.game.clock + line.linger))
+        else:
+            self._show(self.game.go())
+
+    def _go(self, rest: str) -> None:
+        _nothing("go", rest)
+        self.game.keep()
+        self._told = ""
+        self.game.let_pass()
+        self._show(self.game.go())
+
+    def _wait(self, linger: int) -> None:
+        self.game.keep()
+        self._show(self.game.run(self.game.clock + linger))
+
+    def _step(self, rest: str) -> None:
+        _nothing("step", rest)
+        self.game.keep()
+        self._told = ""
+        self.game.let_pass()
+        rows = self.game.go()
+        self._show(iter([next((some for some in rows if some), [])]))
+
+    def _back(self, rest: str) -> None:
+        try:
+            clock = int(read_value("duration", rest))
+        except ValueError:
+            raise UsageError('Write "/back TIME", as in "/back 5s".') from None
+        self.game.back(clock)
+        self._returned()
+
+    def _undo(self, rest: str) -> None:
+        _nothing("undo", rest)
+        self.game.undo()
+        self._returned()
+
+    def _returned(self) -> None:
+        self._failures = len(self.game.failures)
+        self._told = ""
+        self.options = self.game.options()
+        rows = self.game.table.rows
+        row = f", after row {rows[-1].number}" if rows else ""
+        self.screen.show(f"Back at {seconds(self.game.clock)}{row}.")
+
+    def _quit(self, rest: str) -> None:
+        _nothing("quit", rest)
+        self.done = True
+
+    # Questions ------------------------------------------------------------------------
+
+    def _why(self, rest: str) -> None:
+        rows = self.game.table.rows
+        if not rows:
+            raise UsageError("There is no row yet.")
+        if rest and not (rest.isascii() and rest.isdigit() and int(rest[:9]) < len(rows)):
+            raise UsageError(f'There is no row "{rest}"; the rows are 0 to {len(rows) - 1}.')
+        row = rows[int(rest)] if rest else rows[-1]
+        self.screen.show("\n".join(_reasons(row, Reasons(self.game.records))))
+
+    def _who(self, rest: str) -> None:
+        _nothing("who", rest)
+        self.screen.show("\n".join(_situation(self.game)))
+
+    # Saving ---------------------------------------------------------------------------
+
+    def _save(self, rest: str) -> None:
+        if not rest:
+            raise UsageError('Write "/save FILE", as in "/save visit.xml".')
+        self.save(rest)
+        self.screen.tell(f"Saved {rest}.")
+
+    def check_target(self, path: str) -> None:
+        """See whether a session may be saved to a file.
+
+        Raises:
+            UsageError: it is one of the run's own documents, or something else is there.
+        """
+        if os.path.realpath(path) in self._sources:
+            raise UsageError(f"{path}: this is one of the run's own documents; write elsewhere.")
+        folder = Path(path).parent
+        try:
+            if not folder.is_dir():
+                raise UsageError(f"{path}: there is no folder {folder}.")
+            if Path(path).exists() and MARK.encode() not in _beginning(Path(path)):
+                raise UsageError(
+                    f"{path}: this file is there already and is no saved session; write elsewhere."
+                )
+        except (OSError, ValueError) as error:
+            raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
+
+    def save(self, path: str) -> None:
+        """Write the session so far as a scenario; a file is replaced as a whole or not at all.
+
+        Raises:
+            UsageError: it cannot be written there.
+        """
+        self.check_target(path)
+        new = Path(f"{path}.new")
+        try:
+            new.write_text(self.game.saved(path), encoding="utf-8")
+            os.replace(new, path)
+        except (OSError, ValueError) as error:
+            new.unlink(missing_ok=True)
+            raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
+
+
+def _why_not(error: OSError | ValueError) -> str:
+    return (isinstance(error, OSError) and error.strerror) or "that is not a file's name"
+
+
+def _beginning(path: Path) -> bytes:
+    """The first bytes of a file; nothing of what is no file."""
+    if not path.is_file():
+        return b""
+    with path.open("rb") as stream:
+        return stream.read(200)
+
+
+def _nothing(name: str, rest: str) -> None:
+    if rest:
+        raise UsageError(f'Nothing follows "/{name}".')
+
+
+def _reasons(row: Row, reasons: Reasons) -> list[str]:
+    """Why a row came where it did."""
+    lines = [f"Row {row.number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
+    if row.source:
+        lines.append(f"Requested at {row.source}.")
+    if row.actor != "R":
+        lines.append("It came from outside; no rule decided when.")
+    return lines + [f"{reason.time:.3f} s: {reason.text}" for reason in reasons.of(row)]
+
+
+def _situation(game: Game) -> list[str]:
+    """What is there, runs, waits and listens."""
+    session = game.rehearsal.session
+    memory = session.mediator.memory
+    lines = [f"{seconds(game.clock)}: {len(memory.behaviors)} in working memory"]
+    for name, app in session.apps.items():
+        there = name in memory.apps and not app.over
+        lines.append(f"  {app.kind.upper()} {name}" + ("" if there else " (not there)"))
+    for state in (State.RUNNING, State.WAITING, State.LINKED):
+        for ab in memory.behaviors.values():
+            if ab.state is state:
+                lines.append(f"  {state.value}: {_behavior(ab)}")
+    for stream in memory.streams.values():
+        if stream.open:
+            held = " has the floor" if stream is memory.holder else ""
+            held = " is suspended" if stream.suspended is not None else held
+            lines.append(f"  stream {stream.name}{held}: {', '.join(stream.members) or 'held'}")
+    if game.asks is not None:
+        takes = f" for: {', '.join(options)}" if (options := game.options()) else ""
+        lines.append(f"  {game.asks.app.name} listens{takes}")
+    return lines
+
+
+def _behavior(ab: Behavior) -> str:
+    command = ab.command
+    what = "a unit"
+    if command is not None:
+        what = describe(command.type, command.text, dict(command.args))
+    devices = f" [{', '.join(sorted(ab.devices))}]" if ab.devices else ""
+    after = f" after {', '.join(sorted(ab.waits_for))}" if ab.waits_for else ""
+    return f"{ab.id} {what}{devices}{after}"

@@ -1,0 +1,398 @@
+"""A run whose user is played: time goes on as far as it is let, and can go back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from prima.errors import DocumentError, Problem, UsageError, one_of
+from prima.interpreter.application import Interpreter
+from prima.interpreter.elements import Document
+from prima.interpreter.events import Events
+from prima.loading import Loaded, favourite_problem
+from prima.messages import Record
+from prima.scheduler.behavior import Behavior
+from prima.scheduler.selection import policy_named
+from prima.sim.hearing import check_hearing
+from prima.sim.rehearsal import Cast, Rehearsal, check_cast
+from prima.sim.scenario import Doing, Scenario, read_scenario
+from prima.sim.services import Web
+from prima.talk.phrases import phrases
+from prima.talk.scene import Scene, comment, seconds, when
+from prima.talk.typed import Line, Names
+from prima.transcript.lines import finished
+from prima.transcript.table import Growing, Row
+from prima.values import LONGEST_MS
+
+THINKING_MS = 1000
+"""How long the user thinks before he answers a question, where time waits for him."""
+PATIENCE_MS = 60_000
+"""How long time goes on without a row before the author is asked again."""
+AT_ONCE_MS = 600_000
+"""How long it goes on at once."""
+MOST_LINES = 10_000
+"""Lines that a session may have."""
+FILE = "typed"
+"""The name of what is typed, where it is read as a scenario."""
+MOVES = ("walk", "follow", "stay", "leave")
+"""What only somebody who is there can do."""
+
+Sink = Callable[[list[Record]], object]
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What the user has done: when (ms), as elements, and with the row that was last."""
+
+    at: int
+    xml: str
+    doings: list[Doing]
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """Where a session can go back to: a time (ms), and how much had been done."""
+
+    clock: int
+    lines: int
+    passing: str
+
+
+class Game:
+    """One session. Times are ms; ``clock`` is the author's, who is never behind the run.
+
+    Args:
+        loaded: the scenario that is played, with all that it names.
+        folder: where it lies.
+        policy: the mediator's policy; by default the scenario's.
+        scripted: whether the scenario's own user does what it says as well.
+        web: what fetches from hosts.
+        sink: is given the records of each instant, times in ms; then nothing can be taken back.
+
+    Raises:
+        UsageError: there is no such policy.
+    """
+
+    def __init__(
+        self,
+        loaded: Loaded,
+        folder: str = "",
+        policy: str | None = None,
+        scripted: bool = False,
+        web: Web | None = None,
+        sink: Sink | None = None,
+    ) -> None:
+        cast = loaded.cast
+        self.policy = policy or cast.scenario.policy
+        self._chosen = policy_named(self.policy)
+        if problem := favourite_problem(self.policy, cast.documents):
+            raise UsageError(" ".join(problem))
+        self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
+        scenario = self._read([])
+        scenario.services = cast.scenario.services  # with what they answer fetches with
+        self.cast: Cast = replace(cast, scenario=scenario)
+        self.names = _names(self.cast)
+        self._web = web
+        self._sink = sink
+        self.lines: list[Played] = []
+        self.points: list[Point] = []
+        self._begin()
+
+    def _begin(self) -> None:
+        """Start the run from its beginning, with all that has been done so far."""
+        self.rehearsal = Rehearsal(self.cast, self._chosen, None, self._web)
+        self.table = Growing()
+        self.records: list[Record] = []
+        """All records so far, times in seconds."""
+        self.clock = 0
+        self.ended = False
+        self.passing = ""
+        """The question that the user lets pass."""
+        self._busy: Callable[[], bool] | None = None
+        for line in self.lines:
+            self.rehearsal.person.play(line.at, line.doings)
+
+    # What is going on ---------------------------------------------------------------
+
+    @property
+    def over(self) -> bool:
+        """Whether every application has ended."""
+        return self.rehearsal.outcome == "over" or self.rehearsal.over
+
+    @property
+    def stopped(self) -> str:
+        """Why the run cannot go on, if it cannot: ``limit`` or ``until``."""
+        if self.clock >= LONGEST_MS:
+            return "until"
+        return "limit" if self.rehearsal.outcome == "limit" else ""
+
+    @property
+    def failures(self) -> list[str]:
+        """Applications that have ended by an error, as ``NAME: what``."""
+        return self.rehearsal.session.failures
+
+    @property
+    def asks(self) -> Behavior | None:
+        """The question that listens, if one does."""
+        question = self.rehearsal.session.mediator.question()
+        return question if question and question.listening and not question.silent else None
+
+    @property
+    def busy(self) -> bool:
+        """Whether the user is still at what was typed last."""
+        if self._busy is not None and self._busy():
+            self._busy = None
+        return self._busy is not None
+
+    def options(self) -> list[str]:
+        """Some of what the question that listens takes; empty where that is not known."""
+        question = self.asks
+        if question is None or question.run is None:
+            return []
+        app = self.rehearsal.session.apps[question.app.name]
+        answers = app.answers(question.run.number) if isinstance(app, Interpreter) else None
+        return phrases(answers) if answers is not None else []
+
+    # Time -----------------------------------------------------------------------------
+
+    def due(self) -> int | None:
+        """When the run goes on by itself (ms), if it does."""
+        return None if self.rehearsal.outcome or self.rehearsal.over else self.rehearsal.due()
+
+    def advance(self, until: int) -> list[Row] | None:
+        """Carry out the next instant up to a time, and give its rows; None if there is none."""
+        until = min(until, LONGEST_MS)
+        records = self.rehearsal.advance(until)
+        if records is None:
+            return None
+        self.clock = max(self.clock, self.rehearsal.now)
+        return self._take(records)
+
+    def _take(self, records: list[Record]) -> list[Row]:
+        if self._sink is not None:
+            self._sink(records)
+        done = [finished(record) for record in records]
+        self.records += done
+        return self.table.add(done)
+
+    def run(self, until: int) -> Iterator[list[Row]]:
+        """Let time go on until then; rows come as they happen."""
+        until = min(until, LONGEST_MS)
+        while (rows := self.advance(until)) is not None:
+            yield rows
+        self.clock = max(self.clock, until)
+
+    def go(self) -> Iterator[list[Row]]:
+        """Let time go on until something needs the user, or a minute passes without a row."""
+        latest = self.clock
+        most = self.clock + AT_ONCE_MS
+        while not self.waits():
+            until = min(latest + PATIENCE_MS, most)
+            rows = self.advance(until)
+            if rows is None:
+                if self.due() is not None:
+                    self.clock = max(self.clock, min(until, LONGEST_MS))
+                return
+            if rows:
+                latest = self.rehearsal.now
+            yield rows
+
+    def waits(self) -> bool:
+        """Whether the run waits for the user: a question listens, or nothing is due."""
+        asks = self.asks
+        if asks is None or asks.id != self.passing:
+            self.passing = ""
+        if self.busy:
+            return False
+        if self.due() is None:
+            return True
+        return asks is not None and not self.passing and not self._is_answered(asks)
+
+    def _is_answered(self, asks: Behavior) -> bool:
+        """Whether the scenario's own user does something before a question has timed out."""
+        due = self.rehearsal.person.due()
+        task = self.rehearsal.robot.tasks.get(asks.id)
+        return due is not None and (task is None or task.ends is None or due <= task.ends)
+
+    def let_pass(self) -> None:
+        """The user says nothing to the question that listens."""
+        self.passing = self.asks.id if self.asks else ""
+
+    def finish(self) -> list[Row]:
+        """End the run here; gives its last rows."""
+        rows = [row for some in self.run(self.clock) for row in some]
+        self.ended = True
+        return rows + self._take(self.rehearsal.finish(self.clock))
+
+    # Doing ----------------------------------------------------------------------------
+
+    def do(self, line: Line, think: bool = False) -> int:
+        """Let the user do something now; gives when he begins.
+
+        Args:
+            line: what was typed.
+            think: whether time waits for him, so that he thinks before he answers.
+
+        Raises:
+            UsageError: it names what is not there, or nobody is there to do it.
+        """
+        if len(self.lines) >= MOST_LINES:
+            raise UsageError(f"A session may have {MOST_LINES} lines: save it, and begin anew.")
+        doings = self._doings(line)
+        self._check_there(line, doings)
+        at = max(self.clock, self.rehearsal.now + 1)
+        if think and doings[0].name == "say":
+            at += self._thinking()
+        if at > LONGEST_MS:
+            raise UsageError("A run lasts no longer than a day.")
+        self.keep()
+        if self.over:
+            self.rehearsal.outcome = ""  # what is put in again goes on
+        self.lines.append(Played(at, line.xml, doings, self._last_row()))
+        self._busy = self.rehearsal.person.play(at, doings)
+        return at
+
+    def _thinking(self) -> int:
+        """How long the user thinks before he answers the question for which time has stopped."""
+        if self.asks is None or self.clock > self.rehearsal.now:
+            return 0
+        task = self.rehearsal.robot.tasks.get(self.asks.id)
+        left = task.ends - self.clock if task is not None and task.ends else 2 * THINKING_MS
+        return min(THINKING_MS, max(left // 2, 0))
+
+    def end_line(self) -> Iterator[list[Row]]:
+        """Let time go on until the user has done what was typed last."""
+        while self.busy and (rows := self.advance(LONGEST_MS)) is not None:
+            yield rows
+
+    def _last_row(self) -> str:
+        if not self.table.rows:
+            return "before the first row"
+        row = self.table.rows[-1]
+        what = " ".join(filter(None, (row.app, row.what)))
+        return f"after row {row.number}, {row.time:.2f} s: {what[:200]}"
+
+    def _check_there(self, line: Line, doings: list[Doing]) -> None:
+        if self.over and not line.loads:
+            raise UsageError(
+                "Every application has ended. Put one in again"
+                f" (/load {one_of(self.names.applications)}), or type /quit."
+            )
+        if self.rehearsal.world.person is None:
+            for doing in doings:
+                if doing.name in MOVES:
+                    raise UsageError(f'Nobody is there to do "/{doing.name}".')
+        session = self.rehearsal.session
+        for doing in doings[:1]:
+            app = session.apps.get(doing.values.get("application", ""))
+            there = app is not None and app.name in session.mediator.memory.apps and not app.over
+            if app is not None and doing.name == "load" and there:
+                raise UsageError(f'"{app.name}" is there already. Take it out with /unload.')
+            if app is not None and doing.name == "unload" and not there:
+                raise UsageError(f'"{app.name}" is not there. Put it in with /load.')
+
+    def _doings(self, line: Line) -> list[Doing]:
+        """What a line says, read and checked as a scenario's ``when``."""
+        scenario = self._read([when(0, line.xml)])
+        made = replace(self.cast, scenario=scenario)
+        last = scenario.node.all("when")[-1].place.line
+        found = [*check_cast(made, FILE), *check_hearing(made)]
+        problems = [one for one in found if one.place.file == FILE and one.place.line == last]
+        if problems:
+            raise UsageError(self._told(problems[0]))
+        return [one for one in scenario.whens if one.trigger == "at"][-1].doings
+
+    def _told(self, problem: Problem) -> str:
+        """A problem in what was typed, with the words that there are if none is near."""
+        remedy = problem.remedy
+        if problem.code == "no-such-name" and not remedy:
+            what = problem.message.removeprefix("There is no ").partition('"')[0].strip()
+            words = {
+                "touch sensor": self.names.sensors,
+                "place or thing": self.names.points,
+                "device": self.names.devices,
+                "application": self.names.applications,
+            }.get(what, frozenset())
+            remedy = f"Write {one_of(words)}." if words else ""
+        return f"{problem.message} {remedy}".rstrip()
+
+    def _read(self, whens: list[str]) -> Scenario:
+        """The scene as a scenario, with what is done."""
+        try:
+            return read_scenario(FILE, self.scene.text(whens).encode())
+        except DocumentError as error:
+            raise UsageError(self._told(error.problems[0])) from None
+
+    # Going back ------------------------------------------------------------------------
+
+    def keep(self) -> None:
+        """Keep this moment, to go back to it."""
+        self.points.append(Point(self.clock, len(self.lines), self.passing))
+        del self.points[:-MOST_LINES]
+
+    def undo(self) -> None:
+        """Go back to where the last line was typed.
+
+        Raises:
+            UsageError: nothing was typed, or nothing can be taken back.
+        """
+        self._check_back()
+        if not self.points:
+            raise UsageError("There is nothing to take back.")
+        point = self.points.pop()
+        self.lines = self.lines[: point.lines]
+        self._return(point.clock)
+        self.passing = point.passing
+
+    def back(self, clock: int) -> None:
+        """Go back to a time; what was done later is taken back.
+
+        Raises:
+            UsageError: it is still to come, or nothing can be taken back.
+        """
+        self._check_back()
+        if clock > self.clock:
+            raise UsageError(
+                f"It is {seconds(self.clock)} only: /wait {seconds(clock - self.clock)} goes on."
+            )
+        self.lines = [line for line in self.lines if line.at <= clock]
+        self.points = [point for point in self.points if point.clock < clock]
+        self._return(clock)
+
+    def _check_back(self) -> None:
+        if self._sink is not None:
+            raise UsageError("What has been written as JSON cannot be taken back.")
+        if self._web is not None:
+            raise UsageError("What hosts were asked cannot be taken back.")
+
+    def _return(self, clock: int) -> None:
+        self._begin()
+        for _ in self.run(clock):
+            pass
+
+    # Saving ---------------------------------------------------------------------------
+
+    def saved(self, target: str) -> str:
+        """The session so far as a scenario that is written to a file, and repeats it."""
+        whens = [
+            f"<!-- {comment(line.after)} -->\n  {when(line.at, line.xml)}" for line in self.lines
+        ]
+        return self.scene.text(
+            whens,
+            seconds(self.clock),
+            target,
+            "Played with prima talk. It ends where the session ended: write a later"
+            ' until="..." to let it go on.',
+        )
+
+
+def _names(cast: Cast) -> Names:
+    events = [Events(one) for one in cast.documents if isinstance(one, Document)]
+    return Names(
+        sensors=frozenset(cast.robot.touch),
+        points=frozenset(cast.world.places) | frozenset(cast.world.things),
+        devices=frozenset(cast.robot.devices),
+        applications=frozenset(doc.id for doc in cast.documents),
+        events=frozenset(name for one in events for name in one.heard if name),
+    )

@@ -1,0 +1,76 @@
+"""Some of what a question takes, to be offered to somebody who types."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from prima.interpreter.grammar import (
+    Answers,
+    Choice,
+    Grammar,
+    Part,
+    Reference,
+    Sequence,
+    Tag,
+    Words,
+)
+
+MOST = 30
+"""Phrases that are offered."""
+DEEP = 12
+"""Parts inside each other that are looked into."""
+STEPS = 2000
+"""Expansions that are looked at."""
+TYPES = {"boolean": ["yes", "no"]}
+"""What the built-in types take, where that can be said in a few words."""
+
+
+def phrases(answers: Answers) -> list[str]:
+    """Some of what a field takes, without what speech does not carry, each once."""
+    found = dict.fromkeys(islice(answers.options, MOST))
+    for grammar in answers.grammars:
+        found |= dict.fromkeys(islice(_Phrases(grammar).all(), MOST))
+    found |= dict.fromkeys(TYPES.get(answers.type, ()))
+    return [phrase for phrase in islice(found, MOST) if phrase]
+
+
+class _Phrases:
+    """Some phrases of one grammar, found in a bounded number of steps."""
+
+    def __init__(self, grammar: Grammar) -> None:
+        self._grammar = grammar
+        self._left = STEPS
+
+    def all(self) -> Iterator[str]:
+        """Phrases of the root rule."""
+        return self._of(self._grammar.rules.get(self._grammar.root), 0)
+
+    def _of(self, part: Part | None, depth: int) -> Iterator[str]:
+        """Phrases of an expansion: each part once where it may be repeated."""
+        self._left -= 1
+        if depth > DEEP or self._left < 0:
+            return
+        match part:
+            case Words(words):
+                yield words
+            case Tag():
+                yield ""
+            case Reference(rule):
+                yield from self._of(self._grammar.rules.get(rule), depth + 1)
+            case Choice(parts):
+                for one in parts:
+                    yield from islice(self._of(one, depth + 1), MOST)
+            case Sequence(parts, low, high):
+                if high:
+                    yield from self._joined(parts, depth + 1)
+                if not low:
+                    yield ""
+
+    def _joined(self, parts: list[Part], depth: int) -> list[str]:
+        """Phrases of parts one after another."""
+        found = [""]
+        for part in parts:
+            then = list(islice(self._of(part, depth), MOST))
+            found = [" ".join(filter(None, (one, two))) for one in found for two in then][:MOST]
+        return found

@@ -1,0 +1,127 @@
+"""A scenario as text: the one that is played, and the one that a session is saved as."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from collections.abc import Iterable
+from html import escape
+from pathlib import Path
+
+from prima.markup.tree import Node
+from prima.prelude import START
+from prima.values import NAME
+
+HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
+MARK = "Played with prima talk."
+"""What a saved session begins with, so that it alone is written over."""
+USERS = frozenset(("say", "hang-up", "touch", "walk", "look", "follow", "stay", "leave"))
+"""Elements of a ``when`` that are the user's doing."""
+KEPT = ("robot", "person", "connection", "application", "service", "transfer", "answer", "when")
+"""What of a scenario is played, in the order in which it is written."""
+PATHS = {("application", "src"), ("reply", "src"), ("scenario", "world"), ("scenario", "robot")}
+
+
+class Scene:
+    """The scenario that is played: another one's, without what its user does, unless wanted.
+
+    Args:
+        root: that scenario's document.
+        folder: where it lies.
+        policy: the mediator's policy.
+        scripted: whether its user does what it says as well.
+    """
+
+    def __init__(self, root: Node, folder: str, policy: str, scripted: bool) -> None:
+        self.root = root
+        self.folder = folder
+        self.policy = policy
+        self.scripted = scripted
+        self.left_out = 0
+        """How many doings of the scenario's user are left to the author."""
+        if not scripted:
+            for node in root.nodes:
+                self.left_out += node.tag == "answer"
+                self.left_out += len(node.all(*USERS)) if node.tag == "when" else 0
+
+    def text(
+        self,
+        whens: Iterable[str] = (),
+        until: str = "86400s",
+        target: str | None = None,
+        remark: str = "",
+    ) -> str:
+        """The scenario's document.
+
+        Args:
+            whens: what the author's user does, as elements, each with its comment if any.
+            until: when the run ends.
+            target: the file that it is written to, for its paths; by default they stay.
+            remark: a comment at its beginning.
+        """
+        given = dict(self.root.attributes)
+        stem = Path(target).stem if target else ""
+        given["id"] = stem if re.fullmatch(NAME, stem) else given["id"]
+        given |= {"policy": self.policy, "until": until, "date": given.get("date", START)}
+        lines = [HEAD + (f"<!-- {comment(remark)} -->\n" if remark else "")]
+        lines.append('<scenario xmlns="urn:prima:scenario:1"')
+        lines.append(f"{self._attributes('scenario', given, target)}>\n")
+        nodes = [node for tag in KEPT for node in self.root.all(tag)]
+        lines += [f"  {made}\n" for node in nodes if (made := self._element(node, target))]
+        lines += [f"  {when}\n" for when in whens]
+        return "".join([*lines, "</scenario>\n"])
+
+    def _attributes(self, tag: str, given: dict[str, str], target: str | None) -> str:
+        made = ""
+        for name, value in given.items():
+            if (tag, name) in PATHS and target is not None:
+                value = self._path(value, target)
+            made += f' {name}="{_quoted(value)}"'
+        return made
+
+    def _path(self, path: str, target: str) -> str:
+        """A path of the scenario's as seen from another file."""
+        if os.path.isabs(path):
+            return path
+        start = os.path.dirname(target) or "."
+        relative = os.path.relpath(os.path.join(self.folder, path), start)
+        return posixpath.normpath(Path(relative).as_posix())
+
+    def _element(self, node: Node, target: str | None) -> str:
+        """An element as text; empty where nothing of it is played."""
+        if not self.scripted and (node.tag in USERS or node.tag == "answer"):
+            return ""
+        content = "".join(
+            escape(item, quote=False)
+            if isinstance(item, str) and item.strip()
+            else self._element(item, target)
+            if not isinstance(item, str)
+            else ""
+            for item in node.content
+        )
+        kept = {one.tag for one in node.nodes} - USERS - {"wait"}
+        if node.tag == "when" and not self.scripted and not kept:
+            return ""
+        start = f"<{node.tag}{self._attributes(node.tag, node.attributes, target)}"
+        return f"{start}>{content}</{node.tag}>" if content else f"{start}/>"
+
+
+def _quoted(value: str) -> str:
+    """A value as it is written in an attribute: white space in it is kept."""
+    return re.sub(r"[\t\n\r]", lambda found: f"&#{ord(found[0])};", escape(value))
+
+
+def comment(text: str) -> str:
+    """Text that may stand in a comment."""
+    return re.sub(r"-(?=-|$)", "- ", text)
+
+
+def when(at: int, xml: str) -> str:
+    """What is done at a time (ms)."""
+    return f'<when at="{seconds(at)}">{xml}</when>'
+
+
+def seconds(ms: int) -> str:
+    """A time as documents have it."""
+    return f"{ms / 1000:.3f}".rstrip("0").rstrip(".") + "s"

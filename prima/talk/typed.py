@@ -1,0 +1,300 @@
+"""What an author types, as elements of a scenario's ``when``: there is no second language."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from html import escape
+
+from prima.errors import UsageError, did_you_mean
+from prima.values import read_value
+
+LONGEST_LINE = 2000
+"""Letters that a line may have."""
+UNFIT = re.compile("[^\t -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What no document may hold."""
+PIECE = re.compile(r"(?:^|\s+)(?=/[^\W\d])")
+"""Before a command, wherever it stands in a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What may be named in commands, in the run that goes on."""
+
+    sensors: frozenset[str] = frozenset()
+    points: frozenset[str] = frozenset()
+    devices: frozenset[str] = frozenset()
+    applications: frozenset[str] = frozenset()
+    events: frozenset[str] = frozenset()
+    """Events that applications handle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command: how it is written, what it does, and the element that it stands for."""
+
+    name: str
+    usage: str
+    help: str
+    element: Callable[[str], str] | None = None
+    """Gives the element of a ``when`` for what follows the name; None for what is none."""
+    names: Callable[[Names], Iterable[str]] = lambda names: ()
+    """What may follow."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line: doings as XML, and for how long (ms) time goes on after them, if that is said.
+
+    ``control`` is the command of a line that is none of the user's doing, ``rest`` what follows.
+    """
+
+    xml: str = ""
+    linger: int = 0
+    control: str = ""
+    rest: str = ""
+
+    @property
+    def loads(self) -> bool:
+        """Whether it puts an application in again."""
+        return "<load " in self.xml
+
+
+def element(tag: str, text: str = "", **values: str) -> str:
+    """An element with attributes; those without a value are left out."""
+    given = "".join(f' {key}="{escape(value)}"' for key, value in values.items() if value)
+    content = escape(text, quote=False)
+    return f"<{tag}{given}>{content}</{tag}>" if text else f"<{tag}{given}/>"
+
+
+def _plain(tag: str) -> Callable[[str], str]:
+    """A command with nothing behind its name."""
+
+    def make(rest: str) -> str:
+        if rest:
+            raise UsageError(f'Nothing follows "/{tag}".')
+        return element(tag)
+
+    return make
+
+
+def _word(tag: str, attribute: str) -> Callable[[str], str]:
+    """A command with one word behind its name."""
+
+    def make(rest: str) -> str:
+        if not rest or " " in rest:
+            raise UsageError(f'Write "{COMMANDS[tag].usage}".')
+        return element(tag, **{attribute: rest})
+
+    return make
+
+
+def _text(tag: str) -> Callable[[str], str]:
+    """A command with a text behind its name."""
+
+    def make(rest: str) -> str:
+        if not rest:
+            raise UsageError(f'Write "{COMMANDS[tag].usage}".')
+        return element(tag, rest)
+
+    return make
+
+
+def _look(rest: str) -> str:
+    return _word("look", "at")(rest.removeprefix("at "))
+
+
+def _walk(rest: str) -> str:
+    words = rest.removeprefix("to ").replace(",", " ").split()
+    if len(words) == 1:
+        return element("walk", to=words[0])
+    if len(words) == 2:
+        for word in words:
+            _read("number", word)
+        return element("walk", x=words[0], y=words[1])
+    raise UsageError(f'Write "{COMMANDS["walk"].usage}".')
+
+
+def _follow(rest: str) -> str:
+    return element("follow", distance=rest)
+
+
+def _release(rest: str) -> str:
+    return element("release", resume=rest)
+
+
+def _message(rest: str) -> str:
+    found = re.fullmatch(r"from (.+?): (.+)", rest)
+    if rest.startswith("from ") and found is None:
+        raise UsageError(f'Write "{COMMANDS["message"].usage}".')
+    return element("message", found[2], **{"from": found[1]}) if found else element("message", rest)
+
+
+def _fail(rest: str) -> str:
+    device, _, how = rest.partition(" ")
+    if not device or how not in ("", "hangs"):
+        raise UsageError(f'Write "{COMMANDS["fail"].usage}".')
+    return element("fail", device=device, hangs="true" if how else "")
+
+
+def _event(rest: str) -> str:
+    name, *pairs = _words(rest) or [""]
+    if not name or any("=" not in pair[1:] for pair in pairs):
+        raise UsageError(f'Write "{COMMANDS["event"].usage}".')
+    split = [pair.partition("=") for pair in pairs]
+    data = "".join(f'<data name="{escape(key)}" value="{escape(text)}"/>' for key, _, text in split)
+    return f'<event name="{escape(name)}">{data}</event>' if data else element("event", name=name)
+
+
+def _sensor(rest: str) -> str:
+    words = _words(rest.replace("=", " ", 1))
+    if len(words) != 2:
+        raise UsageError(f'Write "{COMMANDS["sensor"].usage}".')
+    return element("sensor", name=words[0], value=words[1])
+
+
+def _words(text: str) -> list[str]:
+    """Words, where quotation marks keep several together."""
+    try:
+        return shlex.split(text)
+    except ValueError:
+        raise UsageError("A quotation mark is not closed.") from None
+
+
+def _read(kind: str, text: str) -> int:
+    """A time in ms, or another value that is only looked at."""
+    try:
+        value = read_value(kind, text)
+    except ValueError as error:
+        raise UsageError(f'"{text}" {error}') from None
+    return int(value)
+
+
+COMMANDS = {
+    one.name: one
+    for one in (
+        Command("say", "/say TEXT", "says something; a line without a command does so too",
+            _text("say")),
+        Command("touch", "/touch SENSOR", "touches the robot", _word("touch", "sensor"),
+            lambda names: names.sensors),
+        Command("walk", "/walk PLACE, /walk X Y", "walks to a place or thing, or to a point in metres",
+            _walk, lambda names: names.points),
+        Command("look", "/look at PLACE, /look at robot", "looks at something", _look,
+            lambda names: [f"at {one}" for one in (*names.points, "robot")]),
+        Command("follow", "/follow, /follow METRES", "goes along behind the robot", _follow),
+        Command("stay", "/stay", "stays where he is", _plain("stay")),
+        Command("leave", "/leave", "goes away and is seen no more", _plain("leave")),
+        Command("hang-up", "/hang-up", "hangs up", _plain("hang-up")),
+        Command("message", "/message from NAME: TEXT", "a message arrives", _message),
+        Command("event", "/event NAME KEY=VALUE ...", "an event of the surroundings", _event,
+            lambda names: names.events),
+        Command("sensor", "/sensor NAME=VALUE", "a sensor's value changes", _sensor),
+        Command("fail", "/fail DEVICE, /fail DEVICE hangs", "a device fails, or hangs", _fail,
+            lambda names: names.devices),
+        Command("repair", "/repair DEVICE", "it works again", _word("repair", "device"),
+            lambda names: names.devices),
+        Command("emergency", "/emergency", "the emergency stop is pressed", _plain("emergency")),
+        Command("release", "/release, /release false",
+            "it is released; with false, what was stopped is given up", _release),
+        Command("unload", "/unload APPLICATION", "an application is taken out",
+            _word("unload", "application"), lambda names: names.applications),
+        Command("load", "/load APPLICATION", "one that has ended is put in again",
+            _word("load", "application"), lambda names: names.applications),
+        Command("note", "/note TEXT", "a remark for the reader", _text("note")),
+        Command("wait", "/wait TIME", "time goes on so long, as in /wait 3s"),
+        Command("go", "/go", "time goes on until something needs you; an empty line does so too"),
+        Command("step", "/step", "time goes on until the next row"),
+        Command("back", "/back TIME", "goes back to a time of the run, as in /back 5s"),
+        Command("undo", "/undo", "takes the last line back"),
+        Command("why", "/why, /why ROW", "says why the last row came, or another"),
+        Command("who", "/who", "says what runs, what waits and what is asked"),
+        Command("save", "/save FILE", "writes the session as a scenario"),
+        Command("help", "/help, /help COMMAND", "says this"),
+        Command("quit", "/quit", "ends the session"),
+    )
+}  # fmt: skip
+"""All commands, in the order of the help."""
+
+
+def read_line(text: str) -> Line:
+    """Read a line.
+
+    Raises:
+        UsageError: it is no line; the message says what to write.
+    """
+    if len(text) > LONGEST_LINE:
+        raise UsageError(f"A line may have {LONGEST_LINE} letters; this one has more.")
+    if found := UNFIT.search(text):
+        raise UsageError(f"The line holds a character that is none: U+{ord(found[0]):04X}.")
+    words = text.split(maxsplit=1)
+    name = _name(words[0])[0] if words else "wait"
+    if COMMANDS[name].element is None and name != "wait":
+        return Line(control=name, rest="".join(words[1:]).strip())
+    pieces = [" ".join(piece.split()) for piece in PIECE.split(text)]
+    pieces = [piece for piece in pieces if piece]
+    made: list[str] = []
+    linger = 0
+    for piece in pieces:
+        name, rest = _name(piece)
+        if name == "wait":
+            if not rest:
+                raise UsageError('Write "/wait TIME", as in "/wait 3s".')
+            linger += _read("duration", rest)
+            continue
+        make = COMMANDS[name].element
+        if make is None:
+            raise UsageError(f'"/{name}" stands alone on its line.')
+        if linger and made:
+            made.append(element("wait", **{"for": f"{linger}ms"}))
+        elif linger:
+            raise UsageError('A line begins with what is done: "/touch head /wait 3s /say Stop."')
+        linger = 0
+        made.append(make(rest))
+    if linger and not made:
+        return Line(linger=linger, control="wait")
+    return Line("".join(made), linger) if made else Line(control="go")
+
+
+def _name(piece: str) -> tuple[str, str]:
+    """A piece's command, and what follows it."""
+    if not piece.startswith("/"):
+        return "say", piece
+    word, _, rest = piece[1:].partition(" ")
+    if word not in COMMANDS:
+        hint = did_you_mean(f"/{word}", [f"/{name}" for name in COMMANDS]) or "Type /help."
+        raise UsageError(f'There is no command "/{word[:60]}". {hint}')
+    return word, rest.strip()
+
+
+def complete(text: str, names: Names, options: Iterable[str]) -> list[str]:
+    """Lines that a line may become: commands, what may follow one, answers to a question."""
+    start = max(match.end() for match in re.finditer(r"(?:^|\s+(?=/))", text))
+    before, piece = text[:start], text[start:]
+    if not piece.startswith("/"):
+        return [one for one in options if one.casefold().startswith(piece.casefold())]
+    word, space, rest = piece[1:].partition(" ")
+    if not space:
+        return [f"{before}/{name} " for name in COMMANDS if name.startswith(word)]
+    if word not in COMMANDS:
+        return []
+    choices = sorted(COMMANDS[word].names(names))
+    return [f"{before}/{word} {one}" for one in choices if one.startswith(rest.lstrip())]
+
+
+def help_text(name: str = "") -> str:
+    """What the commands do, or one.
+
+    Raises:
+        UsageError: there is no such command.
+    """
+    name = name.removeprefix("/")
+    if name and name not in COMMANDS:
+        _name(f"/{name}")
+    chosen = [COMMANDS[name]] if name else list(COMMANDS.values())
+    wide = max(len(one.usage) for one in chosen)
+    lines = [f"{one.usage:<{wide}}  {one.help}" for one in chosen]
+    if not name:
+        lines.append("Several on one line happen in sequence: Yes. /wait 2s /touch head")
+    return "\n".join(lines)
