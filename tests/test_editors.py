@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -153,6 +155,51 @@ def test_relax_ng_says_what_the_table_says() -> None:
     for element in DIALOGUE.elements.values():
         assert f"\ne-{element.key} =\n  element {element.tag} {{" in text
     assert "(attribute event { kind-event } | attribute event-expr { kind-expression })" in text
+
+
+PAGE = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    """The examples of the page in a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+
+
+def test_settings_of_the_page_are_json_and_name_what_is_there() -> None:
+    package, made = map(json.loads, blocks("json"))
+    assert package["main"] == "extension.js"
+    assert [Path(name).name for name in made["xml.catalogs"]] == ["catalog.xml"]
+
+
+def test_javascript_of_the_page_is_javascript(tmp_path: Path) -> None:
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not here")
+    (text,) = blocks("js")
+    (tmp_path / "extension.js").write_text(text, encoding="utf-8")
+    subprocess.run([node, "--check", "extension.js"], cwd=tmp_path, check=True)
+
+
+def test_emacs_lisp_of_the_page_finds_the_schemas(tmp_path: Path) -> None:
+    emacs = shutil.which("emacs")
+    if emacs is None:
+        pytest.skip("Emacs is not here")
+    _, setting = blocks("elisp")
+    script = tmp_path / "check.el"
+    found = "(setq rng-schema-locating-files (list"
+    begin, _, rest = EMACS.partition(found)
+    assert rest
+    script.write_text(setting + begin + rest.partition("\n")[2], encoding="utf-8")
+    shutil.copytree(SCHEMAS, tmp_path / "schemas")
+    (tmp_path / "x.xml").write_text(WRONG["element"], encoding="utf-8")
+    done = subprocess.run(
+        [emacs, "--batch", "-Q", "-l", str(script), "x.xml"],
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+    )
+    assert "x.xml dialogue.rnc 1" in done.stdout, done.stderr
 
 
 def prima(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:

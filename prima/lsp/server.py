@@ -74,15 +74,16 @@ class Server(LanguageServer):
         self.waiting: dict[Path, asyncio.TimerHandle] = {}
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Tell of a defect on stderr; nobody who writes a document wants a window about it."""
-        logger.error("%s: %s", type(error).__name__, error)
+        """Keep quiet of what an editor has sent in a wrong way: it gets its answer."""
+        logger.debug("%s: %s", type(error).__name__, error)
 
     # Places -------------------------------------------------------------------
 
     @property
     def encoding(self) -> str:
         """What the columns of this editor count."""
-        return str(getattr(self.workspace.position_encoding, "value", "utf-16"))
+        encoding = self.workspace.position_encoding or lsp.PositionEncodingKind.Utf16
+        return str(getattr(encoding, "value", encoding))
 
     def offset(self, lines: Lines, position: lsp.Position) -> int:
         """The offset of a position."""
@@ -109,7 +110,7 @@ class Server(LanguageServer):
     def asked(self, params: Any) -> tuple[Path, Text, int] | None:
         """The document and the offset that a request is about."""
         found = self.desk.asked(params.text_document.uri)
-        if found is None:
+        if found is None or params.position.line >= len(found[1].lines.starts):
             return None
         path, text = found
         return path, text, self.offset(text.lines, params.position)

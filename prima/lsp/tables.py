@@ -115,7 +115,7 @@ def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
         own = BY_NAMESPACE[tag.namespace]
         if not (inner is GRAMMAR and own is VOICEXML):
             return own, tag.local
-    key = inner.child(parent.key, tag.local)
+    key = inner.child(parent.key, tag.local) if parent.key in inner.elements else None
     if key is None:
         key = next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
     return inner, key
