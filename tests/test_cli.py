@@ -280,3 +280,26 @@ def test_what_cannot_be_run_is_told(words: tuple[str, ...]) -> None:
     ran = prima("run", *words)
     assert ran.returncode in (1, 2)
     assert ran.stderr and "Traceback" not in ran.stderr
+
+
+def test_diff_runs_scenarios_itself(tmp_path: Path) -> None:
+    alike = prima("diff", DEMO, DEMO)
+    assert alike.returncode == 0 and "rows: all the same" in alike.stdout
+    differs = prima("diff", DEMO, "--policy", "fifo", "--policy", "prima", "--format", "json")
+    assert differs.returncode == 1
+    written = [tmp_path / f"{policy}.jsonl" for policy in ("fifo", "prima")]
+    for path in written:
+        prima("run", DEMO, "--policy", path.stem, "-o", path)
+    assert prima("diff", *written, "--format", "json").stdout == differs.stdout
+    mixed = prima("diff", written[1], DEMO)
+    assert mixed.returncode == 0 and "rows: all the same" in mixed.stdout
+
+
+@pytest.mark.parametrize(
+    "given",
+    [[DEMO], [DEMO, "--policy", "fifo"], [DEMO, DEMO, "--policy", "fifo", "--policy", "prima"],
+     [DEMO, "--policy", "fif", "--policy", "prima"], ["none.jsonl", DEMO]],
+)  # fmt: skip
+def test_diff_needs_two_runs(given: list[str]) -> None:
+    done = prima("diff", *given)
+    assert done.returncode == 2 and done.stderr.startswith("prima: ")

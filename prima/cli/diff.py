@@ -2,48 +2,109 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import coloured, print_json
+from prima.cli.common import POLICIES, Choice, coloured, print_json, start_watchdog
 from prima.errors import UsageError
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
 
 
 @click.command()
 @click.argument("before", type=click.Path())
-@click.argument("after", type=click.Path())
+@click.argument("after", type=click.Path(), required=False)
+@click.option(
+    "--policy",
+    "policies",
+    multiple=True,
+    help=f"Run a scenario under this policy; twice, once for each run: {POLICIES}.",
+)
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "json", "html"]),
+    type=Choice(["text", "json", "html"]),
     default="text",
     help="What to print; html is a page for the browser.",
 )
 @click.option("-o", "--output", type=click.Path(), help="Write the page here, with --format html.")
-def diff(before: str, after: str, form: str, output: str | None) -> None:
+def diff(
+    before: str, after: str | None, policies: tuple[str, ...], form: str, output: str | None
+) -> None:
     """Compare two transcripts by behaviour: moved, added, lost, split, changed, delayed.
 
-    Exit code 0 if they are alike, 1 if they differ.
+    In the place of a transcript a scenario may stand, which is run; or one scenario
+    under two policies. Exit code 0 if they are alike, 1 if they differ.
 
     \b
     prima diff mediated.jsonl fifo.jsonl
     prima diff mediated.jsonl fifo.jsonl --format html -o both.html
+    prima diff visit.xml --policy fifo --policy prima
     """
     from prima import api
     from prima.transcript.diff import difference_data, format_difference
 
     if output is not None and form != "html":
         raise UsageError("-o goes with --format html; other formats go to stdout.")
-    old, new = api.read(before), api.read(after)
+    (one, first), (other, second) = _runs(before, after, policies)
+    old, new = _transcript(one, first), _transcript(other, second)
     difference = api.diff(old, new)
     if form == "html":
         from prima.cli.report import write_page
         from prima.report import make
 
-        write_page(make([old, new]), output, [before, after])
+        write_page(make([old, new]), output, [one, other])
     elif form == "json":
         print_json(difference_data(difference))
     else:
         click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
     if difference.differs:
         raise Exit(1)
+
+
+def _runs(
+    before: str, after: str | None, policies: tuple[str, ...]
+) -> list[tuple[str, str | None]]:
+    """The two files to compare, each with the policy that it is run under, if one is named.
+
+    Raises:
+        UsageError: it is not two runs that are named.
+    """
+    if policies and (after is not None or len(policies) != 2):
+        raise UsageError("Name one scenario and two policies: --policy fifo --policy prima.")
+    if after is None and not policies:
+        raise UsageError("Name two transcripts, or a scenario and two policies.")
+    if after is None:
+        return [(before, policy) for policy in policies]
+    return [(before, None), (after, None)]
+
+
+def _transcript(path: str, policy: str | None) -> Transcript:
+    """A transcript, or that of a scenario's run.
+
+    Raises:
+        RunError: the run ended by a limit.
+    """
+    from prima import api
+    from prima.errors import RunError
+
+    if policy is None and not _is_markup(path):
+        return api.read(path)
+    start_watchdog()
+    made = api.rehearse(path, policy)
+    made.name = f"{path} ({policy})" if policy else path
+    if made.outcome == "limit":
+        raise RunError(f"{path}: the run made more records than a run may.")
+    return made
+
+
+def _is_markup(path: str) -> bool:
+    """Whether a file is XML, as far as its beginning tells; one that cannot be read is not."""
+    try:
+        with open(path, "rb") as stream:
+            return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
+    except (OSError, ValueError):
+        return False
