@@ -666,7 +666,7 @@ def _expectations(reader: Reader, root: Node) -> list[Expectation]:
             previous = read(child, previous, True)
         if node.tag != "in-order":
             read(node, None, False)
-        elif previous is None:
+        elif not node.nodes:
             message = "<in-order> holds nothing."
             reader.problem(node, "empty", message, "", "Put <expect> elements into it.")
     for extra in found[MAX_EXPECTATIONS:][:1]:
@@ -715,6 +715,9 @@ def _expectation(
 
 def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
     """One thing is expected, with what belongs to it."""
+    known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
+    if not given and not set(node.attributes) <= known:
+        return  # a word is misspelt; told already
     if not given:
         message = f"<{node.tag}> does not say what."
         remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."

@@ -200,10 +200,10 @@ class Checker:
             for fact in self.run.facts
             if fact.number > window.behind and triggers(one.trigger, one.what, fact)
         ]
-        told = f'{one.trigger} "{one.what}"'
+        told = _trigger(one)
         if len(fired) < one.count:
-            often = "never" if not fired else f"only {_times(len(fired))}"
-            why = f"What it waits for, {told}, happens {often}."
+            often = "is never there" if not fired else f"comes only {_times(len(fired))}"
+            why = f"What it waits for {often}: {told}."
             self._fail(one, f"{_must(one, window)} {why}", fired[-1].time if fired else 0)
             return False
         fact = fired[one.count - 1]
@@ -250,7 +250,7 @@ class Checker:
     # Telling ----------------------------------------------------------------------
 
     def _fail(self, one: Expectation, message: str, time: int) -> None:
-        name = next(iter(one.words))
+        name = next(name for name in one.node.attributes if name in one.words)
         place = one.node.attribute_place(name, value=False)
         self.failures.append(Failure(place, message, around(self.run.rows, time)))
 
@@ -292,8 +292,9 @@ class Checker:
         """What is nearest to what never happens: said by another, or with other words."""
         wanted = [fact for fact in self.run.facts if fits(one, fact, whoever=True)]
         if wanted:
-            who = wanted[0].record.get("app") or "nobody"
-            return wanted[0], f"It is {who} that does, {self._at(wanted[:1])}."
+            who, at = wanted[0].record.get("app"), self._at(wanted[:1])
+            told = f"It is {who} that does, {at}." if who else f"It does for all, {at}."
+            return wanted[0], told
         loose = [fact for fact in self.run.facts if fits(one, fact, whatever=True)]
         if loose and one.data:
             told = ", ".join(f"{key} {shown(value)}" for key, value in values(loose[0]).items())
@@ -465,6 +466,17 @@ def _subject(one: Expectation) -> str:
         case "state":
             return f'{one.by or "an application"} is in the state "{word}"'
     return f"{word} ends" + (f" with {one.reason}" if one.reason else "")
+
+
+def _trigger(one: Expectation) -> str:
+    """What opens a window, in words."""
+    match one.trigger:
+        case "said" | "asked":
+            return f'the robot has {one.trigger} "{one.what}"'
+        case "doing" | "done":
+            does = "begins" if one.trigger == "doing" else "ends"
+            return f"the robot {does} {describe(one.what, None, None)}"
+    return f"the event {one.what}"
 
 
 def _with(one: Expectation) -> str:

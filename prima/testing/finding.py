@@ -7,8 +7,10 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from prima.errors import UsageError
-from prima.loading import VOICEXML_ROOT
+from prima.errors import DocumentError, UsageError
+from prima.loading import VOICEXML_ROOT, read_file
+from prima.markup.reader import parse
+from prima.testing.golden import golden_of
 
 SCENARIO = re.compile(
     VOICEXML_ROOT.pattern.replace(b"vxml[\\s>/]", b"scenario\\s[^<]*urn:prima:scenario:"), re.DOTALL
@@ -63,3 +65,17 @@ def _inside(folder: str) -> Iterator[str]:
             path = os.path.normpath(os.path.join(place, name))
             if name.endswith(".xml") and is_scenario(path):
                 yield path
+
+
+def expects(path: Path) -> bool:
+    """Whether a scenario expects more than that it runs: elements, or a table beside it.
+
+    One that cannot be read is a test that fails.
+    """
+    if golden_of(path).is_file():
+        return True
+    try:
+        root = parse(str(path), read_file(path))
+    except (DocumentError, UsageError):
+        return True
+    return bool(root.all("expect", "never", "in-order"))

@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import PurePath
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from prima.testing.coverage import Coverage, Covered, total
+from prima.testing.coverage import Coverage, Covered
 from prima.testing.running import Result
 from prima.testing.telling import counts, format_result
 
@@ -69,35 +69,40 @@ def _case(suite: Element, result: Result) -> None:
 
 
 def cobertura(coverage: Coverage) -> bytes:
-    """Coverage as Cobertura's XML: a class for each document, a line for each that has points."""
-    points = sum(len(one.points) for one in coverage.values())
-    reached = sum(len(one.reached) for one in coverage.values())
-    rate = f"{total(coverage) / 100:.4f}"
-    root = Element("coverage", {"line-rate": rate, "branch-rate": "0", "version": "1"})
-    root.set("lines-valid", str(points))
-    root.set("lines-covered", str(reached))
-    for name in ("branches-valid", "branches-covered", "complexity", "timestamp"):
+    """Coverage as Cobertura's XML: a class for each document, a line for each that has points.
+
+    A line is hit if all its points were reached.
+    """
+    lines = {name: _hits(one) for name, one in sorted(coverage.items())}
+    every = [hit for held in lines.values() for hit in held.values()]
+    root = Element("coverage", {"version": "1", **_rates(every)})
+    root.set("lines-valid", str(len(every)))
+    root.set("lines-covered", str(sum(every)))
+    for name in ("branches-valid", "branches-covered", "timestamp"):
         root.set(name, "0")
     SubElement(SubElement(root, "sources"), "source").text = "."
-    shared = {"line-rate": rate, "branch-rate": "0", "complexity": "0"}
-    package = SubElement(SubElement(root, "packages"), "package", {"name": ".", **shared})
+    package = SubElement(SubElement(root, "packages"), "package", {"name": ".", **_rates(every)})
     classes = SubElement(package, "classes")
-    for name, one in sorted(coverage.items()):
-        _document(classes, name, one)
+    for name, held in lines.items():
+        shown = ILLEGAL.sub("\ufffd", PurePath(name).as_posix())
+        told = {"name": shown, "filename": shown, **_rates(list(held.values()))}
+        one = SubElement(classes, "class", told)
+        SubElement(one, "methods")
+        inside = SubElement(one, "lines")
+        for number, hit in held.items():
+            SubElement(inside, "line", number=str(number), hits=str(int(hit)))
     return _written(root)
 
 
-def _document(classes: Element, name: str, covered: Covered) -> None:
-    rate = f"{covered.percent / 100:.4f}"
-    shown = ILLEGAL.sub("\ufffd", PurePath(name).as_posix())
-    one = SubElement(classes, "class", {"name": shown, "filename": shown, "line-rate": rate})
-    one.set("branch-rate", "0")
-    one.set("complexity", "0")
-    SubElement(one, "methods")
-    lines = SubElement(one, "lines")
+def _hits(covered: Covered) -> dict[int, bool]:
+    """The lines that have points, with whether all of them were reached."""
     missed = {point.line for point in covered.missing}
-    for number in sorted({point.line for point in covered.points}):
-        SubElement(lines, "line", number=str(number), hits=str(int(number not in missed)))
+    return {line: line not in missed for line in sorted({one.line for one in covered.points})}
+
+
+def _rates(hits: list[bool]) -> dict[str, str]:
+    rate = sum(hits) / len(hits) if hits else 1.0
+    return {"line-rate": f"{rate:.4f}", "branch-rate": "0", "complexity": "0"}
 
 
 def _written(root: Element) -> bytes:

@@ -1,0 +1,90 @@
+"""A plugin of pytest: scenarios that expect something are tests (docs/testing.md).
+
+Only the beginning of XML files is read, and PRIMA imported only where one is a scenario.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from prima.testing.running import Result
+
+OPTION = "prima_scenarios"
+BEGINNING = 65_536
+"""Bytes of a file in which a scenario's namespace is looked for."""
+NAMESPACE = b"urn:prima:scenario:"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option by which scenarios are left alone."""
+    parser.addini(OPTION, "whether scenarios of PRIMA are tests", type="bool", default=True)
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ScenarioFile | None:
+    """Take up XML files that are scenarios, and expect something."""
+    if file_path.suffix != ".xml" or not parent.config.getini(OPTION):
+        return None
+    if not _begins_as_scenario(file_path):
+        return None
+    from prima.testing.finding import expects, is_scenario
+
+    if not is_scenario(file_path) or not expects(file_path):
+        return None
+    made: ScenarioFile = ScenarioFile.from_parent(parent, path=file_path)
+    return made
+
+
+def _begins_as_scenario(path: Path) -> bool:
+    try:
+        with path.open("rb") as stream:
+            return NAMESPACE in stream.read(BEGINNING).replace(b"\0", b"")
+    except OSError:
+        return False
+
+
+class ScenarioFile(pytest.File):
+    """A scenario's file; it holds one test, its run."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """The run of the scenario."""
+        yield ScenarioItem.from_parent(self, name="scenario")
+
+
+class ScenarioFailed(Exception):
+    """A run was not as its scenario expects."""
+
+
+class ScenarioItem(pytest.Item):
+    """A scenario to be run, and compared with what it expects."""
+
+    result: Result | None = None
+
+    def runtest(self) -> None:
+        """Run it."""
+        import os
+
+        from prima.testing.running import Choice, run_one
+        from prima.testing.telling import format_result
+
+        self.result = run_one(os.path.relpath(self.path), Choice())
+        if self.result.status != "passed":
+            raise ScenarioFailed(format_result(self.result))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """What was not as expected; prima's own errors without a traceback."""
+        from prima.errors import PrimaError
+
+        if isinstance(excinfo.value, ScenarioFailed | PrimaError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where it stands: at what failed first, once that is known (lines from 0)."""
+        failures = self.result.failures if self.result is not None else []
+        line = failures[0].place.line - 1 if failures else None
+        return self.path, line, f"scenario: {self.path.stem}"
