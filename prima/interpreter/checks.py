@@ -477,7 +477,7 @@ class Checker:
         elif isinstance(value, dict):
             self._walk(list(value.values()), known, every)
         else:
-            names = _parts(type(value))
+            names = _parts(type(value))  # type: ignore[arg-type]  # a class has a hash
             if names:
                 self._variables(value, known)
             for name in names:
