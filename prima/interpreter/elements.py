@@ -315,6 +315,10 @@ class Form:
     connect: bool = False
 
 
+Content = tuple[Form | None, list[Act], Node]
+"""A piece of executable content, with its form and the element that holds it."""
+
+
 @dataclass(slots=True)
 class Document:
     """A whole application."""
@@ -330,10 +334,16 @@ class Document:
     setup: list[Declare | Script]
     properties: dict[str, Json]
     node: Node
+    _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
-    def contents(self) -> list[tuple[Form | None, list[Act], Node]]:
+    def contents(self) -> list[Content]:
         """Every piece of executable content, with its form and the element that holds it."""
-        found: list[tuple[Form | None, list[Act], Node]] = []
+        if self._contents is None:  # every check asks again; a document does not change
+            self._contents = self._gather()
+        return self._contents
+
+    def _gather(self) -> list[Content]:
+        found: list[Content] = []
         found += [(None, handler.content, handler.node) for handler in self.handlers]
         for form in self.forms.values():
             found += [(form, handler.content, handler.node) for handler in form.handlers]
