@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from prima.diagnostics import excerpt, render, sarif
@@ -105,6 +107,21 @@ def test_sarif_is_complete(tmp_path: Path) -> None:
         "startLine": 3,
         "startColumn": 12,
     }
+
+
+def test_sarif_is_valid_by_its_schema(tmp_path: Path) -> None:
+    schema = ROOT / "tests/browser/node_modules/@microsoft/jest-sarif/lib/schemas"
+    if not schema.exists() and "CI" not in os.environ:
+        pytest.skip("npm ci --prefix tests/browser brings the schema")
+    shutil.copytree(ROOT / "tests" / "mistakes", tmp_path / "m")
+    made = json.loads(prima("validate", "m", "--notes", "--format", "sarif", cwd=tmp_path).stdout)
+    assert len(made["runs"][0]["results"]) > 40
+    rules = json.loads((schema / "sarif-2.1.0-rtm.5.json").read_text())
+    del made["$schema"]
+    jsonschema.Draft7Validator(rules).validate(made)
+    made["runs"][0]["results"][0]["level"] = "severe"
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft7Validator(rules).validate(made)
 
 
 def test_sarif_names_files_as_uris() -> None:
