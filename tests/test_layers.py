@@ -111,6 +111,7 @@ ALONE = {
     "lxml": {"markup.reader"},
     "pymunk": {"sim.world"},
     "networkx": {"sim.routes"},
+    "lark": {"grammar.abnf"},
     "_quickjs": {"interpreter.expressions", "grammar.sandbox"},
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import codecs
 import re
-from functools import partial
-from typing import NoReturn
+from collections.abc import Callable
+from contextvars import ContextVar
+from functools import cache, partial
+from typing import Any
+
+from lark import Lark, TextSlice, Token, UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from prima.errors import Place, Problem, did_you_mean
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
@@ -28,33 +32,10 @@ from prima.markup.tree import Source
 
 MAX_DEPTH = 100
 HEADER = re.compile(r"#ABNF[ \t]+([^\s;]+)(?:[ \t]+([^\s;]+))?[ \t]*;")
-_BLANK = r"(?:\s++|//[^\n]*+|/\*[\s\S]*?\*/)*+"
-_WORD = r"""[^\s;=|*+<>()\[\]{}/$"!]+"""
-_SYMBOL = re.compile(
-    rf"""{_BLANK}(?:
-    (?P<word>{_WORD})
-    |(?P<sign>[;=|()\[\]])
-    |(?P<tag>\{{!\{{[\s\S]*?\}}!\}}|\{{(?!!\{{)[^}}]*\}})
-    |(?P<quoted>"[^"]*")
-    |(?P<name>\${_WORD})
-    |(?P<link>\$<[^<>]*>(?:~<[^<>]*>)?)
-    |(?P<angle><[^<>]*>(?:~<[^<>]*>)?)
-    |(?P<weight>/[^/*\n]+/)
-    |(?P<language>!(?:{_WORD})?)
-    |(?P<end>\Z)
-    |(?P<other>[\s\S])
-    )""",
-    re.VERBOSE,
-)
-"""What a grammar is written with, with what is passed over before it; something always fits."""
-_TEXT = re.compile(rf"""{_BLANK}("[^"]*"|'[^']*')""")
-"""A text in quotes of either kind, as declarations have it."""
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
-DECLARATIONS = (
-    *("base", "http-equiv", "language", "lexicon", "meta", "mode", "root", "tag-format"),
+DECLARATIONS = frozenset(
+    ["base", "http-equiv", "language", "lexicon", "meta", "mode", "root", "tag-format"]
 )
-ONCE = frozenset(["base", "language", "mode", "root", "tag-format"])
-SCOPES = ("public", "private")
 
 
 def decode_abnf(file: str, data: bytes) -> str:
@@ -108,315 +89,36 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
         message = f'Version "{found[:20]}" is not known.' if found else "The header is missing."
         remedy = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
         raise refuse(GrammarError, source.at(0), "not-abnf", message, remedy)
-    _Reader(source, document, problems, header.end()).read()
+    reader = _Reader(source, document, problems)
+    before = _reader.set(reader)
+    try:
+        _parser().parse(TextSlice(source.text, header.end(), len(source.text)))
+    except UnexpectedInput as error:
+        raise GrammarError([*problems.found, _unexpected(source, error)]) from None
+    finally:
+        _reader.reset(before)
 
 
-class _Reader:
-    """Reads a text from left to right, one symbol ahead.
+# What cannot stand where it stands
 
-    What a symbol says wrongly is noted and the reading goes on; it ends where one cannot stand.
-    """
-
-    def __init__(self, source: Source, document: Document, problems: Problems, at: int) -> None:
-        self.source = source
-        self.text = source.text
-        self.document = document
-        self.problems = problems
-        self.kind = ""
-        """The kind of the symbol that comes next."""
-        self.symbol = ""
-        self.at = at
-        self.end = at
-        self._next()
-
-    # Symbols
-
-    def _next(self) -> None:
-        match = _SYMBOL.match(self.text, self.end)
-        assert match is not None and match.lastgroup is not None
-        self.kind = match.lastgroup
-        self.symbol = match[self.kind]
-        self.at, self.end = match.start(self.kind), match.end()
-
-    def _take(self, kind: str, expected: str) -> tuple[str, int]:
-        """The next symbol, which is of this kind, and where it stands."""
-        if self.kind != kind:
-            self._fail(expected)
-        found = self.symbol, self.at
-        self._next()
-        return found
-
-    def _sign(self, sign: str) -> None:
-        if self.symbol != sign or self.kind != "sign":
-            self._fail(f'"{sign}"')
-        self._next()
-
-    def _fail(self, expected: str) -> NoReturn:
-        """Something stands where it cannot stand."""
-        offset = len(self.text.rstrip()) if self.kind == "end" else self.at
-        found = self.text[offset : offset + 20].split("\n")[0].strip()
-        message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
-        remedy = f"Here may stand {expected}."
-        if found.startswith("}"):
-            remedy = "A tag that holds a } itself is written {!{ ... }!}."
-        elif self.kind == "other":
-            remedy = _UNCLOSED.get(self.symbol, f"{remedy} Signs are words only in quotes.")
-        place = self.source.at(offset)
-        raise GrammarError(
-            [*self.problems.found, Problem(place, "error", "not-abnf", message, remedy)]
-        )
-
-    def _where(self, at: int) -> Where:
-        return partial(self.source.at, at)
-
-    def note(self, at: int, code: str, message: str, remedy: str = "") -> None:
-        self.problems.note(self._where(at), code, message, remedy)
-
-    # Header (section 4)
-
-    def read(self) -> None:
-        """The header, then the rules."""
-        root = self._header()
-        document = self.document
-        if not document.lang and document.mode == "voice":
-            remedy = 'Write "language en-US;" or the like.'
-            self.problems.note(document.where, "missing-attribute", "It has no language.", remedy)
-        while self.kind != "end":
-            self._rule()
-        if root is not None and document.root not in document.rules:
-            hint = did_you_mean(document.root, document.rules)
-            self.note(root, "no-such-rule", f'The root rule "{document.root}" is not there.', hint)
-
-    def _header(self) -> int | None:
-        """All declarations; gives where the root is named."""
-        seen: set[str] = set()
-        root: int | None = None
-        while self.kind == "tag" or (self.kind == "word" and self.symbol not in SCOPES):
-            kind, at = self.symbol, self.at
-            if self.kind == "tag":
-                self.document.globals.append(self._tag())
-            elif kind not in DECLARATIONS:
-                self._fail("a declaration such as root $name; or a rule such as $name = ...;")
-            elif kind in ("meta", "http-equiv"):
-                self._meta()
-            else:
-                self._next()
-                at = self.at
-                self._declare(kind)
-                root = at if kind == "root" else root
-            if kind in ONCE & seen:
-                self.note(
-                    at, "duplicate-element", f"There are two declarations of {kind}.", "Keep one."
-                )
-            seen.add(kind)
-            self._sign(";")
-        return root
-
-    def _declare(self, kind: str) -> None:
-        document, at = self.document, self.at
-        match kind:
-            case "language":
-                document.lang, _ = self._take("word", "a language such as en-US")
-                self._language(document.lang, at)
-            case "mode":
-                mode, _ = self._take("word", "voice or dtmf")
-                if mode not in MODES:
-                    message = f'A grammar\'s mode is voice or dtmf, not "{mode[:40]}".'
-                    self.note(at, "bad-value", message)
-                document.mode = "dtmf" if mode == "dtmf" else "voice"
-            case "root":
-                document.root = self._take("name", "the name of a rule, $name")[0][1:]
-            case "tag-format":
-                document.tag_format = self._uri()
-            case "base":
-                document.base = self._uri()
-            case _:
-                document.lexicons.append(self._uri(media=True))
-
-    def _uri(self, media: bool = False) -> str:
-        symbol, at = self._take("angle", "a URI in angle brackets, <uri>")
-        uri, told, _ = symbol.partition("~")
-        if not uri[1:-1].strip() or (told and not media):
-            self.note(at, "bad-value", f'"{symbol[:60]}" is no URI in angle brackets.')
-        return uri[1:-1].strip()
-
-    def _meta(self) -> None:
-        """``meta "name" is "content"``, where quotes may be single ones (4.11)."""
-        name = self._quoted()
-        self._next()
-        if (self.kind, self.symbol) != ("word", "is"):
-            self._fail("the word is")
-        self.document.meta[name] = self._quoted()
-        self._next()
-
-    def _quoted(self) -> str:
-        match = _TEXT.match(self.text, self.end)
-        if match is None:
-            self._next()
-            self._fail("a text in quotes")
-        self.end = match.end()
-        return match[1][1:-1]
-
-    def _language(self, text: str, at: int) -> None:
-        if not is_language(text):
-            self.note(at, "bad-value", f'"{text[:40]}" names no language.', 'Write "en-US".')
-
-    # Rules (section 3) and expansions (section 2)
-
-    def _rule(self) -> None:
-        public = False
-        if self.kind == "word" and self.symbol in SCOPES:
-            public = self.symbol == "public"
-            self._next()
-        elif self.kind == "tag" or (self.kind == "word" and self.symbol in DECLARATIONS):
-            self._fail("a rule, $name = ...;: declarations come before all rules")
-        symbol, at = self._take("name", "a rule, $name = ...;")
-        name = symbol[1:]
-        if problem := name_problem(name):
-            self.note(at, "bad-value", problem)
-        elif name in self.document.rules:
-            self.note(at, "duplicate-id", f'There are two rules "{name}".')
-        self._sign("=")
-        rule = Rule(name, self._expansion(1), self.document, public)
-        self._sign(";")
-        self.document.rules.setdefault(name, rule)
-
-    def _expansion(self, depth: int) -> Part:
-        """Alternatives (2.4); at least one, none of them empty."""
-        if depth > MAX_DEPTH:
-            message = f"Brackets are nested more than {MAX_DEPTH} deep."
-            place = self.source.at(self.at)
-            raise refuse(GrammarError, place, "too-deep", message, "Make rules of the inner ones.")
-        parts: list[Part] = []
-        weights: list[float | None] = []
-        while True:
-            weights.append(self._weight())
-            parts.append(self._sequence(depth))
-            if self.kind != "sign" or self.symbol != "|":
-                return choice(parts, weights)
-            self._next()
-
-    def _weight(self) -> float | None:
-        if self.kind != "weight":
-            return None
-        symbol, at = self._take("weight", "a weight")
-        try:
-            return decimal(symbol[1:-1].strip(), "weight")
-        except ValueError as error:
-            self.note(at, "bad-value", str(error))
-            return None
-
-    def _sequence(self, depth: int) -> Part:
-        """Expansions one after another (2.3); tokens side by side are taken together."""
-        parts: list[Part] = []
-        words: list[str] = []
-        began = self.at
-        while (part := self._unit(depth)) is not None:
-            if self.kind == "angle":
-                if isinstance(part, str):
-                    part = self._words([part])
-                part = self._repeat(part)
-            if isinstance(part, str):
-                words.append(part)
-                continue
-            if words:
-                parts.append(self._words(words))
-                words = []
-            parts.append(part)
-        if self.at == began:
-            self._fail("a token, or () for nothing")
-        if words:
-            parts.append(self._words(words))
-        return sequence(parts)
-
-    def _unit(self, depth: int) -> Part | str | None:
-        """One expansion with its language; a token as text, or None where there is none."""
-        found: Part | str
-        match self.kind:
-            case "word" | "quoted":
-                found = self._token()
-            case "tag":
-                tag = self._tag()
-                self.document.tags.append(tag)
-                return tag
-            case "name" | "link":
-                found = self._reference()
-            case "sign" if self.symbol in "([":
-                closing = ")" if self.symbol == "(" else "]"
-                self._next()
-                if closing == ")" and (self.kind, self.symbol) == ("sign", ")"):
-                    self._next()
-                    return sequence([])
-                found = self._expansion(depth + 1)
-                self._sign(closing)
-                found = Repeat(found, 0, 1) if closing == "]" else found
-            case _:
-                return None
-        self._attached()
-        return found
-
-    def _attached(self) -> None:
-        """The language of an expansion, if one is told (2.7)."""
-        if self.kind == "language":
-            self._language(self.symbol[1:], self.at)
-            self._next()
-
-    def _token(self) -> str:
-        quoted = self.kind == "quoted"
-        symbol, at = self._take(self.kind, "a token")
-        text = " ".join(symbol[1:-1].split()) if quoted else symbol
-        if not text:
-            self.note(at, "bad-token", "A token holds something.", "Write () for nothing.")
-            return ""
-        if self.document.mode != "dtmf":
-            return text
-        pressed = keys(text)
-        if pressed is None or len(pressed) != 1:
-            message = f'"{text[:40]}" is no key of a telephone.'
-            self.note(at, "bad-token", message, 'Keys are 0 to 9, "*", "#", and A to D.')
-        return pressed or ""
-
-    def _words(self, words: list[str]) -> Part:
-        folded = "".join(words) if self.document.mode == "dtmf" else fold(" ".join(words))
-        return Words(folded, tuple(words))
-
-    def _reference(self) -> Part:
-        local = self.kind == "name"
-        symbol, at = self._take(self.kind, "a rule")
-        if local:
-            name = symbol[1:]
-            if name in RESERVED:
-                return Special(name)
-            if problem := name_problem(name):
-                self.note(at, "bad-value", problem)
-            found = Reference(f"#{name}", self._where(at))
-        else:
-            uri, _, media = symbol[1:].partition("~")
-            found = Reference(uri[1:-1].strip(), self._where(at), media[1:-1].strip())
-        self.document.references.append(found)
-        return found
-
-    def _repeat(self, part: Part) -> Part:
-        bounds, at = self._take("angle", "a repeat")
-        match = _REPEAT.fullmatch(bounds)
-        try:
-            if match is None:
-                raise ValueError(f'"{bounds[:40]}" is no repeat such as <0-1> or <2- /0.5/>.')
-            low, high = repeat(match[1])
-            if match[2] is None:
-                return Repeat(part, low, high)
-            chance = probability(match[2].strip())
-            return Repeat(part, low, high, cost(chance), cost(1 - chance))
-        except ValueError as error:
-            self.note(at, "bad-value", str(error))
-            return part
-
-    def _tag(self) -> Tag:
-        symbol, at = self._take("tag", "a tag")
-        text = symbol[3:-3] if symbol.startswith("{!{") else symbol[1:-1]
-        return Tag(text, self._where(at))
-
-
+_EXPECTED = {
+    "WORD": "a token, or () for nothing",
+    "LANGUAGE": "a declaration such as root $name; or a rule such as $name = ...;",
+    "NAME": "a rule, $name = ...;",
+    "EQUAL": '"="',
+    "SEMICOLON": '";"',
+    "LANGTAG": "a language such as en-US",
+    "MODENAME": "voice or dtmf",
+    "ROOTNAME": "the name of a rule, $name",
+    "FORMATURI": "a URI in angle brackets, <uri>",
+    "BASEURI": "a URI in angle brackets, <uri>",
+    "LEXICONURI": "a URI in angle brackets, <uri>",
+    "TEXT": "a text in quotes",
+    "IS": "the word is",
+}
+"""What is named of all that may stand in a place: the first that may."""
+_CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
+"""What ends alternatives: named where they may go on, too."""
 _UNCLOSED = {
     '"': 'A quote is opened and not closed: write the other ".',
     "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
@@ -424,3 +126,299 @@ _UNCLOSED = {
     "/": "A comment or a weight is not closed: /* ... */, /0.5/.",
 }
 """Remedies for what begins something and does not end it."""
+
+
+def _unexpected(source: Source, error: UnexpectedInput) -> Problem:
+    """Something stands where it cannot stand."""
+    text = source.text
+    token = error.token if isinstance(error, UnexpectedToken) else None
+    if token is not None and token.type == "$END":
+        at = len(text.rstrip())
+    else:
+        at = len(text) - len(text[error.pos_in_stream :].lstrip())
+    found = text[at : at + 20].split("\n")[0].strip()
+    message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
+    remedy = _remedy(error, found, token)
+    return Problem(source.at(at), "error", "not-abnf", message, remedy)
+
+
+def _remedy(error: UnexpectedInput, found: str, token: Token | None) -> str:
+    if found.startswith("}"):
+        return "A tag that holds a } itself is written {!{ ... }!}."
+    if token is None and found[:1] in _UNCLOSED:
+        return _UNCLOSED[found[0]]
+    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
+    stopped: Any = error.interactive_parser
+    accepted: set[str] = stopped.accepts()
+    names = _CLOSING if "OR" in accepted else _EXPECTED
+    remedy = f"Here may stand {next(names[name] for name in names if name in accepted)}."
+    if token is None:
+        return f"{remedy} Signs are words only in quotes."
+    if accepted >= {"NAME", "$END"} and (token in DECLARATIONS or found[0] == "{"):
+        return f"{remedy} Declarations come before all rules."
+    return remedy
+
+
+class _Reader:
+    """Makes parts of what the parser finds, as it finds it; notes what is wrong and goes on.
+
+    A method in capitals gets a token (abnf.lark says which) as soon as it is taken, any other
+    one what stands in a whole rule of that grammar.
+    """
+
+    def __init__(self, source: Source, document: Document, problems: Problems) -> None:
+        self.source = source
+        self.document = document
+        self.problems = problems
+        self.declared: set[str] = set()
+        self.root: Token | None = None
+        self.depth = 0
+
+    def _where(self, token: Token) -> Where:
+        return partial(self.source.at, token.start_pos or 0)
+
+    def note(self, token: Token, code: str, message: str, remedy: str = "") -> None:
+        self.problems.note(self._where(token), code, message, remedy)
+
+    # Header (section 4)
+
+    def LANGTAG(self, token: Token) -> None:
+        self.document.lang = token.value
+        self._language(token.value, token)
+        self._once("language", token)
+
+    def MODENAME(self, token: Token) -> None:
+        if token.value not in MODES:
+            message = f'A grammar\'s mode is voice or dtmf, not "{token[:40]}".'
+            self.note(token, "bad-value", message)
+        self.document.mode = "dtmf" if token.value == "dtmf" else "voice"
+        self._once("mode", token)
+
+    def ROOTNAME(self, token: Token) -> None:
+        self.document.root = token[1:]
+        self.root = token
+        self._once("root", token)
+
+    def FORMATURI(self, token: Token) -> None:
+        self.document.tag_format = self._uri(token)
+        self._once("tag-format", token)
+
+    def BASEURI(self, token: Token) -> None:
+        self.document.base = self._uri(token)
+        self._once("base", token)
+
+    def LEXICONURI(self, token: Token) -> None:
+        self.document.lexicons.append(self._uri(token, media=True))
+
+    def GLOBAL(self, token: Token) -> None:
+        self.document.globals.append(self._tag(token))
+
+    def meta(self, found: list[str]) -> None:
+        """``meta "name" is "content"``, where quotes may be single ones (4.11)."""
+        self.document.meta[found[1][1:-1]] = found[3][1:-1]
+
+    def header(self, found: list[Any]) -> None:
+        if not self.document.lang and self.document.mode == "voice":
+            remedy = 'Write "language en-US;" or the like.'
+            where = self.document.where
+            self.problems.note(where, "missing-attribute", "It has no language.", remedy)
+
+    def _once(self, kind: str, token: Token) -> None:
+        if kind in self.declared:
+            message = f"There are two declarations of {kind}."
+            self.note(token, "duplicate-element", message, "Keep one.")
+        self.declared.add(kind)
+
+    def _uri(self, token: Token, media: bool = False) -> str:
+        uri, told, _ = token.partition("~")
+        if not uri[1:-1].strip() or (told and not media):
+            message = f'"{token[:60]}" is no URI in angle brackets.'
+            self.note(token, "bad-value", message)
+        return uri[1:-1].strip()
+
+    def _language(self, text: str, token: Token) -> None:
+        if not is_language(text):
+            message = f'"{text[:40]}" names no language.'
+            self.note(token, "bad-value", message, 'Write "en-US".')
+
+    # Rules (section 3)
+
+    def PUBLIC(self, token: Token) -> bool:
+        return True
+
+    def NAME(self, token: Token) -> str:
+        name = token[1:]
+        if problem := name_problem(name):
+            self.note(token, "bad-value", problem)
+        elif name in self.document.rules:
+            self.note(token, "duplicate-id", f'There are two rules "{name}".')
+        return name
+
+    def rule(self, found: list[Any]) -> None:
+        name, _, alternatives, _ = found[-4:]
+        rule = Rule(name, choice(*alternatives), self.document, found[0] is True)
+        self.document.rules.setdefault(name, rule)
+
+    def start(self, found: list[Any]) -> None:
+        root, rules = self.document.root, self.document.rules
+        if self.root is not None and root not in rules:
+            hint = did_you_mean(root, rules)
+            self.note(self.root, "no-such-rule", f'The root rule "{root}" is not there.', hint)
+
+    # Alternatives (2.4)
+
+    def WEIGHT(self, token: Token) -> float | None:
+        try:
+            return decimal(token[1:-1].strip(), "weight")
+        except ValueError as error:
+            self.note(token, "bad-value", str(error))
+            return None
+
+    def alternative(self, found: list[Any]) -> Alternatives:
+        """The first one."""
+        return [self._sequence(found[-1])], [found[0] if len(found) == 2 else None]
+
+    def alternatives(self, found: list[Any]) -> Alternatives:
+        """Those before, a sign, and one more."""
+        parts, weights = found[0]
+        parts.append(self._sequence(found[-1]))
+        weights.append(found[2] if len(found) == 4 else None)
+        return parts, weights
+
+    # Sequences (2.3), repeats (2.5) and brackets
+
+    def parts(self, found: list[Any]) -> list[Part | str]:
+        """Those before, if any, and one more, which may have a language and a repeat."""
+        before: list[Part | str] = found.pop(0) if isinstance(found[0], list) else []
+        part, *more = found
+        for times in more:  # a language stands here as None
+            if times is not None:
+                part = Repeat(self._words([part]) if isinstance(part, str) else part, *times)
+        before.append(part)
+        return before
+
+    def _sequence(self, found: list[Part | str]) -> Part:
+        """A sequence; tokens side by side are taken together."""
+        parts: list[Part] = []
+        words: list[str] = []
+        for part in found:
+            if isinstance(part, str):
+                words.append(part)
+                continue
+            if words:
+                parts.append(self._words(words))
+                words = []
+            parts.append(part)
+        if words:
+            parts.append(self._words(words))
+        return sequence(parts)
+
+    def _words(self, words: list[str]) -> Part:
+        folded = "".join(words) if self.document.mode == "dtmf" else fold(" ".join(words))
+        return Words(folded, tuple(words))
+
+    def REPEAT(self, token: Token) -> tuple[int, int | None, float, float] | None:
+        match = _REPEAT.fullmatch(token)
+        try:
+            if match is None:
+                raise ValueError(f'"{token[:40]}" is no repeat such as <0-1> or <2- /0.5/>.')
+            low, high = repeat(match[1])
+            if match[2] is None:
+                return low, high, 0.0, 0.0
+            chance = probability(match[2].strip())
+            return low, high, cost(chance), cost(1 - chance)
+        except ValueError as error:
+            self.note(token, "bad-value", str(error))
+            return None
+
+    def LPAR(self, token: Token) -> None:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            message = f"Brackets are nested more than {MAX_DEPTH} deep."
+            place = self.source.at(token.start_pos or 0)
+            raise refuse(GrammarError, place, "too-deep", message, "Make rules of the inner ones.")
+
+    def RPAR(self, token: Token) -> None:
+        self.depth -= 1
+
+    LSQB, RSQB = LPAR, RPAR
+
+    def group(self, found: list[Any]) -> Part:
+        return choice(*found[1])
+
+    def optional(self, found: list[Any]) -> Part:
+        return Repeat(choice(*found[1]), 0, 1)
+
+    def nothing(self, found: list[Any]) -> Part:
+        return sequence([])
+
+    # Tokens (2.1), references (2.2), tags (2.6) and languages (2.7)
+
+    def WORD(self, token: Token) -> str:
+        return self._token(token.value, token)
+
+    def QUOTED(self, token: Token) -> str:
+        text = " ".join(token[1:-1].split())
+        if not text:
+            message = "A token holds something."
+            self.note(token, "bad-token", message, "Write () for nothing.")
+            return ""
+        return self._token(text, token)
+
+    def _token(self, text: str, token: Token) -> str:
+        if self.document.mode != "dtmf":
+            return text
+        pressed = keys(text)
+        if pressed is None or len(pressed) != 1:
+            message = f'"{text[:40]}" is no key of a telephone.'
+            remedy = 'Keys are 0 to 9, "*", "#", and A to D.'
+            self.note(token, "bad-token", message, remedy)
+        return pressed or ""
+
+    def REFERENCE(self, token: Token) -> Part:
+        name = token[1:]
+        if name in RESERVED:
+            return Special(name)
+        if problem := name_problem(name):
+            self.note(token, "bad-value", problem)
+        return self._reference(f"#{name}", token)
+
+    def LINK(self, token: Token) -> Part:
+        uri, _, media = token[1:].partition("~")
+        return self._reference(uri[1:-1].strip(), token, media[1:-1].strip())
+
+    def _reference(self, uri: str, token: Token, media: str = "") -> Reference:
+        found = Reference(uri, self._where(token), media)
+        self.document.references.append(found)
+        return found
+
+    def TAG(self, token: Token) -> Tag:
+        tag = self._tag(token)
+        self.document.tags.append(tag)
+        return tag
+
+    def _tag(self, token: Token) -> Tag:
+        text = token[3:-3] if token.startswith("{!{") else token[1:-1]
+        return Tag(text, self._where(token))
+
+    def ATTACHED(self, token: Token) -> None:
+        self._language(token[1:], token)
+
+
+Alternatives = tuple[list[Part], list[float | None]]
+"""What may be said, and the weight of each, if it is given."""
+_reader: ContextVar[_Reader] = ContextVar("reader")
+"""The one that is at work; the parser is made once for all of them."""
+
+
+class _Handlers:
+    """The methods of the reader that is at work."""
+
+    def __getattr__(self, name: str) -> Callable[[Any], object]:
+        method = getattr(_Reader, name)
+        return lambda found: method(_reader.get(), found)
+
+
+@cache
+def _parser() -> Lark:
+    return Lark.open("abnf.lark", rel_to=__file__, parser="lalr", transformer=_Handlers())
