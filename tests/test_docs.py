@@ -124,7 +124,14 @@ def save(example: Example, folder: Path) -> None:
     path.write_text(part, encoding="utf-8")
 
 
-def run(words: list[str], folder: Path) -> tuple[int, list[str]]:
+def piped(words: list[str]) -> tuple[str | None, list[str]]:
+    """What a command is given through a pipe (printf TEXT | COMMAND), and the command."""
+    if words[:1] != ["printf"] or words[2:3] != ["|"]:
+        return None, words
+    return words[1].replace("\\n", "\n"), words[3:]
+
+
+def run(words: list[str], folder: Path, given: str | None = None) -> tuple[int, list[str]]:
     paths = [
         sorted(path.relative_to(folder).as_posix() for path in folder.glob(word))
         if "*" in word
@@ -134,6 +141,7 @@ def run(words: list[str], folder: Path) -> tuple[int, list[str]]:
     done = subprocess.run(
         [*MODULE, *(name for names in paths for name in names)],
         cwd=folder,
+        input=given,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         encoding="utf-8",
@@ -171,9 +179,10 @@ def test_commands_give_what_is_shown(page: Path, tmp_path: Path) -> None:
         if example.language not in ("", "console", "sh", "bash", "shell"):
             continue
         for shown in commands(example):
-            if shown.words[:1] != ["prima"]:
+            given, words = piped(shown.words)
+            if words[:1] != ["prima"]:
                 continue
-            code, made = run(shown.words[1:], tmp_path)
+            code, made = run(words[1:], tmp_path, given)
             assert code != 2, (str(example), shown.words, made)
             while shown.output and not shown.output[-1].strip():
                 shown.output.pop()

@@ -104,7 +104,8 @@ def test_time_stops_where_a_question_listens_and_goes_on_with_the_answer(tmp_pat
     assert talk.prompt == f"{listens / 1000:g}s ea listens> "
     talk.line("Yes.")
     said = next(row for row in paper.made if row.what == '"Yes."')
-    assert said.time * 1000 > listens + 1000  # he thinks for a second, and speaks
+    assert talk.game.lines[0].at == listens + 1000  # he thinks for a second
+    assert said.time * 1000 > listens + 1000
     assert '"Thanks."' in paper.what
     assert talk.game.over
 
@@ -138,6 +139,13 @@ def test_going_back_in_time_lets_the_user_come_between(tmp_path: Path) -> None:
     rows = [(row.time, row.what) for row in talk.game.table.rows]
     assert (5.0, "touches the robot's head") in rows
     assert "resumes Topological Move (to kidode-room)" in [what for _, what in rows]
+
+
+def test_what_is_played_is_what_a_scenario_would_play() -> None:
+    talk, _ = start()
+    type_in(talk, "/back 5s", "/touch head", "Never mind.")
+    written = api.rehearse(TOUCHED)
+    assert talk.game.records == written.records[1:-1]
 
 
 def test_undo_takes_the_last_line_back_and_nothing_else() -> None:
@@ -493,7 +501,7 @@ def test_some_answers_to_a_question_are_known() -> None:
     )
     grammar = Grammar({"r": Sequence([Reference("f"), Tag("x")]), "f": fruit}, "r")
     assert phrases(Answers({"none": 1}, [grammar], "boolean")) == [
-        "none", "an apple", "a pear", "a fig", "yes", "no",
+        "none", "yes", "no", "an apple", "a pear", "a fig",
     ]  # fmt: skip
 
 

@@ -16,6 +16,9 @@ from prima.transcript.table import Row, describe
 from prima.transcript.why import Reasons
 from prima.values import read_value
 
+SHOWN = 6
+"""Answers to a question that are shown."""
+
 
 class Screen(Protocol):
     """Where the author reads."""
@@ -306,7 +309,9 @@ def _situation(game: Game) -> list[str]:
             held = " is suspended" if stream.suspended is not None else held
             lines.append(f"  stream {stream.name}{held}: {', '.join(stream.members) or 'held'}")
     if game.asks is not None:
-        takes = f" for: {', '.join(options)}" if (options := game.options()) else ""
+        options = game.options()
+        more = ", ..." if len(options) > SHOWN else ""
+        takes = f" for: {', '.join(options[:SHOWN])}{more}" if options else ""
         lines.append(f"  {game.asks.app.name} listens{takes}")
     return lines
 

@@ -241,9 +241,8 @@ class Game:
             raise UsageError(f"A session may have {MOST_LINES} lines: save it, and begin anew.")
         doings = self._doings(line)
         self._check_there(line, doings)
-        at = max(self.clock, self.rehearsal.now + 1)
-        if think and doings[0].name == "say":
-            at += self._thinking()
+        thinking = self._thinking() if think and doings[0].name == "say" else 0
+        at = max(self.clock + thinking, self.rehearsal.now + 1)
         if at > LONGEST_MS:
             raise UsageError("A run lasts no longer than a day.")
         self.keep()

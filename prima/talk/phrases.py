@@ -27,12 +27,12 @@ TYPES = {"boolean": ["yes", "no"]}
 
 
 def phrases(answers: Answers) -> list[str]:
-    """Some of what a field takes, without what speech does not carry, each once."""
+    """Some of what a field takes, without what speech does not carry, the shortest first."""
     found = dict.fromkeys(islice(answers.options, MOST))
     for grammar in answers.grammars:
         found |= dict.fromkeys(islice(_Phrases(grammar).all(), MOST))
     found |= dict.fromkeys(TYPES.get(answers.type, ()))
-    return [phrase for phrase in islice(found, MOST) if phrase]
+    return sorted(filter(None, found), key=lambda phrase: len(phrase.split()))[:MOST]
 
 
 class _Phrases:

@@ -10,7 +10,6 @@ from html import escape
 from pathlib import Path
 
 from prima.markup.tree import Node
-from prima.prelude import START
 from prima.values import NAME
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -63,10 +62,14 @@ class Scene:
         given = dict(self.root.attributes)
         stem = Path(target).stem if target else ""
         given["id"] = stem if re.fullmatch(NAME, stem) else given["id"]
-        given |= {"policy": self.policy, "until": until, "date": given.get("date", START)}
+        given |= {"policy": self.policy, "until": until}
+        if self.policy == "prima":
+            del given["policy"]
         lines = [HEAD + (f"<!-- {comment(remark)} -->\n" if remark else "")]
-        lines.append('<scenario xmlns="urn:prima:scenario:1"')
-        lines.append(f"{self._attributes('scenario', given, target)}>\n")
+        paths = {name: given.pop(name) for name in ("world", "robot")}
+        lines.append(f'<scenario xmlns="{self.root.namespace}"')
+        lines.append(f"{self._attributes('scenario', given, target)}\n         ")
+        lines.append(f"{self._attributes('scenario', paths, target)}>\n")
         nodes = [node for tag in KEPT for node in self.root.all(tag)]
         lines += [f"  {made}\n" for node in nodes if (made := self._element(node, target))]
         lines += [f"  {when}\n" for when in whens]
