@@ -60,6 +60,8 @@ MS_A_LETTER = 70
 MS_A_SYLLABLE = 125
 """Speech of a letter, and of one of a script of syllables or words, as the robots here speak."""
 SYLLABLES = ("ja", "zh", "ko")
+MANY_FORMS = 8
+"""Of forms that go round, so many are named."""
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
@@ -321,7 +323,7 @@ class Checker:
                     )
                     self.note(node, "hold-price", message, "", "stream", "note")
 
-            if form.connect and not self._speaks(form):
+            if form.connect and not self.document.handlers and not self._speaks(form):
                 message = (
                     "The robot is to turn to the user before its first word, but says none here."
                 )
@@ -332,7 +334,7 @@ class Checker:
         asks = any(isinstance(item, Field | Subdialog) for item in all_items(form.items))
         says = (
             command.text or command.type not in TABLE_4_2
-            for content in (*self.contents.get(id(form), ()), *self.contents.get(0, ()))
+            for content in self.contents.get(id(form), ())
             for act in all_acts(content)
             if isinstance(act, Run)
             for command in run_commands(act.steps)
@@ -652,16 +654,19 @@ class Checker:
         told: set[str] = set()
         for start in gotos:
             way: list[str] = []
+            passed: set[str] = set()
             name = start
-            while name not in way and name not in told and (act := gotos.get(name)):
+            while name not in passed and name not in told and (act := gotos.get(name)):
                 way.append(name)
+                passed.add(name)
                 name = act.form if isinstance(act.form, str) else ""
-            told |= set(way)
+            told |= passed
             last = gotos[way[-1]] if way else None
-            if last is None or name not in way:
+            if last is None or name not in passed:
                 continue
             ring = way[way.index(name) :]
-            goes = f"The forms {', '.join(ring)} go round"
+            more = ", ..." if len(ring) > MANY_FORMS else ""
+            goes = f"The forms {', '.join(ring[:MANY_FORMS])}{more} go round"
             if len(ring) == 1:
                 goes = f'The form "{name}" goes to itself'
             message = f"{goes} without asking or waiting: no other application has a turn."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from difflib import SequenceMatcher
+from difflib import get_close_matches
 from typing import NamedTuple
 
 from prima.commands import DEVICES
@@ -50,6 +50,10 @@ HABITS = {
 """Names that authors expect, and those that the language has."""
 DEFAULTS = ("noinput", "nomatch", "help")
 """Thrown events that end nothing where no handler takes them."""
+MOST_PARTS = 20
+"""Dots of an event's name that are looked at."""
+MOST_GUESSES = 200
+"""So many handlers of one document are looked at for slips: each guess takes time."""
 NEAR = 0.8
 """How alike names are of which one is taken for a slip of the other."""
 FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
@@ -73,15 +77,22 @@ def takes(handler: str, event: str) -> bool:
     return event == handler or event.startswith(f"{handler}.")
 
 
+def beginnings(event: str) -> Iterator[str]:
+    """The handlers' names that take an event: itself, and all that it begins with."""
+    parts = event.split(".")
+    yield from (".".join(parts[:count]) for count in range(1, min(len(parts), MOST_PARTS) + 1))
+    yield event
+
+
 def near(word: str, known: Iterable[str]) -> str:
     """The known name of which a word is most likely a slip, or nothing."""
     words = sorted(known)
     if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
         return ""
     folded = word.casefold().replace("-", "").replace("_", "")
-    rated = [(SequenceMatcher(None, folded, one.replace("-", "")).ratio(), one) for one in words]
-    best, name = max(rated, default=(0.0, ""))
-    return name if best >= NEAR else ""
+    plain = {one.replace("-", ""): one for one in words}
+    found = get_close_matches(folded, plain, n=1, cutoff=NEAR)
+    return plain[found[0]] if found else ""
 
 
 def handlers_of(document: Document) -> Iterator[Handler]:
@@ -144,6 +155,8 @@ class Events:
                 self.dynamic = self.dynamic or isinstance(named, Expression)
         self.services = {name for _, name in self.asked}
         self._own = {one.name for one in self.raised}
+        self._known = {name for one in (*STANDARD, *self._own) for name in beginnings(one)}
+        self._guesses = 0
 
     def problems(self) -> list[Problem]:
         """Handlers of events that nobody raises, and events that no handler takes."""
@@ -164,7 +177,8 @@ class Events:
     def _unraised(self, name: str) -> tuple[str, str] | None:
         """What is wrong with the name of a handler, and the name that was probably meant."""
         first, _, rest = name.partition(".")
-        if "," in name or any(takes(name, one) for one in (*STANDARD, *self._own)):
+        self._guesses += name not in self._known
+        if "," in name or name in self._known or self._guesses > MOST_GUESSES:
             return None
         if first in OWN:
             if any(takes(rest, one) for one in self.commands):
@@ -187,11 +201,13 @@ class Events:
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
     def _unheard(self, one: Raised, meant: set[str]) -> Problem | None:
-        if one.name in meant or any(takes(name, one.name) for name in (*self.heard, *DEFAULTS)):
+        heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
+        if one.name in meant or heard:
             return None
         ends = " It ends the application." if one.fatal else ""
         message = f'No handler takes the event "{one.name}".{ends}'
-        nearest = near(one.name, self.heard - {"error"})
+        self._guesses += 1
+        nearest = near(one.name, self.heard) if self._guesses <= MOST_GUESSES else ""
         remedy = f'Did you mean "{nearest}"?' if nearest else f'Write <on event="{one.name}">.'
         place = one.node.attribute_place(one.attribute)
         return Problem(place, "warning", "unheard-event", message, remedy)

@@ -29,8 +29,9 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     document = builder.document()
     problems += builder.problems
     strange = list(_strange(root))
+    named = {text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"}
     found = check_document(document)
-    problems += [one for one in found if not (strange and _follows(one, strange))]
+    problems += [one for one in found if not (strange and _follows(one, named))]
     return document, sorted(set(problems))
 
 
@@ -45,11 +46,11 @@ def _strange(root: Node) -> Iterator[Node]:
         stack += [(child, strange) for child in node.nodes]
 
 
-def _follows(problem: Problem, strange: list[Node]) -> bool:
-    """Whether a problem most likely follows from elements that are not understood."""
+def _follows(problem: Problem, named: set[str]) -> bool:
+    """Whether a problem most likely follows from elements that are not understood.
+
+    ``named`` are the forms that these name.
+    """
     if problem.code == "unreachable":
-        named = {
-            text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"
-        }
-        return any(f'"{name}"' in problem.message for name in named)
+        return problem.message.partition('"')[2].partition('"')[0] in named
     return problem.code in WHOLE

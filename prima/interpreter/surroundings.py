@@ -89,14 +89,19 @@ def commands_of(document: Document) -> list[CommandTemplate]:
     ]
 
 
-def may_say(documents: Iterable[Document], words: str, asked: bool) -> bool:
-    """Whether the robot may ever say, or ask, something with these words; so as not to err, yes."""
-    wanted = fold(words)
-    return any(
-        any(not isinstance(part, str) for part in text) or wanted in fold(_joined(text))
-        for document in documents
-        for text in _texts(document, asked)
-    )
+class Sayings:
+    """All that the questions of some documents ask, or their Commands say as well, gathered once."""
+
+    def __init__(self, documents: Iterable[Document], asked: bool) -> None:
+        texts = [text for document in documents for text in _texts(document, asked)]
+        self.lines = {_joined(text) for text in texts}
+        self._open = any(not isinstance(part, str) for text in texts for part in text)
+        """Whether some of it is known only in a run."""
+        self._all = "\n".join(map(fold, self.lines))
+
+    def may_hold(self, words: str) -> bool:
+        """Whether words may ever be said; so as not to err, yes where that cannot be told."""
+        return self._open or fold(words) in self._all
 
 
 def _joined(text: Text) -> str:
@@ -112,8 +117,3 @@ def _texts(document: Document, asked: bool) -> list[Text]:
                 found += [prompt.text for prompt in item.prompts]
                 found.append([part for one in item.prompts for part in (*one.text, " ")])
     return found if asked else [*found, *(one.text for one in commands_of(document) if one.text)]
-
-
-def lines_of(documents: Iterable[Document], asked: bool) -> list[str]:
-    """What the robot says, or asks, for a guess at what was meant."""
-    return [_joined(text) for document in documents for text in _texts(document, asked)]

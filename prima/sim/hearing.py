@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from prima.errors import Problem, did_you_mean
+from prima.errors import MANY_WORDS, Problem, did_you_mean
 from prima.interpreter.elements import Document
-from prima.interpreter.events import STANDARD, Events, near, takes
-from prima.interpreter.surroundings import Surroundings, check_surroundings, lines_of, may_say
+from prima.interpreter.events import STANDARD, Events, beginnings, near
+from prima.interpreter.surroundings import Sayings, Surroundings, check_surroundings
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
+
+MOST = 500
+"""So many triggers of a kind are looked at: each is compared with all that may be said."""
 
 
 def check_hearing(cast: Cast) -> list[Problem]:
@@ -39,18 +42,20 @@ def _nodes(root: Node) -> Iterator[Node]:
 
 def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
     """Triggers that wait for words which nobody says."""
+    questions, sayings = Sayings(documents, True), Sayings(documents, False)
     for tag, name, asked in (
         ("answer", "to", True),
         ("when", "asked", True),
         ("when", "said", False),
     ):
-        for node in nodes:
+        for node in [one for one in nodes if one.tag == tag][:MOST]:
             words = node.get(name)
-            if node.tag == tag and words.strip() and not may_say(documents, words, asked):
+            said = questions if asked else sayings
+            if words.strip() and not said.may_hold(words):
                 what = "asks" if asked else "says"
                 message = f'No application {what} anything with "{words}".'
-                remedy = did_you_mean(words, set(lines_of(documents, asked)))
-                if asked and not remedy and may_say(documents, words, asked=False):
+                remedy = did_you_mean(words, said.lines if len(said.lines) <= MANY_WORDS else ())
+                if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
                 place = node.attribute_place(name)
                 yield Problem(place, "warning", "never-said", message, remedy)
@@ -60,9 +65,9 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
     """Events of the surroundings that no application and no trigger takes."""
     heard = {name for one in events for name in one.heard}
     heard |= {node.get("on") for node in nodes if node.tag == "when"} - {""}
-    for node in nodes:
+    for node in [one for one in nodes if one.tag == "event"]:
         name = node.get("name")
-        if node.tag == "event" and not any(takes(one, name) for one in heard):
+        if heard.isdisjoint(beginnings(name)):
             message = f'No application handles the event "{name}".'
             nearest = near(name, heard)
             remedy = f'Did you mean "{nearest}"?' if nearest else "Remove it, or handle it."
@@ -75,9 +80,10 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
     known |= {corner.event for corner in cast.world.corners}
     known |= {node.get("name") for node in nodes if node.tag == "event"}
     known |= {raised.name for one in events for raised in one.raised}
-    for node in nodes:
+    begins = {name for one in known for name in beginnings(one)}
+    for node in [one for one in nodes if one.tag == "when"][:MOST]:
         name = node.get("on")
-        if node.tag != "when" or not name or any(takes(name, one) for one in known):
+        if not name or name in begins:
             continue
         nearest = near(name, known)
         if nearest:
