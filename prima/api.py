@@ -183,22 +183,20 @@ def _records(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
     from prima.transcript.lines import MAX_LINE, read_lines
 
+    count = 0
     try:
-        with Path(path).open(encoding="utf-8-sig", errors="surrogateescape") as stream:
+        with Path(path).open(encoding="utf-8-sig") as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
-            yield from read_lines(str(path), (_decoded(path, line) for line in lines), cut)
+            for record in read_lines(str(path), lines, cut):
+                count += 1
+                yield record
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-
-
-def _decoded(path: str | Path, line: str) -> str:
-    """A line that is UTF-8; one at which the file ends may be cut off within a letter."""
-    wrong = re.search("[\udc80-\udcff]", line)
-    if wrong is None:
-        return line
-    if line.endswith("\n"):
-        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.")
-    return line[: wrong.start()]
+    except UnicodeDecodeError as error:
+        if cut is None or count == 0 or error.reason != "unexpected end of data":
+            raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
+        message = "the record is cut off, in a letter; the transcript was not written to its end."
+        cut.append(f"{path}:{count + 1}: {message}")
 
 
 def export(
