@@ -1,4 +1,4 @@
-"""The pictures of docs/mediation.md, drawn from runs of small documents.
+"""The pictures of the documentation, drawn from documents and runs.
 
 Each picture is what a transcript's records say: nothing in it is placed by hand.
 ``python -m prima.pictures`` writes them into docs/pictures; with ``--check`` it
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 
-from prima import api
+from prima import api, graph
 from prima.commands import TABLE_4_2
 from prima.messages import Record
 
@@ -391,12 +391,28 @@ PICTURES: dict[str, tuple[str, Draw, str, str]] = {
 """Each picture's scenario in documents/tutorial, how it is drawn, its title and description."""
 
 
+GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
+    "graph-museum": ("ea/museum.xml", graph.picture),
+    "graph-memory": (
+        "scenarios/touched-on-the-way.xml",
+        lambda path: graph.tree(api.rehearse(path), 5),
+    ),
+    "graph-streams": (
+        "scenarios/three-applications.xml",
+        lambda path: graph.streams(api.rehearse(path)),
+    ),
+}
+"""The pictures of docs/graphs.md: each one's document, and how it is drawn."""
+
+
 def outputs(root: Path) -> dict[Path, str]:
     """Every picture of a checkout, by its file."""
     made = {}
     for name, (scenario, draw, title, told) in PICTURES.items():
         run = api.rehearse(root / "documents" / "tutorial" / f"{scenario}.xml")
         made[root / "docs" / "pictures" / f"{name}.svg"] = draw(run.records, title, told)
+    for name, (path, show) in GRAPHS.items():
+        made[root / "docs" / "pictures" / f"{name}.svg"] = show(root / "documents" / path)
     return made
 
 

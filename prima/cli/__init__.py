@@ -17,7 +17,24 @@ from prima import __version__
 from prima.cli.common import SourceLines, tell
 from prima.errors import DocumentError, RunError, UsageError, did_you_mean
 
-COMMANDS = ("validate", "run", "talk", "test", "show", "diff", "report", "replay", "export", "explain", "study", "documents", "schemas", "lsp")
+COMMANDS = (
+    "new",
+    "validate",
+    "run",
+    "talk",
+    "test",
+    "show",
+    "diff",
+    "report",
+    "graph",
+    "replay",
+    "export",
+    "explain",
+    "study",
+    "documents",
+    "schemas",
+    "lsp",
+)
 """Each is a module of this package, with a command of its name; in the order of the help."""
 
 

@@ -1,0 +1,72 @@
+"""prima graph."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import Choice, tell
+from prima.errors import UsageError
+
+FORMATS = ["svg", "dot", "mermaid", "json"]
+
+
+@click.command()
+@click.argument("file", type=click.Path())
+@click.option("--to", type=Choice(FORMATS), help="By default what OUTPUT's suffix tells, or svg.")
+@click.option(
+    "--what",
+    type=Choice(["states", "tree", "streams"]),
+    help="An application's states; a transcript's tree of Atomic Behaviors, or its streams.",
+)
+@click.option("--row", type=int, help="The tree as it was at this row of the transcript's table.")
+@click.option("-o", "--output", type=click.Path(), help="The file to write; else to stdout.")
+def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
+    """Draw the states of an application, or the trees and streams of a run.
+
+    FILE is an application or a transcript; its content tells which. Nothing else
+    is needed to draw SVG; DOT and Mermaid are for other programs.
+
+    \b
+    prima graph documents/fa/follow.xml -o follow.svg
+    prima graph documents/fa/follow.xml --to mermaid
+    prima graph mediated.jsonl --row 13 -o memory.svg
+    prima graph mediated.jsonl --what streams -o streams.svg
+    """
+    from prima.graph import SUFFIXES, picture
+
+    output = None if output == "-" else output
+    form = to or SUFFIXES.get(Path(output or "").suffix.lower())
+    if output and form is None:
+        raise UsageError(f"{output}: say in what format: --to svg, dot, mermaid or json.")
+    if form is None and sys.stdout.isatty():
+        raise UsageError("say where the picture goes: -o FILE.svg, or --to dot or mermaid.")
+    cut: list[str] = []
+    made = picture(file, form or "svg", what or "", row, cut)
+    if output is None:
+        click.echo(made.encode(), nl=False)
+    else:
+        write(made, output, file)
+    for message in cut:
+        tell(f"prima: {message}")
+    if cut:
+        raise Exit(2)
+
+
+def write(made: str, output: str, source: str) -> None:
+    """Write a picture to a file.
+
+    Raises:
+        UsageError: it cannot be written, or would overwrite what it is made of.
+    """
+    try:
+        if Path(output).resolve() == Path(source).resolve():
+            raise UsageError(f"{output}: this is what the picture is made of; write elsewhere.")
+        Path(output).write_text(made, encoding="utf-8", newline="\n")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is no file's name"
+        raise UsageError(f"{output}: cannot be written: {reason}.") from None
+    tell(f"written: {output}")

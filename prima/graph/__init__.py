@@ -1,0 +1,223 @@
+"""Pictures: an application as a finite state machine, a run as trees and as streams.
+
+print(picture("follow.xml", "svg"))
+print(picture("mediated.jsonl", "mermaid", what="streams"))
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from prima.errors import DocumentError, UsageError, did_you_mean, one_of
+from prima.graph.model import Graph
+from prima.graph.run import NEVER, History
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
+
+FORMATS = ("svg", "dot", "mermaid", "json")
+SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
+SUFFIXES |= {".json": "json"}
+"""What a file's suffix says about its format."""
+WHATS = ("states", "tree", "streams")
+MOST_BOXES = 300
+"""Boxes of a picture in SVG; the other formats take any number."""
+
+
+def picture(
+    path: str | Path,
+    to: str = "svg",
+    what: str = "",
+    row: int | None = None,
+    cut: list[str] | None = None,
+) -> str:
+    """Draw an application or a transcript; which of them it is its content tells.
+
+    Args:
+        path: an application in PRIMA's language or VoiceXML, or a transcript.
+        to: ``svg``, ``dot``, ``mermaid`` or ``json``.
+        what: ``states`` of an application; ``tree`` or ``streams`` of a transcript. By
+            default the states, or the tree.
+        row: of a tree, the row of the transcript's table at whose time it is shown; by
+            default all of the run.
+        cut: is told what is wrong with the line at which a transcript breaks off; it is
+            drawn as far as it goes.
+
+    Raises:
+        UsageError: the file cannot be read or has nothing of that kind, or no such format.
+        DocumentError: the application is wrong.
+    """
+    for name, word, known in (("to", to, FORMATS), ("what", what or "states", WHATS)):
+        if word not in known:
+            hint = did_you_mean(word, known) or f"Write {one_of(known)}."
+            raise UsageError(f'There is no {name} "{word}". {hint}')
+    if _transcript(path):
+        if what == "states":
+            message = "this is a transcript, which has no states. Write --what tree or streams."
+            raise UsageError(f"{path}: {message}")
+        if what == "streams" and row is not None:
+            raise UsageError("--row goes with --what tree.")
+        from prima import api
+
+        transcript = api.read(path, partial=True)
+        if cut is not None and transcript.cut:
+            cut.append(transcript.cut)
+        return streams(transcript, to) if what == "streams" else tree(transcript, row, to)
+    if what in ("tree", "streams") or row is not None:
+        asked = f"--what {what}" if what in ("tree", "streams") else "--row"
+        remedy = "prima run SCENARIO -o FILE.jsonl makes one."
+        raise UsageError(f"{path}: {asked} needs a transcript; {remedy}")
+    return _shown(states(path), to, path)
+
+
+def states(path: str | Path) -> Graph:
+    """The states of an application and what leads from one to another.
+
+    Raises:
+        UsageError: the file cannot be read, or is no application.
+        DocumentError: the application is wrong.
+    """
+    from prima.interpreter.elements import Document
+    from prima.loading import read_application, read_file
+
+    data = read_file(path)
+    _refuse_others(path, data)
+    document, problems = read_application(str(path), data)
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problem for problem in problems if problem.severity == "error")
+    if isinstance(document, Document):
+        from prima.graph import dialogue
+
+        graph = dialogue.states(document)
+    else:
+        from prima.graph import voicexml
+        from prima.voicexml.document import VoiceDocument
+
+        assert isinstance(document, VoiceDocument)
+        graph = voicexml.states(document)
+    graph.told = _told(graph)
+    return graph
+
+
+def _refuse_others(path: str | Path, data: bytes) -> None:
+    """Say what to do with a document that is no application."""
+    from prima.loading import is_grammar, is_voicexml
+    from prima.markup.reader import parse
+
+    if is_voicexml(data):
+        return
+    if is_grammar(data):
+        raise UsageError(
+            f"{path}: this is a grammar; a graph is of an application or a transcript."
+        )
+    root = parse(str(path), data)
+    if root.tag == "scenario":
+        message = "this is a scenario. Draw its applications, or run it and draw the transcript:"
+        raise UsageError(f"{path}: {message} prima run {path} -o FILE.jsonl")
+    if root.tag in ("world", "robot"):
+        message = f"this is a {root.tag}; a graph is of an application or a transcript."
+        raise UsageError(f"{path}: {message}")
+
+
+def _transcript(path: str | Path) -> bool:
+    """Whether a file begins as a transcript does, and not as XML."""
+    from prima.loading import read_file
+
+    try:
+        if not Path(path).is_file():
+            read_file(path)  # says what is wrong
+        with Path(path).open("rb") as stream:
+            begin = stream.read(200).removeprefix(b"\xef\xbb\xbf").lstrip()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    except ValueError:
+        raise UsageError(f"{path!r} is not a file's name.") from None
+    if not begin:
+        raise UsageError(f"{path}: the file is empty.")
+    return begin[:1] == b"{"
+
+
+def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str:
+    """Draw the Atomic Behaviors of a run, or those in working memory at a row of its table.
+
+    Raises:
+        UsageError: there is no such row, a record lacks what its phase has, or it is too much.
+    """
+    from prima.graph import run
+
+    until = NEVER if row is None else _time(transcript, row)
+    try:
+        graph = run.trees(transcript.records, until)
+    except (KeyError, TypeError, AttributeError):
+        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
+    graph.told = _told(graph)
+    return _shown(graph, to, transcript.name)
+
+
+def streams(transcript: Transcript, to: str = "svg") -> str:
+    """Draw the history of a run's Communication Streams.
+
+    Raises:
+        UsageError: a record lacks what its phase has, or it is too much.
+    """
+    from prima.graph import run
+
+    try:
+        history = run.streams(transcript.records)
+    except (KeyError, TypeError, AttributeError):
+        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
+    return _streams_shown(history, to, transcript.name)
+
+
+def _time(transcript: Transcript, row: int) -> float:
+    """When a row of the table is, in seconds."""
+    rows = transcript.rows()
+    if not rows:
+        raise UsageError(f"{transcript.name}: the transcript has no rows.")
+    if not 0 <= row < len(rows):
+        raise UsageError(f"There is no row {row}; the rows are 0 to {len(rows) - 1}.")
+    return rows[row].time
+
+
+def _told(graph: Graph) -> str:
+    """A description in sentences, for who cannot see the picture."""
+    sentences = []
+    for node in list(graph.nodes.values())[:40]:
+        ways = [
+            f"{graph.nodes[edge.target].title}" if edge.target else edge.words
+            for edge in graph.out(node.key)[:8]
+        ]
+        marks = f" ({', '.join(node.marks)})" if node.marks else ""
+        to = " leads to " if not node.group else " is followed by "
+        sentences.append(node.title + marks + (f"{to}{', '.join(ways)}." if ways else "."))
+    more = len(graph.nodes) - len(sentences)
+    return " ".join(sentences) + (f" And {more} more." if more > 0 else "")
+
+
+def _shown(graph: Graph, to: str, path: str | Path) -> str:
+    from prima.graph import text
+
+    if to != "svg":
+        return {"dot": text.dot, "mermaid": text.mermaid, "json": text.data}[to](graph)
+    if len(graph.nodes) > MOST_BOXES:
+        remedy = "Write --to dot, and draw it with a program for large graphs"
+        remedy += "." if graph.across else ", or choose a moment with --row."
+        message = f"{len(graph.nodes)} boxes are too many for one picture; {MOST_BOXES} are not."
+        raise UsageError(f"{path}: {message} {remedy}")
+    from prima.graph import cards, treepicture
+
+    return cards.draw(graph) if graph.across else treepicture.draw(graph)
+
+
+def _streams_shown(history: History, to: str, path: str | Path) -> str:
+    from prima.graph import gantt, text
+
+    if to == "svg" and len(history.streams) > MOST_BOXES:
+        message = f"{len(history.streams)} streams are too many for one picture; {MOST_BOXES} are"
+        raise UsageError(f"{path}: {message} not. Write --to json or mermaid.")
+    made = {"dot": text.dot_streams, "mermaid": text.mermaid_streams, "json": text.data_streams}
+    return made.get(to, gantt.draw)(history)
+
+
+__all__ = ["FORMATS", "WHATS", "Graph", "picture", "states", "streams", "tree"]

@@ -1,0 +1,304 @@
+"""The picture of an application's states: each a card that says where it leads, and why.
+
+All words stand in the cards, so that no label lies on a line or on another one. The
+cards stand in columns by their distance from the start. More columns than a page has
+room for are put into rows, like words into lines; from one row to another no line is
+drawn, as the card names its target.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from html import escape
+
+from prima.graph.layout import Layout, Link, arrange, distances
+from prima.graph.model import Edge, Graph, Node
+from prima.graph.svg import SIZE, box, fit, head, line, measure, picture, text, wrap
+
+WIDTH = 236.0
+PAD = 9.0
+LEADING = 15.0
+TITLE = 24.0
+"""How high a card's name is."""
+COLUMNS = 6
+"""Columns of one row of the page, where there are many."""
+GAP = 22.0
+MARGIN = 18.0
+MANY_BACK = 6
+"""Ways back to one card that are drawn; if there are more, none is."""
+LONGEST_BOW = 900.0
+"""How far a line goes back within a column."""
+LEGEND = (
+    ("go", "leads to"),
+    ("call", "calls and comes back"),
+    ("guess", "may lead to"),
+)
+
+
+@dataclass(slots=True)
+class Way:
+    """An edge as a card shows it: from how high on it begins, and its lines."""
+
+    edge: Edge
+    at: float
+    lines: list[str]
+
+
+@dataclass(slots=True)
+class Card:
+    """A node with its words broken into lines."""
+
+    node: Node
+    height: float = 0.0
+    marks: list[list[str]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    ways: list[Way] = field(default_factory=list)
+    x: float = 0.0
+    y: float = 0.0
+
+
+def draw(graph: Graph) -> str:
+    """The states of an application as SVG."""
+    cards = {key: _card(graph, node) for key, node in graph.nodes.items()}
+    keys = list(cards)
+    number = {key: index for index, key in enumerate(keys)}
+    follows = [[number[edge.target] for edge in graph.out(key) if edge.target] for key in keys]
+    starts = [number[key] for key in keys if cards[key].node.start]
+    starts += [number[key] for key in keys if cards[key].node.kind == "any"]
+    column = distances(len(keys), starts, follows)
+    deepest = max(column, default=0) + 1
+    rows = 1 if deepest <= COLUMNS + 2 else -(-deepest // COLUMNS)
+    each = -(-deepest // rows)
+    parts: list[str] = []
+    y, width = MARGIN + 26, 0.0
+    for row in range(rows):
+        held = [key for key, one in zip(keys, column, strict=True) if one // each == row]
+        band = _Band(
+            graph, {key: cards[key] for key in held}, [column[number[k]] % each for k in held]
+        )
+        drawn, right, bottom = band.draw(y)
+        parts += drawn
+        width, y = max(width, right), bottom + 34
+    width = max(width + MARGIN, 560.0)
+    top = [text(MARGIN, MARGIN + 8, fit(graph.title, width - 2 * MARGIN, 13, True), "name")]
+    return picture(graph.title, graph.told, width, y + 6, top + parts + _legend(graph, y - 4))
+
+
+def _legend(graph: Graph, y: float) -> list[str]:
+    """What the kinds of lines mean, of those that are there."""
+    kinds = {edge.kind for edge in graph.edges}
+    parts, x = [], MARGIN
+    for kind, words in LEGEND:
+        if kind in kinds and (kind != "go" or len(kinds & {"go", "call", "guess", "back"}) > 1):
+            parts.append(line(x, y - 4, x + 26, y - 4, kind))
+            parts.append(text(x + 32, y, words, "small"))
+            x += 48 + measure(words, 10)
+    return parts
+
+
+# Cards ----------------------------------------------------------------------------------------
+
+
+def _card(graph: Graph, node: Node) -> Card:
+    card = Card(node)
+    inner = WIDTH - 2 * PAD
+    row: list[str] = []
+    for mark in node.marks:
+        if row and sum(map(_pill, [*row, mark])) > inner:
+            card.marks.append(row)
+            row = []
+        row.append(mark)
+    card.marks += [row] if row else []
+    card.notes = [part for note in node.notes for part in wrap(note, inner, 3, 10)]
+    y = TITLE + 19 * len(card.marks) + 13 * len(card.notes) + (5 if card.notes else 0)
+    for edge in graph.out(node.key):
+        lines = [part for label in edge.labels for part in wrap(label, inner - 10, 3)]
+        y += 6
+        card.ways.append(Way(edge, y + 9, lines))
+        y += LEADING * (1 + len(lines))
+    card.height = y + 7
+    return card
+
+
+def _pill(mark: str) -> float:
+    return measure(mark, 10) + 14
+
+
+def _name(graph: Graph, edge: Edge) -> str:
+    """Where an edge leads, as its card says it."""
+    if not edge.target:
+        return edge.words
+    title = graph.nodes[edge.target].title
+    return {"call": f"calls {title}", "back": f"returns to {title}"}.get(edge.kind, f"→ {title}")
+
+
+def _drawn(graph: Graph, card: Card) -> list[str]:
+    """A card's box and words."""
+    node, x, y = card.node, card.x, card.y
+    kind = "box any" if node.kind == "any" else "box first" if node.start else "box"
+    told = "start: " if node.start else ""
+    parts = [box(x, y, WIDTH, card.height, kind, 7)]
+    start = measure("start", 10) + 4 if node.start else 0
+    parts.append(text(x + PAD, y + 17, fit(node.title, WIDTH - 2 * PAD - start, 13, True), "name"))
+    if node.start:
+        parts.append(text(x + WIDTH - PAD - start + 4, y + 16, "start", "small"))
+    if node.source:
+        parts.append(f"<title>{escape(f'{told}{node.title}, {node.source}')}</title>")
+    top = y + TITLE
+    for row in card.marks:
+        left = x + PAD
+        for mark in row:
+            wide = _pill(mark)
+            parts += [
+                box(left, top, wide - 5, 15, "mark", 7),
+                text(left + 4.5, top + 11, mark, "small"),
+            ]
+            left += wide
+        top += 19
+    for note in card.notes:
+        parts.append(text(x + PAD, top + 10, note, "small"))
+        top += 13
+    for way in card.ways:
+        base = y + way.at
+        parts.append(line(x, base - 13, x + WIDTH, base - 13, "rule"))
+        name = fit(_name(graph, way.edge), WIDTH - 2 * PAD, SIZE, True)
+        parts.append(text(x + PAD, base + 2, name, "to"))
+        for label in way.lines:
+            base += LEADING
+            parts.append(text(x + PAD + 10, base + 2, label))
+    return parts
+
+
+# Rows of the page -------------------------------------------------------------------------------
+
+
+class _Band:
+    """The cards of some columns, one row of the page."""
+
+    def __init__(self, graph: Graph, cards: dict[str, Card], columns: list[int]) -> None:
+        self.graph, self.cards = graph, cards
+        number = {key: index for index, key in enumerate(cards)}
+        self.column = dict(zip(cards, columns, strict=True))
+        back = Counter(
+            way.edge.target
+            for key, card in cards.items()
+            for way in card.ways
+            if way.edge.target in cards and self.column[way.edge.target] <= self.column[key]
+        )
+        self.crowded = {key for key, count in back.items() if count > MANY_BACK}
+        links: list[Link] = []
+        self.links: dict[tuple[str, str, str], Link] = {}
+        for key, card in cards.items():
+            for way in card.ways:
+                to = way.edge.target
+                if not self._near(key, to) or self.column[to] == self.column[key]:
+                    continue
+                forward = self.column[to] > self.column[key]
+                link = (
+                    Link(number[key], number[to], way.at, 14)
+                    if forward
+                    else Link(number[to], number[key], 14, way.at)
+                )
+                links.append(link)
+                self.links[key, to, way.edge.kind] = link
+        heights = [card.height for card in cards.values()]
+        self.layout: Layout = arrange(heights, columns, links, GAP)
+        self.left = self._lefts(columns)
+
+    def _near(self, key: str, target: str) -> bool:
+        """Whether a line is drawn: not to another row of the page, nor back to where many go."""
+        if target not in self.cards:
+            return False
+        back = self.column[target] <= self.column[key]
+        return key == target or not (back and target in self.crowded)
+
+    def _lefts(self, columns: list[int]) -> list[float]:
+        """Where each column begins: the more lines between two, the more room."""
+        count = max(columns, default=0) + 1
+        lines = [0] * (count + 1)
+        for key, card in self.cards.items():
+            for way in card.ways:
+                if self._near(key, way.edge.target):
+                    one, two = self.column[key], self.column[way.edge.target]
+                    for gutter in range(min(one, two), max(one, two) or 1):
+                        lines[gutter] += 1
+                    lines[one] += one == two
+        left = [MARGIN]
+        for gutter in range(count):
+            left.append(left[-1] + WIDTH + min(54 + 4.0 * lines[gutter], 150))
+        return left
+
+    def draw(self, top: float) -> tuple[list[str], float, float]:
+        """The row's parts, and where it ends at the right and below."""
+        for index, (key, card) in enumerate(self.cards.items()):
+            card.x = self.left[self.column[key]]
+            card.y = top + self.layout.aside[index]
+        parts: list[str] = []
+        for key, card in self.cards.items():
+            lost = "" if card.node.reached else " lost"
+            lines: list[str] = []
+            for way in card.ways:
+                lines += self._line(key, card, way, top)
+            parts += [f'<g class="state{lost}">', *_drawn(self.graph, card), *lines, "</g>"]
+        last = max(self.column.values(), default=0)
+        loops = any(
+            way.edge.target in self.cards
+            and self.column[way.edge.target] == last == self.column[key]
+            for key, card in self.cards.items()
+            for way in card.ways
+        )
+        right = self.left[last] + WIDTH + (self.left[last + 1] - self.left[last] - WIDTH) * loops
+        bottom = top + self.layout.extent
+        return parts, right, bottom
+
+    def _line(self, key: str, card: Card, way: Way, top: float) -> list[str]:
+        """An edge's line with its head; a stub where the whole line would only confuse."""
+        edge, y = way.edge, card.y + way.at - 2
+        if not edge.target:
+            return []
+        kind = f"edge {edge.kind}"
+        shape = "head" if edge.kind == "go" else f"{edge.kind}-head"
+        right = card.x + WIDTH
+        target = self.cards.get(edge.target)
+        to = target.y + 14 if target else 0.0
+        far = target and self.column[edge.target] == self.column[key] and abs(to - y) > LONGEST_BOW
+        if target is None or far or not self._near(key, edge.target):
+            return [line(right, y, right + 9, y, kind), head(right + 17, y, shape, "right")]
+        if self.column[edge.target] == self.column[key]:
+            return self._bow(right, y, to, key == edge.target, kind, shape)
+        link = self.links[key, edge.target, edge.kind]
+        forward = self.column[edge.target] > self.column[key]
+        middle = [top + self.layout.aside[place] + 4.5 for place in link.chain[1:-1]]
+        columns = range(self.column[key] + 1, self.column[edge.target])
+        end = target.x
+        if not forward:
+            right, end = card.x, target.x + WIDTH
+            columns = range(self.column[edge.target] + 1, self.column[key])
+            middle, columns = middle[::-1], columns[::-1]
+        path, at = f"M{right:.1f} {y:.1f}", right
+        tip = end - 7 if forward else end + 7
+        for place, through in zip(middle, columns, strict=True):
+            near, off = self.left[through], self.left[through] + WIDTH
+            if not forward:
+                near, off = off, near
+            path += _curve(at, y, near, place) + f"H{off:.1f}"
+            at, y = off, place
+        path += _curve(at, y, tip, to)
+        turn = "right" if forward else "left"
+        return [f'<path class="{kind}" d="{path}"/>', head(end, to, shape, turn)]
+
+    def _bow(
+        self, right: float, y: float, to: float, own: bool, kind: str, shape: str
+    ) -> list[str]:
+        """A line back to the same column."""
+        out = 16 if own else min(24 + abs(to - y) / 12, 58)
+        path = f"M{right:.1f} {y:.1f}C{right + out:.1f} {y:.1f} {right + out:.1f} {to:.1f}"
+        path += f" {right + 7:.1f} {to:.1f}"
+        return [f'<path class="{kind}" d="{path}"/>', head(right, to, shape, "left")]
+
+
+def _curve(x1: float, y1: float, x2: float, y2: float) -> str:
+    """A curve that begins and ends level."""
+    middle = (x1 + x2) / 2
+    return f"C{middle:.1f} {y1:.1f} {middle:.1f} {y2:.1f} {x2:.1f} {y2:.1f}"

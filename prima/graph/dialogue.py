@@ -1,0 +1,307 @@
+"""The states of an application in PRIMA's own language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import PurePath
+
+from prima.commands import TABLE_4_2
+from prima.graph.model import Graph, Node, clean, settle
+from prima.graph.words import condition, handled, joined, literals, otherwise, quoted, sayings
+from prima.interpreter.elements import (
+    Act,
+    Block,
+    CommandTemplate,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Filled,
+    Foreach,
+    Form,
+    Goto,
+    GroupTemplate,
+    Handler,
+    If,
+    Item,
+    Link,
+    Return,
+    Run,
+    SendOut,
+    Subdialog,
+    Text,
+    Throw,
+    Unit,
+    all_acts,
+    all_items,
+    run_commands,
+)
+
+ANY = ":any"
+"""The key of what holds in all states; no form can have it as its id."""
+QUESTIONS = 3
+"""Questions of a state that are shown."""
+
+
+def states(document: Document) -> Graph:
+    """The states of an application and what leads from one to another."""
+    return _Reader(document).graph
+
+
+class _Reader:
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.graph = Graph(f"The states of {clean(document.id)}")
+        self.here = ANY
+        self.hints: dict[str, list[str]] = {}
+        for form in document.forms.values():
+            self._form(form)
+        self._everywhere()
+        settle(self.graph, {ANY: list(document.forms)})
+
+    def _form(self, form: Form) -> None:
+        node = self.graph.node(form.id, form.id, start=not self.graph.nodes)
+        place = form.node.place
+        node.source = f"{PurePath(place.file).name}:{place.line}"
+        self.here = form.id
+        self.hints = _hints(self.document, form)
+        self._links(form.links)
+        items = all_items(form.items)
+        asked = [item for item in items if isinstance(item, Field)]
+        for item in items:
+            conditions = [condition(item.cond.code, "", False)] if item.cond else []
+            if isinstance(item, Block):
+                self._content(item.content, "then", conditions)
+            elif isinstance(item, Subdialog):
+                base = clean(item.node.get("name") or item.form)
+                self._to(item.form, "call", joined(f"subdialog {base}", conditions))
+                self._filleds(item.filled, f"{base} has returned", "", False)
+            elif isinstance(item, Field):
+                base = "answered" if len(asked) == 1 else f"{item.name} answered"
+                self._filleds(item.filled, base, item.name, item.answers.type == "boolean")
+            where = "" if len(asked) < 2 or not isinstance(item, Field) else f"{item.name}: "
+            self._handlers(item.handlers, where)
+        for filled in form.filled:
+            names = ", ".join(filled.names) or "all"
+            self._content(filled.content, f"{names} answered", [])
+        self._handlers(form.handlers)
+        self._describe(node, form, items)
+
+    def _describe(self, node: Node, form: Form, items: list[Item]) -> None:
+        """What is special about a state, and what it asks or says."""
+        runs = _runs(_contents(form))
+        commands = _commands(_contents(form))
+        fields = [item for item in items if isinstance(item, Field)]
+        leaving = [one for one in commands if _leaves(one)]
+        grouped = any(isinstance(step.what, GroupTemplate) for run in runs for step in run.steps)
+        holds = [form.hold, *(item.hold for item in items)]
+        connects = form.connect or any(field.connect for field in fields)
+        marks = {
+            "asks": bool(fields),
+            "sleeps": not _leaves_at_its_end(form.items),
+            "leaves the user": bool(leaving),
+            "unit": grouped or any(isinstance(item, Unit) for item in items),
+            "holds its stream": any(hold is not None for hold in holds),
+            "faces the user": connects,
+        }
+        node.marks = [mark for mark, there in marks.items() if there]
+        questions = [text for field in fields for text in _asked(field)]
+        node.notes = [f"asks {quoted(text)}" for text in questions[:QUESTIONS]]
+        if len(questions) > QUESTIONS:
+            node.notes.append(f"and {len(questions) - QUESTIONS} more")
+        said = [one for one in _commands(_blocks(form)) if one.text]
+        if not questions and said:
+            node.notes.append(f"says {quoted(_text(said[0].text or []))}")
+        goals = dict.fromkeys(_goal(one) for one in leaving)
+        node.notes += [clean(goal) for goal in list(goals)[:2]]
+
+    def _everywhere(self) -> None:
+        """What the document itself handles and listens for, in all its states."""
+        self.here = ANY
+        self.hints = _hints(self.document, None)
+        self._handlers(self.document.handlers)
+        self._links(self.document.links)
+        if self.graph.out(ANY):
+            self.graph.node(ANY, "in any state", kind="any")
+
+    # What leads away ------------------------------------------------------------------------
+
+    def _links(self, links: Iterable[Link]) -> None:
+        for link in links:
+            if link.form:
+                self._to(link.form, "go", f"said {sayings(link.node.all('grammar'))}")
+
+    def _filleds(self, filleds: list[Filled], base: str, name: str, truth: bool) -> None:
+        for filled in filleds:
+            self._content(filled.content, base, [], name, truth)
+
+    def _handlers(self, handlers: list[Handler], where: str = "", of: str = "") -> None:
+        for handler in handlers:
+            cond = handler.cond.code if handler.cond else ""
+            told = handled(handler.events, handler.count, cond, self.hints)
+            self._content(handler.content, f"{where}{told}{of}", [])
+
+    def _content(
+        self,
+        content: list[Act],
+        base: str,
+        conditions: list[str],
+        name: str = "",
+        truth: bool = False,
+    ) -> bool:
+        """Note all ways out of content; whether nothing behind it is ever reached."""
+        conditions = list(conditions)
+        for act in content:
+            told = joined(base, conditions)
+            match act:
+                case Goto():
+                    self._goto(act, told)
+                    return True
+                case Exit():
+                    self.graph.edge(self.here, "", "exit", told)
+                    return True
+                case Return():
+                    thrown = f", throws {act.event}" if act.event else ""
+                    self.graph.edge(self.here, "", "return", told + thrown)
+                    return True
+                case Throw():
+                    return True
+                case If():
+                    over, left = self._branches(act, base, conditions, name, truth)
+                    if over:
+                        return True
+                    conditions += left
+                case Foreach():
+                    self._content(act.content, base, conditions, name, truth)
+                case Run():
+                    for command in run_commands(act.steps):
+                        self._handlers(command.handlers, of=f" of {_title(command)}")
+        return False
+
+    def _branches(
+        self, act: If, base: str, conditions: list[str], name: str, truth: bool
+    ) -> tuple[bool, list[str]]:
+        """Note the ways out of an ``if``; whether it has no other, and what holds behind it."""
+        ends: list[bool] = []
+        told: list[str] = []
+        for cond, branch in act.branches:
+            one = condition(cond.code, name, truth) if cond else otherwise(told)
+            ends.append(self._content(branch, base, [*conditions, one], name, truth))
+            told.append(one)
+        complete = act.branches[-1][0] is None
+        return all(ends) and complete, [otherwise(told)] if any(ends) and not complete else []
+
+    def _goto(self, act: Goto, told: str) -> None:
+        if isinstance(act.form, Expression):
+            for name in literals(act.form.code, self.document.forms):
+                self.graph.edge(self.here, name, "guess", told)
+            self.graph.edge(self.here, "", "computed", told, act.form.code)
+        elif act.form:
+            self._to(act.form, "go", told)
+
+    def _to(self, form: str, kind: str, told: str) -> None:
+        if form in self.document.forms:
+            self.graph.edge(self.here, form, kind, told)
+        else:
+            self.graph.edge(self.here, "", "missing", told, form)
+
+
+def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
+    """What is known of where events come from in a state: links, watches, delays of its own."""
+    found: dict[str, list[str]] = {}
+    for link in [*document.links, *(form.links if form else [])]:
+        if link.event:
+            found.setdefault(link.event, []).append(f"said {sayings(link.node.all('grammar'))}")
+    for watch in [*document.watches, *(form.watches if form else [])]:
+        found.setdefault(watch.name, []).append(clean(watch.when.code))
+    contents = [handler.content for handler in document.handlers]
+    contents += _contents(form) if form else []
+    for act in [act for content in contents for act in all_acts(content)]:
+        if isinstance(act, SendOut) and act.event:
+            told = f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
+            found.setdefault(act.event, []).append(told)
+    return {event: list(dict.fromkeys(hints)) for event, hints in found.items()}
+
+
+def _blocks(form: Form) -> list[list[Act]]:
+    """The content of a state's blocks."""
+    return [item.content for item in all_items(form.items) if isinstance(item, Block)]
+
+
+def _contents(form: Form) -> list[list[Act]]:
+    """Every piece of executable content of a state."""
+    found = _blocks(form)
+    found += [handler.content for handler in form.handlers]
+    found += [filled.content for filled in form.filled]
+    for item in all_items(form.items):
+        found += [handler.content for handler in item.handlers]
+        if isinstance(item, Field | Subdialog):
+            found += [filled.content for filled in item.filled]
+    return found
+
+
+def _runs(contents: list[list[Act]]) -> list[Run]:
+    """The runs of Commands in content."""
+    return [act for content in contents for act in all_acts(content) if isinstance(act, Run)]
+
+
+def _commands(contents: list[list[Act]]) -> list[CommandTemplate]:
+    """The Commands in content."""
+    return [command for run in _runs(contents) for command in run_commands(run.steps)]
+
+
+def _leaves_at_its_end(items: list[Item]) -> bool:
+    """Whether a state is left before its items are through: then it never waits for events."""
+    for item in items:
+        if item.cond is not None or item.expr is not None:
+            continue
+        if isinstance(item, Block):
+            left = _never_ends(item.content)
+        elif isinstance(item, Unit):
+            left = _leaves_at_its_end(item.items)
+        elif isinstance(item, Field | Subdialog):
+            left = any(_never_ends(filled.content) for filled in item.filled)
+        else:
+            left = False
+        if left:
+            return True
+    return False
+
+
+def _never_ends(content: list[Act]) -> bool:
+    """Whether content leaves its state in each case."""
+    for act in content:
+        if isinstance(act, Goto | Exit | Return):
+            return not (isinstance(act, Goto) and act.item is not None)
+        complete = isinstance(act, If) and act.branches[-1][0] is None
+        if isinstance(act, If) and complete and all(_never_ends(one) for _, one in act.branches):
+            return True
+    return False
+
+
+def _leaves(command: CommandTemplate) -> bool:
+    row = TABLE_4_2.get(command.type)
+    return row is not None and row.leaves
+
+
+def _title(command: CommandTemplate) -> str:
+    row = TABLE_4_2.get(command.type)
+    return row.title if row else clean(command.type)
+
+
+def _goal(command: CommandTemplate) -> str:
+    """A Command that leaves the user, and where it goes."""
+    to = command.args.get("to")
+    goal = f"{{{to.code}}}" if isinstance(to, Expression) else str(to or "")
+    return f"{_title(command)}{' to ' + goal if goal else ''}"
+
+
+def _asked(field: Field) -> list[str]:
+    """The first words of a question; none if it has no prompt."""
+    first = [prompt.text for prompt in field.prompts if prompt.count == 1][:1]
+    return [_text(text) for text in first or [prompt.text for prompt in field.prompts[:1]]]
+
+
+def _text(text: Text) -> str:
+    """Text with the expressions in it in braces."""
+    return "".join(part if isinstance(part, str) else f"{{{part.code}}}" for part in text)

@@ -1,0 +1,100 @@
+"""The picture of Communication Streams over time: a row for each, from its begin to its end."""
+
+from __future__ import annotations
+
+from html import escape
+
+from prima.graph.run import History, Stream
+from prima.graph.svg import box, fit, line, measure, picture, text
+
+ROW, BAR = 26.0, 14.0
+MARGIN = 18.0
+PLOT = 860.0
+"""How wide the time axis is."""
+STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 14400)
+LEGEND = (
+    ("s0", "active"),
+    ("away", "suspended, then resumed"),
+    ("broken", "broken by no reaction"),
+    ("line", "open, nothing of it runs"),
+)
+
+
+def draw(history: History) -> str:
+    """The streams' history as SVG."""
+    title = history.title
+    names = [stream.name for stream in history.streams]
+    left = MARGIN + min(max([measure(name, 11.5) for name in names], default=0) + 12, 240)
+    end = max(history.end, 0.001)
+    scale = PLOT / end
+    width = left + PLOT + MARGIN + 30
+    top = MARGIN + 30
+    bottom = top + ROW * len(names)
+    parts = [text(MARGIN, MARGIN + 8, title, "name")]
+    step = next((one for one in STEPS if end / one <= 12), STEPS[-1])
+    for tick in range(int(end // step) + 1):
+        x = left + tick * step * scale
+        parts += [
+            line(x, top - 2, x, bottom + 4, "grid"),
+            text(x - 3, bottom + 16, f"{tick * step}", "small"),
+        ]
+    parts.append(text(MARGIN, bottom + 16, "seconds", "small"))
+    for number, stream in enumerate(history.streams):
+        shade = history.shades.get(stream.app, 0)
+        parts += _row(stream, shade, left, top + ROW * number, scale)
+    x, y = MARGIN, bottom + 40
+    for kind, words in LEGEND:
+        mark = line(x, y - 4, x + 22, y - 4) if kind == "line" else box(x, y - 10, 22, 12, kind, 2)
+        parts += [mark, text(x + 28, y, words, "small")]
+        x += 46 + measure(words, 10)
+    return picture(title, told(history), width, y + MARGIN, parts)
+
+
+def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> list[str]:
+    """A stream's name, its line and what it was on the way."""
+    middle = y + BAR / 2
+    begin, end = left + stream.begin * scale, left + stream.end * scale
+    parts = [text(MARGIN, middle + 4, fit(stream.name, left - MARGIN - 8))]
+    at = begin
+    for span in sorted(stream.spans, key=lambda span: span.begin):
+        if left + span.begin * scale > at:
+            parts.append(line(at, middle, left + span.begin * scale, middle))
+        at = max(at, left + span.end * scale)
+    if end > at:
+        parts.append(line(at, middle, end, middle))
+    if stream.ended:
+        parts.append(line(end, y, end, y + BAR))
+    kinds = {"away": "away", "broken": "broken"}
+    for span in sorted(stream.spans, key=lambda span: span.kind != "away"):
+        x, wide = left + span.begin * scale, max((span.end - span.begin) * scale, 1.5)
+        hint = f"{stream.name} {span.words}, {span.begin:.2f} to {span.end:.2f} s"
+        parts.append(f"<g><title>{escape(hint)}</title>")
+        thin = 0 if span.kind == "runs" else 3
+        parts.append(box(x, y - thin, wide, BAR + 2 * thin, kinds.get(span.kind, f"s{shade}"), 2))
+        # What runs on for a moment after the suspension covers its beginning.
+        covered = [
+            one.end
+            for one in stream.spans
+            if one.kind == "runs" and one.begin <= span.begin < one.end
+        ]
+        start = max([span.begin, *covered]) if span.kind == "away" else span.begin
+        room = (span.end - start) * scale - 8
+        words = span.words if span.kind != "runs" else ""
+        if words and measure(words, 10) <= room:
+            parts.append(text(left + start * scale + 5, middle + 3.5, words, "small"))
+        parts.append("</g>")
+    return parts
+
+
+def told(history: History) -> str:
+    """The history in sentences, for who cannot see it."""
+    sentences = []
+    for stream in history.streams[:40]:
+        what = [
+            f"{span.words} from {span.begin:.2f} to {span.end:.2f}"
+            for span in stream.spans
+            if span.kind != "runs"
+        ]
+        more = ", ".join(["", *what[:6]])
+        sentences.append(f"{stream.name} from {stream.begin:.2f} to {stream.end:.2f} s{more}.")
+    return " ".join(sentences)

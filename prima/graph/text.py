@@ -1,0 +1,270 @@
+"""Pictures as text for other programs: DOT (Graphviz), Mermaid, and JSON."""
+
+from __future__ import annotations
+
+import json
+import re
+
+from prima.graph.model import INWARD, Edge, Graph, Node
+from prima.graph.run import History
+
+MEANS = re.compile(r"[^\w ,?!'/=]|_")
+"""What may mean something in Mermaid, and is written by its number."""
+DATES = "YYYY-MM-DD HH:mm:ss.SSS"
+DASHED = ("call", "back", "guess")
+FILLS = ("#fff1e5", "#ddf4ff", "#dafbe1", "#fbefff", "#fff8c5")
+STROKES = ("#bc4c00", "#0969da", "#1a7f37", "#8250df", "#9a6700")
+
+
+def lines(node: Node) -> list[str]:
+    """A node's words, a line each."""
+    marks = [", ".join(node.marks)] if node.marks else []
+    return [node.title, *marks, *node.notes]
+
+
+def ends(graph: Graph) -> dict[tuple[str, str], Edge]:
+    """What is outside of a picture and has to be a node there, by its kind and name."""
+    found: dict[tuple[str, str], Edge] = {}
+    for edge in graph.edges:
+        if edge.kind not in INWARD:
+            found.setdefault((edge.kind, edge.where), edge)
+    return found
+
+
+def groups(graph: Graph) -> dict[str, list[Node]]:
+    """The nodes by their groups, in their order."""
+    found: dict[str, list[Node]] = {}
+    for node in graph.nodes.values():
+        found.setdefault(node.group, []).append(node)
+    return found
+
+
+# DOT --------------------------------------------------------------------------------------------
+
+
+def quote(text: str) -> str:
+    """A text as DOT has it; lines stay lines."""
+    text = text.replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + text.replace("\n", "\\n") + '"'
+
+
+def dot(graph: Graph) -> str:
+    """A graph in DOT."""
+    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+    made = [
+        "digraph prima {",
+        f"  graph [label={quote(graph.title)}, labelloc=t, rankdir={'LR' if graph.across else 'TB'}];",
+        '  node [shape=box, style="rounded", fontname="sans-serif", fontsize=11];',
+        '  edge [fontname="sans-serif", fontsize=9];',
+    ]
+    for index, (group, nodes) in enumerate(groups(graph).items(), 1):
+        inside = [f"  {number[node.key]} [{_attributes(node)}];" for node in nodes]
+        if group:
+            inside = [
+                f"  subgraph cluster_{index} {{",
+                f"    label={quote(f'stream {group}')}; style=dashed;",
+                *(f"  {one}" for one in inside),
+                "  }",
+            ]
+        made += inside
+    starts = [key for key, node in graph.nodes.items() if node.start]
+    if starts:
+        made.append('  start [shape=point, width=0.2, label=""];')
+        made += [f"  start -> {number[key]};" for key in starts]
+    outside = {}
+    for index, (name, edge) in enumerate(ends(graph).items(), 1):
+        outside[name] = f"out{index}"
+        shape = "doublecircle" if edge.kind == "exit" else "plaintext"
+        label = "end" if edge.kind == "exit" else edge.words
+        made.append(f"  out{index} [shape={shape}, label={quote(label)}];")
+    for edge in graph.edges:
+        to = number[edge.target] if edge.target else outside[edge.kind, edge.where]
+        style = {"call": ", style=dashed", "back": ", style=dashed", "guess": ", style=dotted"}
+        label = quote("\n".join(_edge_lines(edge)))
+        made.append(f"  {number[edge.source]} -> {to} [label={label}{style.get(edge.kind, '')}];")
+    return "\n".join([*made, "}"]) + "\n"
+
+
+def _attributes(node: Node) -> str:
+    style = ["rounded"]
+    more = ""
+    if node.kind in ("any", "linked", "cancelled", "failed"):
+        style.append("dashed")
+    if node.kind in ("running", "done"):
+        style.append("filled")
+        more = f', fillcolor="{FILLS[node.shade]}"'
+    if not node.reached:
+        more += ', color="gray60", fontcolor="gray60"'
+    if node.start:
+        more += ", penwidth=2"
+    return f'label={quote(chr(10).join(lines(node)))}, style="{",".join(style)}"{more}'
+
+
+def _edge_lines(edge: Edge) -> list[str]:
+    words = {"call": ["calls"], "back": ["returns"], "guess": ["perhaps"]}.get(edge.kind, [])
+    return [*words, *edge.labels]
+
+
+def dot_streams(history: History) -> str:
+    """The streams' history in DOT: each a chain of what it was."""
+    made = [
+        "digraph prima {",
+        f"  graph [label={quote(history.title)}, labelloc=t, rankdir=LR];",
+        '  node [shape=box, style="filled", fontname="sans-serif", fontsize=11];',
+    ]
+    for index, stream in enumerate(history.streams, 1):
+        shade = history.shades.get(stream.app, 0)
+        made += [f"  subgraph cluster_{index} {{", f"    label={quote(f'stream {stream.name}')};"]
+        for number, span in enumerate(stream.spans, 1):
+            fill = {"runs": FILLS[shade], "away": "gray85", "broken": "#ffcecb"}[span.kind]
+            label = quote(f"{span.words}\n{span.begin:.2f} to {span.end:.2f} s")
+            made.append(f'    s{index}_{number} [label={label}, fillcolor="{fill}"];')
+        chain = " -> ".join(f"s{index}_{number}" for number in range(1, len(stream.spans) + 1))
+        made += [f"    {chain};"] if chain else [f'    s{index}_0 [label="nothing of it ran"];']
+        made.append("  }")
+    return "\n".join([*made, "}"]) + "\n"
+
+
+# Mermaid ----------------------------------------------------------------------------------------
+
+
+def entity(text: str) -> str:
+    """A text as Mermaid has it: what could mean something there is written by its number."""
+    return MEANS.sub(lambda match: f"#{ord(match[0])};", text)
+
+
+def mermaid(graph: Graph) -> str:
+    """A graph as a Mermaid flowchart."""
+    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+    made = ["---", f"title: {json.dumps(graph.title)}", "---"]
+    made.append(f"flowchart {'LR' if graph.across else 'TB'}")
+    for index, (group, nodes) in enumerate(groups(graph).items(), 1):
+        inside = [f"  {number[node.key]}{_shape(node)}" for node in nodes]
+        if group:
+            title = entity(f"stream {group}")
+            inside = [f'  subgraph g{index}["{title}"]', *(f"  {one}" for one in inside), "  end"]
+        made += inside
+    starts = [key for key, node in graph.nodes.items() if node.start]
+    if starts:
+        made.append('  start(("start"))')
+        made += [f"  start --> {number[key]}" for key in starts]
+    outside = {}
+    for index, (name, edge) in enumerate(ends(graph).items(), 1):
+        outside[name] = f"out{index}"
+        text = "end" if edge.kind == "exit" else edge.words
+        shape = f'((("{entity(text)}")))' if edge.kind == "exit" else f'>"{entity(text)}"]'
+        made.append(f"  out{index}{shape}")
+    for edge in graph.edges:
+        to = number[edge.target] if edge.target else outside[edge.kind, edge.where]
+        label = "<br/>".join(map(entity, _edge_lines(edge)))
+        arrow = "-.->" if edge.kind in DASHED else "-->"
+        words = f'|"{label}"|' if label else ""
+        made.append(f"  {number[edge.source]} {arrow}{words} {to}")
+    made += _classes(graph, number)
+    return "\n".join(made) + "\n"
+
+
+def _shape(node: Node) -> str:
+    first, *rest = map(entity, lines(node))
+    return f'["{"<br/>".join([f"<b>{first}</b>", *rest])}"]'
+
+
+def _classes(graph: Graph, number: dict[str, str]) -> list[str]:
+    """What is dimmed, dashed or filled."""
+    held: dict[str, list[str]] = {}
+    for key, node in graph.nodes.items():
+        if not node.reached:
+            held.setdefault("lost opacity:0.45", []).append(number[key])
+        if node.kind in ("any", "linked", "cancelled", "failed"):
+            held.setdefault("dashed stroke-dasharray:5 3", []).append(number[key])
+        if node.kind in ("running", "done"):
+            fill, stroke = FILLS[node.shade], STROKES[node.shade]
+            style = f"s{node.shade} fill:{fill},stroke:{stroke},color:#1f2328"
+            held.setdefault(style, []).append(number[key])
+    made = []
+    for style, nodes in sorted(held.items()):
+        name, _, rule = style.partition(" ")
+        made += [f"  classDef {name} {rule}", f"  class {','.join(nodes)} {name}"]
+    return made
+
+
+def mermaid_streams(history: History) -> str:
+    """The streams' history as a Mermaid Gantt chart, with times in seconds of the run."""
+    made = [
+        "gantt",
+        f"  title {entity(history.title)}",
+        f"  dateFormat {DATES}",
+        "  axisFormat %H:%M:%S",
+    ]
+    for stream in history.streams:
+        made.append(f"  section {entity(stream.name)}")
+        for span in stream.spans:
+            mark = {"runs": "active", "away": "done", "broken": "crit"}[span.kind]
+            begin, end = _date(span.begin), _date(max(span.end, span.begin + 0.001))
+            made.append(f"  {entity(span.words)} :{mark}, {begin}, {end}")
+    return "\n".join(made) + "\n"
+
+
+def _date(seconds: float) -> str:
+    """A time of the run as one of a day, which looks the same in every time zone."""
+    ms = round(seconds * 1000)
+    clock = f"{ms // 3_600_000 % 24:02}:{ms // 60_000 % 60:02}:{ms // 1000 % 60:02}.{ms % 1000:03}"
+    return f"2000-01-{1 + min(ms // 86_400_000, 30):02} {clock}"
+
+
+# JSON -------------------------------------------------------------------------------------------
+
+
+def data(graph: Graph) -> str:
+    """A graph as JSON: ``nodes`` by their ``id``, and ``edges`` between them."""
+    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+    nodes = [
+        {
+            "id": number[node.key],
+            "name": node.title,
+            "kind": node.kind,
+            "start": node.start,
+            "reached": node.reached,
+            "marks": node.marks,
+            "notes": node.notes,
+            **({"stream": node.group} if node.group else {}),
+            **({"source": node.source} if node.source else {}),
+        }
+        for node in graph.nodes.values()
+    ]
+    edges = [
+        {
+            "from": number[edge.source],
+            "to": number.get(edge.target),
+            "kind": edge.kind,
+            **({"where": edge.where} if edge.where else {}),
+            "labels": edge.labels,
+        }
+        for edge in graph.edges
+    ]
+    made = {"title": graph.title, "nodes": nodes, "edges": edges}
+    return json.dumps(made, ensure_ascii=False, indent=2) + "\n"
+
+
+def data_streams(history: History) -> str:
+    """The streams' history as JSON; times in seconds."""
+    made = {
+        "title": history.title,
+        "streams": [
+            {
+                "name": stream.name,
+                "app": stream.app,
+                "begin": stream.begin,
+                "end": stream.end,
+                "ended": stream.ended,
+                "spans": [
+                    {"kind": span.kind, "begin": span.begin, "end": span.end}
+                    | ({"by": span.by} if span.by else {})
+                    | ({"rule": span.rule} if span.rule else {})
+                    for span in stream.spans
+                ],
+            }
+            for stream in history.streams
+        ],
+    }
+    return json.dumps(made, ensure_ascii=False, indent=2) + "\n"

@@ -1,0 +1,165 @@
+"""The picture of Atomic Behaviors: each stream a frame, its tree from top to bottom."""
+
+from __future__ import annotations
+
+from html import escape
+
+from prima.graph.layout import THREAD, Link, arrange, depths
+from prima.graph.model import Graph, Node
+from prima.graph.svg import box, fit, head, measure, picture, text, wrap
+
+WIDTH, PAD = 190.0, 8.0
+GAP, STEP = 16.0, 26.0
+MARGIN = 18.0
+PAGE = 1240.0
+"""How wide a row of streams becomes before the next row begins."""
+KINDS = (
+    ("running", "runs or has run"),
+    ("waiting", "waits"),
+    ("linked", "dashed: linked, or given up"),
+)
+
+
+def draw(graph: Graph) -> str:
+    """The trees as SVG."""
+    groups: dict[str, list[Node]] = {}
+    for node in graph.nodes.values():
+        groups.setdefault(node.group, []).append(node)
+    parts: list[str] = []
+    x, y, low, wide = MARGIN, MARGIN + 30, 0.0, 420.0
+    for name, nodes in groups.items():
+        drawn, width, height = _frame(graph, name, nodes)
+        if x > MARGIN and x + width > PAGE:
+            x, y, low = MARGIN, y + low + 18, 0.0
+        parts += [f'<g transform="translate({x:.1f} {y:.1f})">', *drawn, "</g>"]
+        x, low = x + width + 18, max(low, height)
+        wide = max(wide, x)
+    y += low + 26
+    if not groups:
+        parts.append(text(MARGIN, y, "Nothing is in working memory."))
+    else:
+        drawn, right = _legend(y)
+        parts, wide = parts + drawn, max(wide, right)
+    top = text(MARGIN, MARGIN + 8, fit(graph.title, wide - 2 * MARGIN, 13, True), "name")
+    return picture(graph.title, graph.told, wide, y + MARGIN, [top, *parts])
+
+
+def _legend(y: float) -> tuple[list[str], float]:
+    """What boxes' fillings mean, and how far to the right that reaches."""
+    parts, x = [], MARGIN
+    for kind, words in KINDS:
+        parts += [box(x, y - 10, 20, 12, f"s1 {kind}", 3), text(x + 26, y, words, "small")]
+        x += 44 + measure(words, 10)
+    return parts, x
+
+
+def _frame(graph: Graph, name: str, nodes: list[Node]) -> tuple[list[str], float, float]:
+    """A stream: its trees side by side, in rows; its width and its height."""
+    title = f"stream {name}" if name else "no stream"
+    parts: list[str] = []
+    x, y, low, wide = 10.0, 30.0, 0.0, min(measure(title, 13, True) + 20, 400.0)
+    for tree in _trees(graph, nodes):
+        drawn, width, height = _tree(graph, tree)
+        if x > 10 and x + width > PAGE:
+            x, y, low = 10.0, y + low + GAP, 0.0
+        parts += [f'<g transform="translate({x:.1f} {y:.1f})">', *drawn, "</g>"]
+        x, low = x + width + GAP, max(low, height)
+        wide = max(wide, x - GAP + 10)
+    height = y + low + 10
+    frame = box(0, 0, wide, height, "frame", 8)
+    top = text(10, 19, fit(title, wide - 20, 13, True), "name")
+    return [frame, top, *parts], wide, height
+
+
+def _trees(graph: Graph, nodes: list[Node]) -> list[list[Node]]:
+    """The nodes of a stream, divided into those that are linked with each other."""
+    held = {node.key: node for node in nodes}
+    near: dict[str, list[str]] = {key: [] for key in held}
+    for key in held:
+        for edge in graph.out(key):
+            if edge.target in held:
+                near[key].append(edge.target)
+                near[edge.target].append(key)
+    found: list[list[Node]] = []
+    seen: set[str] = set()
+    for key in held:
+        if key in seen:
+            continue
+        tree = [key]
+        seen.add(key)
+        for one in tree:
+            new = [two for two in dict.fromkeys(near[one]) if two not in seen]
+            seen.update(new)
+            tree += new
+        members = set(tree)
+        found.append([node for node in nodes if node.key in members])
+    return found
+
+
+def _tree(graph: Graph, nodes: list[Node]) -> tuple[list[str], float, float]:
+    """ABs that are linked with each other: the parts, the width and the height."""
+    number = {node.key: index for index, node in enumerate(nodes)}
+    kinds = {
+        (number[node.key], number[edge.target]): edge.kind
+        for node in nodes
+        for edge in graph.out(node.key)
+        if edge.target in number
+    }
+    words = [_lines(node) for node in nodes]
+    layers = depths(len(nodes), list(kinds))
+    links = {
+        pair: Link(*pair, WIDTH / 2, WIDTH / 2)
+        for pair in kinds
+        if layers[pair[0]] < layers[pair[1]]
+    }
+    layout = arrange([WIDTH] * len(nodes), layers, list(links.values()), GAP)
+    tops, y = [], 0.0
+    for layer in range(max(layers) + 1):
+        tops.append(y)
+        y += max(_height(words[i]) for i, one in enumerate(layers) if one == layer) + STEP
+    parts: list[str] = []
+    for index, node in enumerate(nodes):
+        parts += _box(node, words[index], layout.aside[index], tops[layers[index]])
+    for (low, high), link in links.items():
+        at = layout.aside[low] + WIDTH / 2
+        down = tops[layers[low]] + _height(words[low])
+        path = f"M{at:.1f} {down:.1f}"
+        for place, layer in zip(link.chain[1:], range(layers[low] + 1, len(tops)), strict=False):
+            last = layer == layers[high]
+            to = layout.aside[place] + (WIDTH / 2 if last else THREAD / 2)
+            end = tops[layer] - (7 if last else 0)
+            begin = tops[layer] - STEP
+            middle = (begin + end) / 2
+            path += f"V{begin:.1f}C{at:.1f} {middle:.1f} {to:.1f} {middle:.1f} {to:.1f} {end:.1f}"
+            at = to
+        kind = kinds[low, high]
+        parts.append(f'<path class="edge {kind}" d="{path}"/>')
+        shape = "head" if kind == "child" else f"{kind}-head"
+        parts.append(head(at, tops[layers[high]], shape, "down"))
+    return parts, layout.extent, y - STEP
+
+
+def _lines(node: Node) -> list[str]:
+    inner = WIDTH - 2 * PAD
+    lines = wrap(node.notes[0], inner, 3)
+    lines += [fit(note, inner, 10) for note in node.notes[1:]]
+    marks = ", ".join(node.marks)
+    return [*lines, *(wrap(marks, inner, 2, 10) if marks else [])]
+
+
+def _height(lines: list[str]) -> float:
+    return 24 + 15 * len(lines) + 4
+
+
+def _box(node: Node, lines: list[str], x: float, y: float) -> list[str]:
+    """An AB."""
+    kind = {"done": "", "running": ""}.get(node.kind, node.kind)
+    parts = [
+        f"<g><title>{escape(f'{node.title}, {node.kind}, {node.source}')}</title>",
+        box(x, y, WIDTH, _height(lines), f"s{node.shade} {kind}".strip()),
+        text(x + PAD, y + 17, fit(node.title, WIDTH - 2 * PAD, 11.5, True), "to"),
+    ]
+    said = len(wrap(node.notes[0], WIDTH - 2 * PAD, 3))
+    for number, one in enumerate(lines):
+        parts.append(text(x + PAD, y + 32 + 15 * number, one, "" if number < said else "small"))
+    return [*parts, "</g>"]
