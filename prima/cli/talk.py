@@ -87,7 +87,7 @@ def talk(
     \b
     prima talk documents/scenarios/touched-on-the-way.xml
     prima talk --fa documents/fa/follow.xml --ea documents/ea/guide.xml --save visit.xml
-    printf '/wait 5s\\n/touch head\\nNever mind.\\n' | prima talk --ea documents/ea/guide.xml
+    printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
     from prima import api
     from prima.talk import Conversation, Game
