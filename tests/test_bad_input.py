@@ -979,7 +979,7 @@ USAGES: list[Any] = [
     (["run", "s.xml", "--policy", "fixd"], 2, "fixed:APP"),
     (["show", "no"], 2, "no: cannot be read"),
     (["show", "x" * 5000], 2, "cannot be read"),
-    (["diff", "good.jsonl"], 2, "Missing argument"),
+    (["diff", "good.jsonl"], 2, "Name two transcripts"),
     (["replay", "s.xml", "good.jsonl"], 2, "s.xml:1: this is not a line of JSON"),
     (["explain", "undeclard-variable"], 2, 'Did you mean "undeclared-variable"?'),
     (["explain", "good.jsonl"], 2, "Say which row"),

@@ -102,7 +102,9 @@ def _transcript(path: str, policy: str | None) -> Transcript:
 
 
 def _is_markup(path: str) -> bool:
-    """Whether a file is XML, as far as its beginning tells; one that cannot be read is not."""
+    """Whether a file is XML, as far as its name and its beginning tell."""
+    if path.endswith(".jsonl"):
+        return False
     try:
         with open(path, "rb") as stream:
             return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
