@@ -594,10 +594,9 @@ class Checker:
             self._literal(command.node, command.text, form)
 
     def _literal(self, node: Node, text: Text | None, form: Form | None) -> None:
-        known = self.known_in(form) if form else self.shared
         for part in text or ():
             found = BRACES.search(part) if isinstance(part, str) else None
-            if found and found[1] in known:
+            if found and found[1] in (self.known_in(form) if form else self.shared):
                 message = f'"{found[0]}" is said as it stands.'
                 remedy = f'Write <value expr="{found[1]}"/>.'
                 self.note(node, "literal-value", message, remedy, severity="warning")
