@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
@@ -13,7 +16,7 @@ from xml.etree import ElementTree
 import pytest
 
 from prima import api, session
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, RunError, UsageError
 from prima.sim.person import Person
 from prima.sim.scenario import When, read_scenario
 from prima.testing.checking import check, make_run, triggers
@@ -444,6 +447,37 @@ def test_processes_give_the_same_results_in_the_same_order() -> None:
     for result in (*one, *several):
         result.seconds = 0.0
     assert one == several
+
+
+def die() -> None:
+    os._exit(3)  # as the watchdog ends a process whose script does not come back
+
+
+def test_a_process_that_is_ended_ends_the_tests() -> None:
+    with pytest.raises(RunError, match="does not come back"):
+        list(run_all([str(path) for path in DEMOS[:3]], Choice(), 2, die))
+
+
+def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:
+    write(tmp_path, "")
+    (tmp_path / "lift.txt").write_bytes(b"\xff")
+    paths = [str(DEMOS[0]), str(tmp_path / "lift.xml")]
+    with pytest.raises(UsageError, match="not UTF-8"):
+        list(run_all(paths, Choice(), 2))
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_an_interrupt_ends_all_of_it(jobs: str, tmp_path: Path) -> None:
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "test", str(DEMOS[0].parent), "-j", jobs],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    time.sleep(1)
+    os.killpg(running.pid, signal.SIGINT)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 130 and told == b"prima: interrupted\n"
 
 
 def test_exit_codes(tmp_path: Path) -> None:

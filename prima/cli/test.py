@@ -104,7 +104,9 @@ def test(
     start_watchdog()
     results: list[Result] = []
     coverage: Coverage = {}
-    for result in run_all(chosen, How(policy, compare, cover), min(jobs, len(chosen)), _begin):
+    for result in run_all(
+        chosen, How(policy, compare, cover), min(jobs, len(chosen)), start_watchdog
+    ):
         results.append(result)
         merge(coverage, result.coverage)
         result.coverage = {}
@@ -138,14 +140,6 @@ def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> No
             policy_named(policy)
         except UsageError as error:
             raise UsageError(f"{error} {FAVOURITE}") from None
-
-
-def _begin() -> None:
-    """What a process of its own needs: Ctrl-C is for the first one, scripts are watched over."""
-    import signal
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    start_watchdog()
 
 
 def _progress(done: int, total: int) -> None:

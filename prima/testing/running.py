@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from prima import api
-from prima.errors import DocumentError, Place, RunError
+from prima.errors import DocumentError, RunError, UsageError
 from prima.loading import Loaded, load_scenario
-from prima.sim.scenario import Scenario
 from prima.testing.checking import Failure, check, make_run
 from prima.testing.coverage import Coverage, covered
 from prima.testing.golden import difference, golden_of, read_golden
 from prima.testing.watching import Marks, States, watching
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
 
 Status = Literal["passed", "failed", "error", "invalid"]
 STATUSES: tuple[Status, ...] = ("passed", "failed", "error", "invalid")
@@ -75,7 +78,7 @@ def run_one(path: str, choice: Choice) -> Result:
     except DocumentError as error:
         made.status = "invalid"
         made.failures = [
-            Failure(problem.place, f"{problem.message} {problem.remedy} [{problem.code}]".strip())
+            Failure(problem.place, " ".join(filter(None, (*problem[3:], f"[{problem.code}]"))))
             for problem in error.problems
             if problem.severity == "error"
         ]
@@ -100,12 +103,12 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
         made.status = "failed"
     own = choice.policy in (None, scenario.policy)
     _compare(transcript.table(), choice.compare, own, made)
-    unexpected = _unexpected(transcript.failures, scenario)
+    unexpected = _unexpected(transcript.failures, loaded)
     if transcript.outcome == "limit":
-        unexpected.append("The run made more records than a run may.")
+        unexpected.append(Failure(scenario.node.place, "The run made more records than a run may."))
     if unexpected:
         made.status = "error"
-        made.failures += [Failure(Place(made.path), message) for message in unexpected]
+        made.failures += unexpected
 
 
 def _compare(table: str, by: str, own: bool, made: Result) -> None:
@@ -125,18 +128,23 @@ def _compare(table: str, by: str, own: bool, made: Result) -> None:
         made.table = ""
 
 
-def _unexpected(failures: Iterable[str], scenario: Scenario) -> list[str]:
+def _unexpected(failures: Iterable[str], loaded: Loaded) -> list[Failure]:
     """Errors that ended applications, but those that the scenario itself expects."""
+    scenario = loaded.cast.scenario
     expected = {
         one.words["ends"]
         for one in scenario.expectations
         if "ends" in one.words and not one.never and one.reason
     }
-    return [
-        f"The application {failure.rstrip(': ')}."
-        for failure in failures
-        if failure.partition(":")[0] not in expected
-    ]
+    pairs = zip(loaded.cast.documents, scenario.applications, strict=False)
+    places = {document.id: node.attribute_place("src") for document, (_, _, node) in pairs}
+    told = []
+    for failure in failures:
+        name, _, what = failure.rstrip(": ").partition(": ")
+        if name not in expected:
+            place = places.get(name, scenario.node.place)
+            told.append(Failure(place, f"The application {name} ended by an error: {what}"))
+    return told
 
 
 def run_all(
@@ -157,17 +165,62 @@ def run_all(
     if jobs == 1:
         yield from (run_one(path, choice) for path in paths)
         return
-    from concurrent.futures import ProcessPoolExecutor
-    from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import get_context
 
-    with ProcessPoolExecutor(jobs, get_context("spawn"), begin) as pool:
-        try:
-            yield from pool.map(run_one, paths, [choice] * len(paths))
-        except BrokenProcessPool:
-            raise RunError("a document's script does not come back; the tests are ended.") from None
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+    context = get_context("spawn")
+    workers, ends = [], []
+    with _uninterrupted():  # Ctrl-C is for this process alone, which ends the others
+        for first in range(jobs):
+            here, there = context.Pipe(duplex=False)
+            worker = context.Process(
+                target=_work, args=(paths[first::jobs], choice, begin, there), daemon=True
+            )
+            worker.start()
+            there.close()
+            workers.append(worker)
+            ends.append(here)
+    try:
+        for number in range(len(paths)):
+            found = ends[number % jobs].recv()
+            if not isinstance(found, Result):
+                raise found
+            yield found
+    except EOFError:
+        raise RunError("a document's script does not come back; the tests are ended.") from None
+    finally:
+        for worker in workers:
+            worker.terminate()
+
+
+def _work(
+    paths: list[str], choice: Choice, begin: Callable[[], None] | None, end: Connection
+) -> None:
+    """Test some of the scenarios, in a process of its own."""
+    if begin is not None:
+        begin()
+    try:
+        for path in paths:
+            end.send(run_one(path, choice))
+    except (UsageError, RunError) as error:
+        end.send(error)
+    except BrokenPipeError:
+        return  # nobody waits any more
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Let processes begin that do not heed Ctrl-C."""
+    import signal
+
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:  # not in the main thread, which alone is interrupted
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def result_data(result: Result) -> dict[str, Any]:
