@@ -154,6 +154,28 @@ def test_marks_tell_of_sleeping_units_holding_and_facing(tmp_path: Path) -> None
     assert named(graph, "d").notes == ["Topological Move to lab"]
 
 
+def test_a_reaction_that_stays_in_the_state_is_told(tmp_path: Path) -> None:
+    graph = drawn(
+        tmp_path,
+        app(
+            '<form id="a"><on event="touch.head" cond="x"><speak>Hm.</speak></on><on event="b"/>'
+            '<on event="c"><throw event="d"/></on><field name="q" type="text"><prompt>?</prompt>'
+            "<noinput><reprompt/></noinput></field></form>",
+            '<var name="x"/>',
+        ),
+    )
+    assert ways(graph, "a") == {"a stay": ["touch.head, if x"]}
+    assert "stays" in cards.draw(graph) and "n1 -.->" in text.mermaid(graph)
+    voice = drawn(
+        tmp_path,
+        vxml(
+            '<form id="a"><catch event="touch">Hm.</catch><catch event="noinput">?</catch></form>'
+        ),
+        "a.vxml",
+    )
+    assert ways(voice, "a") == {"a stay": ["touch"], "ends the application": ["at its end"]}
+
+
 def test_what_holds_everywhere_is_one_card_and_reaches_its_targets(tmp_path: Path) -> None:
     graph = drawn(
         tmp_path,
@@ -397,7 +419,7 @@ def test_every_edge_to_a_state_has_its_line_or_a_short_arrow(tmp_path: Path) -> 
         graph = states(path)
         root = etree.fromstring(picture(path).encode())
         lines = [p for p in root.iter(f"{SVG}path") if "edge" in (p.get("class") or "")]
-        assert len(lines) == len([edge for edge in graph.edges if edge.target]), path
+        assert len(lines) == len([e for e in graph.edges if e.target and e.kind != "stay"]), path
 
 
 def test_the_picture_has_a_name_a_description_and_two_colourings() -> None:
@@ -754,7 +776,7 @@ def test_a_transcript_with_strange_records_is_refused_or_drawn(tmp_path: Path) -
 def test_too_many_states_are_refused_as_svg_and_taken_as_dot(tmp_path: Path) -> None:
     path = tmp_path / "app.xml"
     path.write_text(generated(301, 1), encoding="utf-8")
-    with pytest.raises(UsageError, match=r"301 boxes are too many .* --to dot"):
+    with pytest.raises(UsageError, match=r"301 boxes are too many: .* --to dot"):
         picture(path)
     assert picture(path, "dot").count("state-") >= 301
     path.write_text(generated(2000, 1), encoding="utf-8")

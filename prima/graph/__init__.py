@@ -203,7 +203,7 @@ def _shown(graph: Graph, to: str, path: str | Path) -> str:
     if len(graph.nodes) > MOST_BOXES:
         remedy = "Write --to dot, and draw it with a program for large graphs"
         remedy += "." if graph.across else ", or choose a moment with --row."
-        message = f"{len(graph.nodes)} boxes are too many for one picture; {MOST_BOXES} are not."
+        message = f"{len(graph.nodes)} boxes are too many: one picture holds {MOST_BOXES}."
         raise UsageError(f"{path}: {message} {remedy}")
     from prima.graph import cards, treepicture
 
@@ -214,8 +214,8 @@ def _streams_shown(history: History, to: str, path: str | Path) -> str:
     from prima.graph import gantt, text
 
     if to == "svg" and len(history.streams) > MOST_BOXES:
-        message = f"{len(history.streams)} streams are too many for one picture; {MOST_BOXES} are"
-        raise UsageError(f"{path}: {message} not. Write --to json or mermaid.")
+        message = f"{len(history.streams)} streams are too many: one picture holds {MOST_BOXES}."
+        raise UsageError(f"{path}: {message} Write --to json or mermaid.")
     made = {"dot": text.dot_streams, "mermaid": text.mermaid_streams, "json": text.data_streams}
     return made.get(to, gantt.draw)(history)
 

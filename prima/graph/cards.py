@@ -42,7 +42,8 @@ class Way:
 
     edge: Edge
     at: float
-    lines: list[str]
+    lines: list[tuple[str, float]]
+    """Each with how far it stands in: what goes on with a reason, further."""
 
 
 @dataclass(slots=True)
@@ -112,8 +113,12 @@ def _card(graph: Graph, node: Node) -> Card:
     card.marks += [row] if row else []
     card.notes = [part for note in node.notes for part in wrap(note, inner, 3, 10)]
     y = TITLE + 19 * len(card.marks) + 13 * len(card.notes) + (5 if card.notes else 0)
-    for edge in graph.out(node.key):
-        lines = [part for label in edge.labels for part in wrap(label, inner - 10, 3)]
+    for edge in sorted(graph.out(node.key), key=lambda edge: edge.kind == "stay"):
+        lines = [
+            (part, 10.0 if number == 0 else 20.0)
+            for label in edge.labels
+            for number, part in enumerate(wrap(label, inner - 20, 3))
+        ]
         y += 6
         card.ways.append(Way(edge, y + 9, lines))
         y += LEADING * (1 + len(lines))
@@ -129,6 +134,8 @@ def _name(graph: Graph, edge: Edge) -> str:
     """Where an edge leads, as its card says it."""
     if not edge.target:
         return edge.words
+    if edge.kind == "stay":
+        return "stays"
     title = graph.nodes[edge.target].title
     return {"call": f"calls {title}", "back": f"returns to {title}"}.get(edge.kind, f"→ {title}")
 
@@ -164,9 +171,9 @@ def _drawn(graph: Graph, card: Card) -> list[str]:
         parts.append(line(x, base - 13, x + WIDTH, base - 13, "rule"))
         name = fit(_name(graph, way.edge), WIDTH - 2 * PAD, SIZE, True)
         parts.append(text(x + PAD, base + 2, name, "to"))
-        for label in way.lines:
+        for label, indent in way.lines:
             base += LEADING
-            parts.append(text(x + PAD + 10, base + 2, label))
+            parts.append(text(x + PAD + indent, base + 2, label))
     return parts
 
 
@@ -184,7 +191,8 @@ class _Band:
             way.edge.target
             for key, card in cards.items()
             for way in card.ways
-            if way.edge.target in cards and self.column[way.edge.target] <= self.column[key]
+            if way.edge.target in cards.keys() - {key}
+            and self.column[way.edge.target] <= self.column[key]
         )
         self.crowded = {key for key, count in back.items() if count > MANY_BACK}
         links: list[Link] = []
@@ -192,7 +200,7 @@ class _Band:
         for key, card in cards.items():
             for way in card.ways:
                 to = way.edge.target
-                if not self._near(key, to) or self.column[to] == self.column[key]:
+                if not self._near(key, way.edge) or self.column[to] == self.column[key]:
                     continue
                 forward = self.column[to] > self.column[key]
                 link = (
@@ -206,9 +214,10 @@ class _Band:
         self.layout: Layout = arrange(heights, columns, links, GAP)
         self.left = self._lefts(columns)
 
-    def _near(self, key: str, target: str) -> bool:
+    def _near(self, key: str, edge: Edge) -> bool:
         """Whether a line is drawn: not to another row of the page, nor back to where many go."""
-        if target not in self.cards:
+        target = edge.target
+        if target not in self.cards or edge.kind == "stay":
             return False
         back = self.column[target] <= self.column[key]
         return key == target or not (back and target in self.crowded)
@@ -219,9 +228,9 @@ class _Band:
         lines = [0] * (count + 1)
         for key, card in self.cards.items():
             for way in card.ways:
-                if self._near(key, way.edge.target):
+                if self._near(key, way.edge):
                     one, two = self.column[key], self.column[way.edge.target]
-                    for gutter in range(min(one, two), max(one, two) or 1):
+                    for gutter in range(min(one, two), max(one, two)):
                         lines[gutter] += 1
                     lines[one] += one == two
         left = [MARGIN]
@@ -255,7 +264,7 @@ class _Band:
     def _line(self, key: str, card: Card, way: Way, top: float) -> list[str]:
         """An edge's line with its head; a stub where the whole line would only confuse."""
         edge, y = way.edge, card.y + way.at - 2
-        if not edge.target:
+        if not edge.target or edge.kind == "stay":
             return []
         kind = f"edge {edge.kind}"
         shape = "head" if edge.kind == "go" else f"{edge.kind}-head"
@@ -263,7 +272,7 @@ class _Band:
         target = self.cards.get(edge.target)
         to = target.y + 14 if target else 0.0
         far = target and self.column[edge.target] == self.column[key] and abs(to - y) > LONGEST_BOW
-        if target is None or far or not self._near(key, edge.target):
+        if target is None or far or not self._near(key, edge):
             return [line(right, y, right + 9, y, kind), head(right + 17, y, shape, "right")]
         if self.column[edge.target] == self.column[key]:
             return self._bow(right, y, to, key == edge.target, kind, shape)

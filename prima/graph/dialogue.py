@@ -7,7 +7,16 @@ from pathlib import PurePath
 
 from prima.commands import TABLE_4_2
 from prima.graph.model import Graph, Node, clean, settle
-from prima.graph.words import condition, handled, joined, literals, otherwise, quoted, sayings
+from prima.graph.words import (
+    ASKED,
+    condition,
+    handled,
+    joined,
+    literals,
+    otherwise,
+    quoted,
+    sayings,
+)
 from prima.interpreter.elements import (
     Act,
     Block,
@@ -140,6 +149,8 @@ class _Reader:
             cond = handler.cond.code if handler.cond else ""
             told = handled(handler.events, handler.count, cond, self.hints)
             self._content(handler.content, f"{where}{told}{of}", [])
+            if not of and self.here != ANY and _stays(handler):
+                self.graph.edge(self.here, self.here, "stay", told)
 
     def _content(
         self,
@@ -277,6 +288,13 @@ def _never_ends(content: list[Act]) -> bool:
         if isinstance(act, If) and complete and all(_never_ends(one) for _, one in act.branches):
             return True
     return False
+
+
+def _stays(handler: Handler) -> bool:
+    """Whether a handler does something and leaves the state as it is."""
+    acts = all_acts(handler.content)
+    ways = any(isinstance(act, Goto | Exit | Return | Throw) for act in acts)
+    return bool(acts) and not ways and not ASKED.issuperset(handler.events)
 
 
 def _leaves(command: CommandTemplate) -> bool:

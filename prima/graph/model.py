@@ -16,7 +16,7 @@ MOST_LABELS = 12
 JOINERS = "\u200c\u200d"
 """Invisible characters that scripts need."""
 
-INWARD = ("go", "call", "guess", "back", "child")
+INWARD = ("go", "stay", "call", "guess", "back", "child")
 """Kinds of edges that lead to a node; the others lead out of the picture."""
 OUTWARD = {
     "exit": "ends the application",

@@ -11,7 +11,7 @@ from prima.graph.run import History
 MEANS = re.compile(r"[^\w ,?!'/=]|_")
 """What may mean something in Mermaid, and is written by its number."""
 DATES = "YYYY-MM-DD HH:mm:ss.SSS"
-DASHED = ("call", "back", "guess")
+DASHED = ("call", "back", "guess", "stay")
 FILLS = ("#fff1e5", "#ddf4ff", "#dafbe1", "#fbefff", "#fff8c5")
 STROKES = ("#bc4c00", "#0969da", "#1a7f37", "#8250df", "#9a6700")
 
@@ -79,7 +79,12 @@ def dot(graph: Graph) -> str:
         made.append(f"  out{index} [shape={shape}, label={quote(label)}];")
     for edge in graph.edges:
         to = number[edge.target] if edge.target else outside[edge.kind, edge.where]
-        style = {"call": ", style=dashed", "back": ", style=dashed", "guess": ", style=dotted"}
+        style = {
+            "call": ", style=dashed",
+            "back": ", style=dashed",
+            "guess": ", style=dotted",
+            "stay": ", style=dotted",
+        }
         label = quote("\n".join(_edge_lines(edge)))
         made.append(f"  {number[edge.source]} -> {to} [label={label}{style.get(edge.kind, '')}];")
     return "\n".join([*made, "}"]) + "\n"

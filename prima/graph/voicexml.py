@@ -10,7 +10,16 @@ from prima.commands import TABLE_4_2
 from prima.errors import DocumentError
 from prima.graph.model import Graph, clean, settle
 from prima.graph.model import Node as Box
-from prima.graph.words import condition, handled, joined, literals, otherwise, quoted, sayings
+from prima.graph.words import (
+    ASKED,
+    condition,
+    handled,
+    joined,
+    literals,
+    otherwise,
+    quoted,
+    sayings,
+)
 from prima.markup.tree import Node
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE
@@ -211,6 +220,8 @@ class _Reader:
             times = int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
             told = handled(events or [""], times, node.get("cond").strip(), self.hints)
             self._content(node, where + told, [])
+            if not self.here.endswith("#:any") and node.tag == "catch" and _stays(node, events):
+                self.graph.edge(self.here, self.here, "stay", told)
 
     def _content(
         self, node: Node, base: str, conditions: list[str], name: str = "", truth: bool = False
@@ -309,6 +320,15 @@ def _inside(node: Node) -> Iterator[Node]:
         one = stack.pop()
         yield one
         stack += reversed(one.nodes)
+
+
+def _stays(handler: Node, events: list[str]) -> bool:
+    """Whether a handler does something and leaves the dialog as it is."""
+    ways = {"goto", "submit", "exit", "return", "disconnect", "throw"}
+    empty = not handler.nodes and not handler.text
+    return not (
+        empty or ASKED.issuperset(events) or any(one.tag in ways for one in _inside(handler))
+    )
 
 
 def _leaves(node: Node) -> bool:

@@ -13,6 +13,8 @@ SAID = 44
 TOLD = 60
 """Letters of a condition."""
 LITERAL = re.compile(r"""'([^'\\\n]*)'|"([^"\\\n]*)\"""")
+ASKED = frozenset({"noinput", "nomatch", "help"})
+"""Events after which a question is simply asked again."""
 YES = {"yes": "no", "no": "yes"}
 
 
