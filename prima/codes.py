@@ -63,7 +63,7 @@ CODES: dict[str, str] = {
     "assigning-condition": "A condition has = where a comparison, ==, was most likely meant: it changes the"
     " variable, and holds whenever the new value does.",
     "literal-value": "A text holds a variable's name in braces, as other languages write a value. It is"
-    " said as it stands; a value is written <value expr=\"...\"/>.",
+    ' said as it stands; a value is written <value expr="..."/>.',
     "fa-only": "Additional arguments (thesis Table 4.1) are for an FA, whose developer knows the"
     " robot. An EA runs on any robot.",
     "not-in-unit": "A unit is one piece that nothing breaks (rule U4). A Command that works in"

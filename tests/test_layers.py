@@ -44,7 +44,13 @@ INSIDE = {
         {"mediator"},
         {"__init__"},
     ],
-    "markup": [{"limits", "vocabulary", "tree"}, {"slips"}, {"build", "check", "rnc", "schema"}, {"reader"}, {"__init__"}],
+    "markup": [
+        {"limits", "vocabulary", "tree"},
+        {"slips"},
+        {"build", "check", "rnc", "schema"},
+        {"reader"},
+        {"__init__"},
+    ],
     "grammar": [
         {"budget", "errors", "text", "numbers"},
         {"model", "moments", "sandbox"},
