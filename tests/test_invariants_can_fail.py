@@ -219,7 +219,7 @@ def everything_interrupted(patch: pytest.MonkeyPatch) -> None:
     def all_of_it(selector: Selector, ab: Behavior, reaction: Behavior) -> None:
         interrupt(selector, ab, reaction)
         for other in list(selector.memory.running.values()):
-            if other.restartable:
+            if other.restartable and other.name in selector.memory.running:
                 interrupt(selector, other, reaction)
 
     patch.setattr(Selector, "_interrupt", all_of_it)
@@ -560,7 +560,10 @@ def test_generated_runs_meet_it_too(mutation: Mutation, monkeypatch: pytest.Monk
     )
     def meet(play: Play, script: Script) -> None:
         for made in (play, script):
-            records = run(made, mutation.policy).records
+            try:
+                records = run(made, mutation.policy).records
+            except (AssertionError, KeyError, ValueError):
+                continue  # a broken mediator may break down: that is no violation told
             if mutation.invariant in numbers(check(records, mutation.policy)):
                 raise Met
 
