@@ -127,7 +127,7 @@ def rehearse(
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
-    rehearsal = Rehearsal(cast, chosen, bound, _web(list(hosts)))
+    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)))
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -156,7 +156,7 @@ def rehearse(
     return made
 
 
-def _web(hosts: list[str]) -> Web | None:
+def fetcher(hosts: list[str]) -> Web | None:
     """What fetches from hosts; the network's modules are loaded only then."""
     if not hosts:
         return None

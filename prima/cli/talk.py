@@ -27,7 +27,6 @@ from prima.errors import RunError, UsageError
 if TYPE_CHECKING:
     from prima.loading import Loaded
     from prima.messages import Record
-    from prima.sim.services import Web
     from prima.talk import Conversation, Game
     from prima.transcript.table import Row
 
@@ -104,7 +103,7 @@ def talk(
     start_watchdog()
     folder = os.path.dirname(scenario or "")
     sink = _write if form == "json" else None
-    game = Game(loaded, folder, policy, scripted, _web(hosts), sink)
+    game = Game(loaded, folder, policy, scripted, api.fetcher(list(hosts)), sink)
     terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
     real = real_time or (terminal and not step)
     screen = Screen(game, why, form == "json", terminal)
@@ -134,12 +133,6 @@ def _keep(conversation: Conversation, target: str | None) -> None:
     if target is not None:
         conversation.save(target)
         tell(f"Saved {target}.")
-
-
-def _web(hosts: tuple[str, ...]) -> Web | None:
-    from prima import api
-
-    return api._web(list(hosts))
 
 
 def _write(records: list[Record]) -> None:
