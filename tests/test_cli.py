@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from prima.cli import COMMANDS
+
 ROOT = Path(__file__).parent.parent
 DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
 
@@ -303,3 +305,14 @@ def test_diff_runs_scenarios_itself(tmp_path: Path) -> None:
 def test_diff_needs_two_runs(given: list[str]) -> None:
     done = prima("diff", *given)
     assert done.returncode == 2 and done.stderr.startswith("prima: ")
+
+
+@pytest.mark.parametrize("name", sorted(COMMANDS))
+def test_every_command_has_a_help_with_an_example(name: str) -> None:
+    done = prima(name, "--help")
+    assert done.returncode == 0 and f"\n  prima {name} " in done.stdout, done.stdout
+
+
+def test_every_module_of_a_command_is_listed() -> None:
+    modules = {path.stem for path in (ROOT / "prima" / "cli").glob("*.py")}
+    assert modules - {"__init__", "common", "terminal"} == set(COMMANDS)

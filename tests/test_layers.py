@@ -218,7 +218,8 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
         "import sys\nfrom prima.cli import cli\n"
         "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
         "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
-        "assert not heavy, heavy"
+        "assert not heavy, heavy\n"
+        "assert not {one for one in sys.modules if one.startswith('prima.cli.')} - {'prima.cli.common'}"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 

@@ -17,25 +17,28 @@ from prima import __version__
 from prima.cli.common import SourceLines, tell
 from prima.errors import DocumentError, RunError, UsageError, did_you_mean
 
-COMMANDS = (
-    "new",
-    "validate",
-    "run",
-    "talk",
-    "test",
-    "show",
-    "diff",
-    "report",
-    "graph",
-    "replay",
-    "export",
-    "explain",
-    "study",
-    "documents",
-    "schemas",
-    "lsp",
-)
-"""Each is a module of this package, with a command of its name; in the order of the help."""
+COMMANDS = {
+    "new": "Start a document that is commented, valid, and runs.",
+    "validate": "Check documents; certify what one can do to another.",
+    "run": "Run a scenario in simulation and print its transcript.",
+    "talk": "Play the user of a run in the terminal.",
+    "test": "Check what scenarios expect; cover documents.",
+    "show": "Print a transcript as a table.",
+    "diff": "Compare two runs by behaviour.",
+    "report": "Show a run, or two, as a page for the browser.",
+    "graph": "Draw an application's states, or a run's trees and streams.",
+    "replay": "Run a transcript's inbound events again.",
+    "export": "Write a transcript for ELAN, Praat, a player, Foxglove, a table.",
+    "explain": "Explain a problem's code, or a transcript's row.",
+    "study": "Measure situations under every policy.",
+    "documents": "Copy the documents that come with PRIMA.",
+    "schemas": "Copy the schemas of documents, for editors.",
+    "lsp": "Serve an editor while documents are written.",
+}
+"""Each is a module of this package, with a command of its name; in the order of the help.
+
+What they do stands here, so that the help needs none of them.
+"""
 
 
 class Commands(click.Group):
@@ -52,6 +55,11 @@ class Commands(click.Group):
         found = getattr(import_module(f"prima.cli.{cmd_name}"), cmd_name)
         assert isinstance(found, click.Command)
         return found
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -20,6 +20,9 @@ def lsp(stdio: bool) -> None:
 
     \b
     nvim --cmd 'au FileType xml lua vim.lsp.start({name="prima", cmd={"prima", "lsp"}})' tour.xml
+
+    \b
+    prima lsp --stdio
     """
     try:
         from prima.lsp.server import serve
