@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.voice import Call
+from tests.voice import Call, vxml
 
 PASS = "<log>pass</log><exit/>"
 FAIL = "<log>fail</log><exit/>"
@@ -351,3 +351,55 @@ def test_an_event_of_a_very_long_name_is_taken_in_no_time() -> None:
         </block></form>"""
     )
     assert (call.logs(), call.ended) == (["pass"], "exit")
+
+
+def test_a_submit_to_the_own_root_starts_it_anew() -> None:  # 1.5.2
+    root = vxml('<var name="n" expr="1"/><form><block><log expr="n"/></block></form>')
+    head = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" application="root.vxml">'
+    for leave, seen in (("submit", "1"), ("goto", "8")):
+        body = f'<form><block><assign name="n" expr="8"/><{leave} next="root.vxml"/></block></form>'
+        assert Call(vxml(body, head), root=root).logs() == [seen]
+
+
+def test_keys_of_a_grammar_without_tags_are_all_the_keys() -> None:  # 3.1.6
+    grammar = (
+        '<grammar mode="dtmf" version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
+        '<rule id="r"><item repeat="2-4"><ruleref uri="#d"/></item></rule><rule id="d"><one-of>'
+        "<item>1</item><item>2</item><item>3</item></one-of></rule></grammar>"
+    )
+    call = Call(
+        f'<form><field name="q"><prompt>Number?</prompt>{grammar}'
+        '<filled><log expr="q"/></filled></field></form>'
+    )
+    call.answer("1 2 3")
+    assert call.logs() == ["123"]
+
+
+def test_a_private_rule_does_not_listen_for_a_document() -> None:  # SRGS 3.2
+    abnf = "#ABNF 1.0; language en; root $one; public $one = no; private $two = big;"
+    call = Call(
+        '<catch event="error.badfetch"><log>refused</log><exit/></catch><form><field name="q">'
+        '<prompt>Well?</prompt><grammar src="a.gram#two" type="application/srgs"/></field></form>',
+        **{"a.gram": abnf},
+    )
+    assert call.logs() == ["refused"]
+
+
+def test_half_a_surrogate_pair_is_shown_as_a_letter_that_is_none() -> None:
+    call = Call(
+        r"""<form><var name="x" expr="'\ud83d\ude00z'"/><block><log expr="x.charAt(0)"/>
+        <log expr="x"/><value expr="x.charAt(0)"/><var name="o" expr="{a: x.charAt(1)}"/>
+        <exit namelist="o"/></block></form>"""
+    )
+    call.play()
+    assert call.logs() == ["\ufffd", "\U0001f600z", 'exit: {"o": {"a": "\ufffd"}}']
+    assert call.said() == ["\ufffd"]
+
+
+def test_parameters_that_exclude_each_other_are_badfetch() -> None:  # Appendix P
+    for kind in ("digits?minlength=5;maxlength=3", "digits?length=3;minlength=1"):
+        call = Call(
+            '<catch event="error.badfetch"><log>refused</log><exit/></catch>'
+            f'<form><field name="q" type="{kind}"><prompt>Well?</prompt></field></form>'
+        )
+        assert call.logs() == ["refused"]

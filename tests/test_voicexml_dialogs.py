@@ -1743,15 +1743,20 @@ def told(error: str, content: str) -> str:
     return f"""<form><catch event="{error}"><log expr="_event"/><exit/></catch>{content}</form>"""
 
 
-for _error, _content in {
-    "error.badfetch": "<block><goto next='none.vxml'/></block>",
-    "error.semantic": "<block><value expr='zz.y'/></block>",
-    "error.unsupported.objectname": "<object name='o' classid='x'/>",
-    "error.grammar": "<field name='f'><grammar version='1.0' root='zz'>"
-    "<rule id='a'>x</rule></grammar></field>",
-    "error.unsupported.builtin": "<field name='f' type='zodiac'/>",
-    "error.unsupported.format": "<field name='f'><grammar type='text/x-odd' src='g.odd'/></field>",
-}.items():
+for _error, _content in [
+    ("error.badfetch", "<block><goto next='none.vxml'/></block>"),
+    ("error.semantic", "<block><value expr='zz.y'/></block>"),
+    ("error.unsupported.objectname", "<object name='o' classid='x'/>"),
+    (
+        "error.badfetch",
+        "<field name='f'><grammar version='1.0' root='zz'><rule id='a'>x</rule></grammar></field>",
+    ),
+    ("error.unsupported.builtin", "<field name='f' type='zodiac'/>"),
+    (
+        "error.unsupported.format",
+        "<field name='f'><grammar type='text/x-odd' src='g.odd'/></field>",
+    ),
+]:
     case(
         f"{_error} is thrown",
         "5.2.6",

@@ -60,6 +60,12 @@ PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p
          "セント": ""}  # fmt: skip
 """Hundredths, with the currency if they tell it."""
 TYPES = ("boolean", "currency", "date", "digits", "number", "phone", "time")
+
+
+class Conflict(ValueError):
+    """Parameters of a built-in type that exclude each other."""
+
+
 LENGTHS = ("length", "minlength", "maxlength")
 _URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?", re.DOTALL)
 _EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|内線) ?")
@@ -112,16 +118,16 @@ def _parameters(name: str, text: str) -> dict[str, str]:
     if name == "digits":
         _check_lengths(given)
     elif name == "boolean" and given.get("y", "1") == given.get("n", "2"):
-        raise ValueError("y and n are one key.")
+        raise Conflict("y and n are one key.")
     return given
 
 
 def _check_lengths(given: dict[str, str]) -> None:
     low, high = _lengths(given)
     if "length" in given and len(given) > 1:
-        raise ValueError("length excludes minlength and maxlength.")
+        raise Conflict("length excludes minlength and maxlength.")
     if low > high:
-        raise ValueError("minlength is more than maxlength.")
+        raise Conflict("minlength is more than maxlength.")
 
 
 def _lengths(given: dict[str, str]) -> tuple[int, int]:

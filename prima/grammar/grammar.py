@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from prima.grammar.budget import Budget
 from prima.grammar.chart import GARBAGE_COST, Chart
@@ -49,8 +50,9 @@ class Match:
 class Grammar:
     """Rules that take utterances; made by :func:`prima.grammar.load`."""
 
-    def __init__(self, document: Document, rule: str, where: Where) -> None:
+    def __init__(self, document: Document, rule: str, where: Where, lenient: bool = False) -> None:
         self._document = document
+        self._lenient = lenient
         self._where = where
         self.root = rule or document.root
         """The rule that is matched; empty if the document names none."""
@@ -90,7 +92,7 @@ class Grammar:
         if name not in self._document.rules:
             message = f'There is no rule "{name}".'
             raise refuse(GrammarError, self._where(), "no-such-rule", message)
-        return Grammar(self._document, name, self._where)
+        return Grammar(self._document, name, self._where, self._lenient)
 
     def match(self, text: str, *, mode: str = "voice", most: int = 1) -> list[Match]:
         """What an utterance may mean, best first; nothing if the grammar does not take it.
@@ -118,6 +120,8 @@ class Grammar:
             error = None
             try:
                 value = reader.interpret(frame)
+                if self._lenient and self._silent and not reader.valued:
+                    value = reader.text()
             except Failure as failure:
                 error = failure.error
             if not any(_same(one, value, error) for one in found):
@@ -147,6 +151,22 @@ class Grammar:
         chart = Chart(said, self._root())
         chart.run(prefixes=True)
         return chart.open or chart.steps_left < 0
+
+    @cached_property
+    def _silent(self) -> bool:
+        """Whether no tags are anywhere and no tag format is named: the text is all there is.
+
+        SISR's default assignment, by which the last rule counts, is for grammars that use it;
+        the others are of the time before it: three keys of a rule ``digit`` are a number.
+        """
+        seen: dict[int, Document] = {}
+        stack = [self._document]
+        while stack:
+            document = stack.pop()
+            if id(document) not in seen:
+                seen[id(document)] = document
+                stack += [one.rule.document for one in document.references if one.rule is not None]
+        return not any(one.tags or one.globals or one.tag_format for one in seen.values())
 
     def _takes(self, mode: str) -> bool:
         return mode == self.mode or (not self.mode and mode in ("voice", "dtmf"))

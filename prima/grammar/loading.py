@@ -8,7 +8,7 @@ from functools import partial
 from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Place
-from prima.grammar.builtin import TYPES, built_in
+from prima.grammar.builtin import TYPES, Conflict, built_in
 from prima.grammar.errors import (
     GrammarError,
     UnsupportedBuiltIn,
@@ -65,7 +65,8 @@ def load(
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
         lenient: whether files without a namespace are taken for SRGS, and files without
-            ``xml:lang`` for the language given, as voice browsers do.
+            ``xml:lang`` for the language given, as voice browsers do; what a grammar without
+            any tag means is the whole text then, and ``rule`` has to be a public one.
 
     Raises:
         UnsupportedFormat: the media type, or the format of the tags, is not known.
@@ -90,7 +91,10 @@ def load(
     if rule and rule not in document.rules:
         message = f'There is no rule "{rule}".'
         raise refuse(GrammarError, document.where(), "no-such-rule", message)
-    return Grammar(document, rule, document.where)
+    if lenient and rule and not document.rules[rule].public and rule != document.root:
+        message = f'The rule "{rule}" is private: it is for this grammar alone.'
+        raise refuse(GrammarError, document.where(), "private-rule", message)
+    return Grammar(document, rule, document.where, lenient)
 
 
 def _language(library: Library, document: Document, languages: Languages | None) -> None:
@@ -112,6 +116,8 @@ def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
     where = partial(Place, uri)
     try:
         found = built_in(uri, mode or "", lang)
+    except Conflict as error:
+        raise refuse(GrammarError, where(), "exclusive", str(error)) from None
     except ValueError as error:
         raise refuse(UnsupportedBuiltIn, where(), "no-such-name", str(error)) from None
     document = Document(uri, where, mode or "", lang, found.name, dialect="literals")

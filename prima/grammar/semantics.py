@@ -61,6 +61,8 @@ class Interpreter:
         self.mode = mode
         self.budget = budget
         self.tokens: list[str] = []
+        self.valued = False
+        """Whether a built-in type has given a value."""
         self._sandboxes: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
@@ -94,6 +96,7 @@ class Interpreter:
             self.tokens += event.tokens
         elif isinstance(event, Value):
             self.tokens.append(event.text)
+            self.valued = True
 
     def text(self, result: _Result | None = None) -> str:
         """The tokens of a rule, or all of them, as text."""

@@ -46,10 +46,13 @@ return {
     ? stringify(v) : text(v); },
   json: function (v) { return stringify(v); },
   items: function (v) { return isArray(v) ? v.length : -1; },
-  item: function (v, i) { const x = v[i]; return typeof x === 'string' ? x.slice(0) : x; },
+  item: function (v, i) { const x = v[i];
+    return typeof x === 'string' ? x.slice(0).toWellFormed() : x; },
 }; })()
 """
 
+HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
+"""Half a surrogate pair in JSON, which is written as an escape; whole pairs are letters."""
 ODD = (TypeError, ValueError, OverflowError, MemoryError)
 """What the binding itself raises for values that it cannot give to Python."""
 
@@ -141,8 +144,9 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             check_expression(self._context, code)
-            # The binding cannot give out a text that is joined lazily; slice joins it.
-            give = "return typeof $v === 'string' ? $v.slice(0) : $v"
+            # The binding cannot give out a text that is joined lazily, which slice joins, or
+            # that has half a surrogate pair.
+            give = "return typeof $v === 'string' ? $v.slice(0).toWellFormed() : $v"
             function = self._compile(f"const $v = (\n{code}\n); {give}")
             self._compiled[code] = function
         return function
@@ -218,7 +222,11 @@ class Engine:
         if isinstance(value, str):
             return self._bounded(value)
         text = self._call(self._help["json"], value)
-        return json.loads(self._bounded(text)) if isinstance(text, str) else None
+        if not isinstance(text, str):
+            return None
+        if "\\ud" in text:
+            text = HALF_PAIR.sub(r"\1\\ufffd", text)
+        return json.loads(self._bounded(text))
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""

@@ -371,7 +371,7 @@ def _grammar_problems(node: Node, lang: str) -> list[Problem]:
     return []
 
 
-LATER = "When it is to listen, this will be error.grammar or error.unsupported."
+LATER = "When it is to listen, this will be error.badfetch or error.unsupported."
 
 
 def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> None:

@@ -186,11 +186,12 @@ class Machine:
     ) -> Flow:
         """Run documents and dialogs of one context until it is left."""
         fetched: Page | None = page
+        submitted = False
         while True:
             try:
                 if fetched is not None:
                     page, fetched = fetched, None
-                    yield from self._enter(context, page)
+                    yield from self._enter(context, page, submitted)
                 node = page.dialog(dialog)
                 if node is None:
                     where = source(page.root)
@@ -200,13 +201,14 @@ class Machine:
                 raise GoOut
             except GoDialog as go:
                 fetched, dialog, heard = go.page, go.dialog, go.heard
+                submitted = go.submitted
             except Thrown as thrown:
                 yield from self.events.unhandled(context, thrown)
 
-    def _enter(self, context: Context, page: Page) -> Flow:
+    def _enter(self, context: Context, page: Page, submitted: bool) -> Flow:
         """Set up a document's scopes; what fails is an event in it."""
         try:
-            yield from self.documents.enter(context, page)
+            yield from self.documents.enter(context, page, submitted)
         except (Thrown, ScriptError) as error:
             context.form = context.item = None
             yield from self.events.handle(context, thrown_of(error))

@@ -55,7 +55,7 @@ def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Match
     """The grammar of an element, or of the URI that it names.
 
     Raises:
-        Thrown: ``error.badfetch``, ``error.grammar``, ``error.unsupported.format``,
+        Thrown: ``error.badfetch``, ``error.unsupported.format``,
             ``error.unsupported.language`` or ``error.unsupported.builtin``.
     """
     grammar = _loaded(node, page, uri, fetch)
@@ -119,7 +119,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
             lenient=True,
         )
         if not made.root:
-            raise Thrown("error.grammar", f"{place}: the grammar names no root rule", place)
+            raise Thrown("error.badfetch", f"{place}: the grammar names no root rule", place)
     except GrammarError as error:
         if failures:
             raise failures[0] from None
@@ -136,7 +136,7 @@ def _event(error: GrammarError) -> str:
     ):
         if isinstance(error, kind):
             return name
-    return "error.grammar"
+    return "error.badfetch"  # it cannot be parsed, or its parameters conflict (Appendix P)
 
 
 def phrase(text: str, value: Json, approximate: bool) -> Matcher:

@@ -50,10 +50,11 @@ class Documents:
             self.engine.raw(code, (session, blank, blank, blank, given))
         return session
 
-    def enter(self, context: Context, page: Page) -> Flow:
+    def enter(self, context: Context, page: Page, submitted: bool = False) -> Flow:
         """Make a document the active one, with what it keeps of its application (1.5.2)."""
         root = yield from self.root(page)
-        if root is None and context.root is not None and context.root.uri == page.uri:
+        to_root = root is None and context.root is not None and context.root.uri == page.uri
+        if to_root and not submitted:
             context.document = context.application
             context.page, context.root = page, None
             return
@@ -125,7 +126,7 @@ class Documents:
             Thrown: ``error.badfetch``.
         """
         page, dialog = yield from self.find(context, uri, node, request, base)
-        raise GoDialog(page, dialog)
+        raise GoDialog(page, dialog, submitted=request is not None)
 
     def find(
         self,

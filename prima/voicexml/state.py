@@ -118,8 +118,12 @@ class Leave(Exception):
 class GoDialog(Leave):
     """A goto or submit, or an utterance that another dialog's grammar has taken."""
 
-    def __init__(self, page: Page | None, dialog: str, heard: Heard | None = None) -> None:
+    def __init__(
+        self, page: Page | None, dialog: str, heard: Heard | None = None, submitted: bool = False
+    ) -> None:
         super().__init__(dialog)
+        self.submitted = submitted
+        """Whether a submit leads there: a root that a leaf submits to starts anew (1.5.2)."""
         self.page = page
         self.dialog = dialog
         self.heard = heard
