@@ -395,6 +395,8 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
         ("/look at nothing-here", None),
         ("/follow far", None),
         ("/message from Ann I'm late", 'Write "/message from NAME: TEXT".'),
+        ("/message", 'Write "/message from NAME: TEXT".'),
+        ("/message from", 'Write "/message from NAME: TEXT".'),
         ("/event", 'Write "/event NAME KEY=VALUE ...".'),
         ('/event corner a="b', "A quotation mark is not closed."),
         ("/event nothing.of.this.kind", None),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -121,6 +122,65 @@ class SourceLines:
             except (DocumentError, UsageError):
                 self._held[file] = []
         return self._held[file]
+
+
+def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
+    """See whether a command may write to a file, before it does anything else.
+
+    What commands wrote earlier may be replaced, and so may what is no file, as ``/dev/null``.
+
+    Args:
+        output: the path to write to.
+        made: what is written, as "page".
+        inputs: paths of what it is made of.
+
+    Raises:
+        UsageError: it is an input, a document, or where a scenario's expected table stands.
+    """
+    from prima.testing.finding import is_scenario
+    from prima.testing.golden import golden_of
+
+    if any(same_file(output, path) for path in inputs):
+        raise UsageError(f"{output}: this is what the {made} is made of; write elsewhere.")
+    path, real = Path(output), Path(os.path.realpath(output))
+    if real.is_file() and _begins_document(real):
+        raise UsageError(
+            f"{output}: this is a document that somebody has written; write elsewhere."
+        )
+    beside = [one.with_suffix(".xml") for one in (path, real) if one.suffix == ".txt"]
+    for scenario in (*map(Path, inputs), *beside):
+        if scenario.is_file() and is_scenario(scenario) and same_file(golden_of(scenario), path):
+            raise UsageError(
+                f"{output}: here stands the expected table of {scenario}; write elsewhere."
+            )
+
+
+def _begins_document(path: Path) -> bool:
+    """Whether a file is a document that somebody writes, as far as its beginning tells."""
+    import re
+
+    from prima.loading import VOICEXML_ROOT, is_grammar
+    from prima.testing.finding import GLANCE
+
+    roots = rb"(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(GLANCE)
+    except OSError:
+        return False  # writing tells what is wrong
+    if b"\0" in data[:4]:  # UTF-16
+        data = data.replace(b"\0", b"")
+    data = re.sub(rb"^(?:\xef\xbb\xbf|\xff\xfe|\xfe\xff)+", b"", data)  # byte order marks
+    pattern = VOICEXML_ROOT.pattern.replace(rb"vxml[\s>/]", roots)
+    return bool(re.match(pattern, data, re.DOTALL)) or is_grammar(data)
+
+
+def same_file(one: str | Path, other: str | Path) -> bool:
+    """Whether two paths are one file, that is there or not; what is no file is never one."""
+    if os.path.isfile(one) and os.path.isfile(other):
+        return os.path.samefile(one, other)
+    there = os.path.exists(one) or os.path.exists(other)
+    return not there and os.path.realpath(one) == os.path.realpath(other)
 
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:

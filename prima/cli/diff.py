@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import POLICIES, Choice, coloured, print_json, start_watchdog
+from prima.cli.common import POLICIES, Choice, check_output, coloured, print_json, start_watchdog
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -50,13 +50,15 @@ def diff(
     if output is not None and form != "html":
         raise UsageError("-o goes with --format html; other formats go to stdout.")
     (one, first), (other, second) = _runs(before, after, policies)
+    if output is not None:
+        check_output(output, "page", one, other)
     old, new = _transcript(one, first), _transcript(other, second)
     difference = api.diff(old, new)
     if form == "html":
         from prima.cli.report import write_page
         from prima.report import make
 
-        write_page(make([old, new]), output, [one, other])
+        write_page(make([old, new]), output)
     elif form == "json":
         print_json(difference_data(difference))
     else:

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import tell
+from prima.cli.common import check_output, tell
 from prima.errors import UsageError
 
 
@@ -48,6 +48,8 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
         raise UsageError("say in what format: --to eaf, textgrid, vtt, mcap or csv.")
     if output is None and form == "mcap" and sys.stdout.isatty():
         raise UsageError("mcap is no text for a terminal: name a file with -o.")
+    if output is not None:
+        check_output(output, "export")
     made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
     if output:
         amount = f"{made.tiers} tiers with {made.marks} intervals and points"

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import Choice, tell
+from prima.cli.common import Choice, check_output, tell
 from prima.errors import UsageError
 
 FORMATS = ["svg", "dot", "mermaid", "json"]
@@ -44,27 +44,27 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
         raise UsageError(f"{output}: say in what format: --to svg, dot, mermaid or json.")
     if form is None and sys.stdout.isatty():
         raise UsageError("say where the picture goes: -o FILE.svg, or --to dot or mermaid.")
+    if output is not None:
+        check_output(output, "picture", file)
     cut: list[str] = []
     made = picture(file, form or "svg", what or "", row, cut)
     if output is None:
         click.echo(made.encode(), nl=False)
     else:
-        write(made, output, file)
+        write(made, output)
     for message in cut:
         tell(f"prima: {message}")
     if cut:
         raise Exit(2)
 
 
-def write(made: str, output: str, source: str) -> None:
+def write(made: str, output: str) -> None:
     """Write a picture to a file.
 
     Raises:
-        UsageError: it cannot be written, or would overwrite what it is made of.
+        UsageError: it cannot be written.
     """
     try:
-        if Path(output).resolve() == Path(source).resolve():
-            raise UsageError(f"{output}: this is what the picture is made of; write elsewhere.")
         Path(output).write_text(made, encoding="utf-8", newline="\n")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is no file's name"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import run_into, tell
+from prima.cli.common import check_output, run_into, tell
 
 
 @click.command()
@@ -20,6 +20,8 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     """
     from prima import api
 
+    if output is not None:
+        check_output(output, "replay", transcript, scenario)
     original = api.read(transcript)
     again = api.replay(original, scenario)
     if output is not None:

@@ -7,7 +7,7 @@ import sys
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import start_watchdog, tell
+from prima.cli.common import check_output, start_watchdog, tell
 from prima.errors import UsageError
 
 
@@ -39,11 +39,13 @@ def report(transcripts: tuple[str, ...], output: str | None, scenarios: tuple[st
         raise UsageError("Name a transcript, as prima run -o writes it.")
     if output is None and sys.stdout.isatty():
         raise UsageError("Say where the page goes: -o report.html.")
+    if output is not None:
+        check_output(output, "page", *transcripts, *scenarios)
     if scenarios:
         start_watchdog()
     loaded = [api.load_scenario(path) for path in scenarios]
     read = [api.read(path, partial=True) for path in transcripts]
-    write_page(make(read, loaded), output, [*transcripts, *scenarios])
+    write_page(make(read, loaded), output)
     cut = [transcript.cut for transcript in read if transcript.cut]
     for message in cut:
         tell(f"prima: {message}")
@@ -51,11 +53,11 @@ def report(transcripts: tuple[str, ...], output: str | None, scenarios: tuple[st
         raise Exit(2)
 
 
-def write_page(page: str, output: str | None, sources: list[str]) -> None:
+def write_page(page: str, output: str | None) -> None:
     """Write a page to a file, or to stdout where there is none.
 
     Raises:
-        UsageError: it cannot be written, or would overwrite what it is made of.
+        UsageError: it cannot be written.
     """
     from pathlib import Path
 
@@ -63,8 +65,6 @@ def write_page(page: str, output: str | None, sources: list[str]) -> None:
         click.echo(page, nl=False)
         return
     try:
-        if any(Path(output).resolve() == Path(source).resolve() for source in sources):
-            raise UsageError(f"{output}: this is what the page is made of; write elsewhere.")
         Path(output).write_text(page, encoding="utf-8", newline="\n")
     except OSError as error:
         raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None

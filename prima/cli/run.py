@@ -11,6 +11,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     POLICIES,
+    check_output,
     format_option,
     limit_option,
     put,
@@ -81,8 +82,9 @@ def run(
             "A scenario says itself what the user says; --say goes with --fa and --ea."
         )
     loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas, says)
-    if output is not None and _is_source(output, scenario or "", loaded.files):
-        raise UsageError(f"{output}: this is one of the run's own documents; write elsewhere.")
+    if output is not None:
+        folder = os.path.dirname(scenario or "")
+        check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
     for problem in loaded.problems:
         if problem.severity != "note":
             tell(str(problem))
@@ -111,13 +113,6 @@ def _handling(failure: str) -> str:
     if ":" in event or event.startswith("error."):
         return ""
     return f'. Nothing handles it: write <on event="{event}">.'
-
-
-def _is_source(output: str, scenario: str, files: dict[str, str]) -> bool:
-    """Whether an output would overwrite what the run is made of."""
-    folder = os.path.dirname(scenario)
-    sources = {os.path.realpath(os.path.join(folder, name)) for name in files}
-    return os.path.realpath(output) in sources
 
 
 def _outline(transcript: Transcript) -> str:

@@ -11,12 +11,14 @@ from click.exceptions import Exit
 from prima.cli.common import (
     POLICIES,
     Choice,
+    check_output,
     coloured,
     format_option,
     limit_option,
     print_json,
     put,
     raise_limits,
+    same_file,
     start_watchdog,
     tell,
 )
@@ -100,6 +102,7 @@ def test(
     chosen = [path for path in found if word.casefold() in path.casefold()]
     if not chosen:
         raise UsageError(f'None of {len(found)} scenarios has "{word}" in its path.')
+    _check_outputs(chosen, junit_file, coverage_xml)
     cover = cover or coverage_xml is not None or fail_under is not None
     start_watchdog()
     results: list[Result] = []
@@ -140,6 +143,19 @@ def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> No
             policy_named(policy)
         except UsageError as error:
             raise UsageError(f"{error} {FAVOURITE}") from None
+
+
+def _check_outputs(scenarios: list[str], *outputs: str | None) -> None:
+    """See whether results and coverage may be written where they shall.
+
+    Raises:
+        UsageError: both go to one file, or one would replace what the tests are made of.
+    """
+    paths = [path for path in outputs if path]
+    if len(paths) == 2 and same_file(*paths):
+        raise UsageError(f"{paths[0]}: results and coverage go to two files; name another one.")
+    for path in paths:
+        check_output(path, "test", *scenarios)
 
 
 def _progress(done: int, total: int) -> None:

@@ -241,6 +241,9 @@ class Conversation:
         try:
             if not folder.is_dir():
                 raise UsageError(f"{path}: there is no folder {folder}.")
+            if Path(path).is_dir():
+                file = os.path.join(path, "visit.xml")
+                raise UsageError(f"{path}: this is a folder; name a file, as {file}.")
             if Path(path).exists() and MARK.encode() not in _beginning(Path(path)):
                 raise UsageError(
                     f"{path}: this file is there already and is no saved session; write elsewhere."

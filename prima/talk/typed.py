@@ -127,7 +127,7 @@ def _release(rest: str) -> str:
 
 def _message(rest: str) -> str:
     found = re.fullmatch(r"from (.+?): (.+)", rest)
-    if rest.startswith("from ") and found is None:
+    if not rest or (f"{rest} ".startswith("from ") and found is None):
         raise UsageError(f'Write "{COMMANDS["message"].usage}".')
     return element("message", found[2], **{"from": found[1]}) if found else element("message", rest)
 

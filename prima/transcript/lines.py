@@ -144,7 +144,9 @@ def _no_number(word: str) -> None:
 def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
     if isinstance(error, invalid):
         first = error.errors()[0]  # type: ignore[attr-defined]
-        where = ".".join(str(part) for part in first["loc"]) or "the record"
+        if not first["loc"]:
+            return 'this is no transcript\'s record: one stands in braces, as {"time":0, ...}.'
+        where = ".".join(str(part) for part in first["loc"])
         return f"this is no transcript's record: {where}: {first['msg']}."
     if "needs" in str(error):
         return f"this is no transcript's record: {error}."
