@@ -33,7 +33,8 @@ CODES: dict[str, str] = {
     "exclusive": "Two attributes exclude each other: they say one thing in different ways, or two"
     " things of which an element does one. Keep one.",
     "duplicate-id": "Two things have one id, so that nobody could tell which is meant.",
-    "duplicate-name": "Two items of a form have one name: they would share their variable.",
+    "duplicate-name": "Two items of a form have one name: they would share their variable. Or two"
+    " services of a scenario: nobody could tell which one is asked.",
     "duplicate-element": "The element may be there only once.",
     "duplicate-answer": "Two options of a field say the same, folded for case and punctuation.",
     "no-form": "An application is made of forms, its states; it begins with the first.",

@@ -25,7 +25,7 @@ from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.markup.check import check_root
+from prima.markup.check import DOCUMENTS, check_root
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse, too_large
 
@@ -141,6 +141,15 @@ def is_voicexml(data: bytes) -> bool:
     return VOICEXML_ROOT.match(data) is not None
 
 
+def is_application(path: str) -> bool:
+    """Whether a file is an application of either language, as far as its beginning tells."""
+    try:
+        data = read_file(path)
+    except (DocumentError, UsageError):
+        return False
+    return is_voicexml(data) or DIALOGUE.namespace.encode() in data[:4096]
+
+
 def _fetch(folder: Path, uri: str) -> bytes:
     """A resource of a VoiceXML application: a file inside its folder, and nothing else."""
     from prima.voicexml.document import FetchError
@@ -241,7 +250,7 @@ def _validate_one(path: str) -> list[Problem]:
                     reading.offered(area.src, area)
             return reading.problems
         elif vocabulary is ROBOT:
-            read_robot(path, data)
+            return read_robot(path, data).warnings
         else:
             return load_scenario(path).problems
     except DocumentError as error:
@@ -316,13 +325,11 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
+        UsageError: two of the applications have one id.
     """
     demo = documents_folder()
-    applications = [
-        f'<application src="{escape(path)}" kind="{kind}"/>'
-        for kind, paths in (("fa", fas), ("ea", eas))
-        for path in paths
-    ]
+    given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
+    applications = [f'<application src="{escape(path)}" kind="{kind}"/>' for kind, path in given]
     answers = [
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(says, 1)
@@ -333,7 +340,31 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
         f' robot="{escape(str(demo / "robots" / "papero.xml"))}">'
         f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
     )
-    return _load(Path("stage.xml"), text.encode())
+    try:
+        return _load(Path("stage.xml"), text.encode())
+    except DocumentError as error:
+        if any(
+            one.code == "duplicate-id" and one.place.file == "stage.xml" for one in error.problems
+        ):
+            _refuse_same_id(given)
+        raise
+
+
+def _refuse_same_id(given: list[tuple[str, str]]) -> None:
+    """Name the two applications of one id, by their options: the stage's own text is no file.
+
+    Raises:
+        UsageError: there are two.
+    """
+    seen: dict[str, str] = {}
+    for kind, path in given:
+        name, option = read_application(path, read_file(path))[0].id, f"--{kind} {path}"
+        if name in seen:
+            both = f"{option} is given twice"
+            if seen[name] != option:
+                both = f'{seen[name]} and {option} have the same id, "{name}"'
+            raise UsageError(f"{both}. Leave one out, or run a copy with another id.")
+        seen[name] = option
 
 
 def _load(path: Path, data: bytes) -> Loaded:
@@ -351,6 +382,7 @@ def _load(path: Path, data: bytes) -> Loaded:
     offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
     if robot is not None:
         reading.check_commands(robot)
+        reading.problems += robot.warnings
     reading.check_policy(scenario)
     reading.replies(scenario)
     offered = {name for _, name in offers}
@@ -388,7 +420,7 @@ class _Reading:
             told = f'"{name}" {message}'
             self.problems.append(Problem(place, "error", "no-such-file", told, _nearby(target)))
         except DocumentError as error:
-            self.problems += error.problems
+            self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
 
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
@@ -457,6 +489,13 @@ class _Reading:
             self.problems.append(Problem(place, "error", "bad-value", f"{error} {FAVOURITE}"))
         if problem := favourite_problem(scenario.policy, self.documents):
             self.problems.append(Problem(place, "error", "no-such-name", *problem))
+
+
+def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
+    """A document of another kind than the scenario needs is the mistake of who names it."""
+    if problem.code != "wrong-namespace" or parse(name, content).namespace not in DOCUMENTS:
+        return problem
+    return problem._replace(place=place, message=f'"{name}": {problem.message}')
 
 
 def _nearby(path: Path) -> str:

@@ -59,7 +59,7 @@ def test_every_mistake_is_expected() -> None:
 
 
 def test_what_mistakes_name_beside_them_is_right() -> None:
-    for name in ("museum", "robot", "speaker", "ask", "bow"):
+    for name in ("museum", "room", "robot", "speaker", "ask", "bow"):
         assert problems_of(MISTAKES / "beside" / f"{name}.xml") == []
 
 
@@ -153,3 +153,120 @@ def test_explain_guesses_a_misspelt_code() -> None:
     assert 'There is no code "no-anser". Did you mean "no-answer"?' in told.stderr
     with pytest.raises(UsageError, match="prima explain lists them"):
         examples("zzz")
+
+
+# What no file here can show -------------------------------------------------------------
+
+
+def written(folder: Path, name: str, text: str) -> list[Problem]:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return problems_of(path)
+
+
+def application(content: str) -> str:
+    return (
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="tour">'
+        f'<form id="start">{content}</form></prima>'
+    )
+
+
+def test_a_name_that_no_variable_may_have_is_never_suggested(tmp_path: Path) -> None:
+    content = (
+        '<var name="my drink"/><block><log expr="drink"/>'
+        "<script>n = my_drink</script><exit/></block>"
+    )
+    found = written(tmp_path, "tour.xml", application(content))
+    assert "bad-value" in [one.code for one in found]
+    assert [one.remedy for one in found if "Did you mean" in one.remedy] == []
+    field = (
+        '<field name="my drink"><option>tea</option><noinput><exit/></noinput></field>'
+        '<filled namelist="my_drink"><exit/></filled>'
+    )
+    found = written(tmp_path, "tour.xml", application(field))
+    assert "no-such-item" in [one.code for one in found]
+    assert [one.remedy for one in found if "my drink" in one.remedy] == []
+
+
+@pytest.mark.parametrize(
+    ("code", "message"),
+    [
+        ("nosuch (1)", 'There is no function "nosuch".'),
+        ("nosuch.of(1)", 'The variable "nosuch" is not declared.'),
+        ("setTimeout(1)", 'There is no function "setTimeout".'),
+    ],
+)
+def test_what_is_called_is_a_function(tmp_path: Path, code: str, message: str) -> None:
+    content = f'<block><log expr="{code}"/><exit/></block>'
+    (found,) = written(tmp_path, "tour.xml", application(content))
+    assert found.message == message
+    assert ("<var" in found.remedy) == message.startswith("The variable")
+
+
+def scenario(content: str, attributes: str = "") -> str:
+    beside = (MISTAKES / "beside").as_posix()
+    return (
+        f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit" {attributes}'
+        f' world="{beside}/room.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        f'<application src="{beside}/ask.xml"/>{content}</scenario>'
+    )
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<expect event="touch"/>',
+        '<expect event="end.q-and-a"/>',
+        '<never event="error"/>',
+        '<never event="error.service.desk"/>',
+        '<expect event="error.badfetch.http"/>',
+        '<expect says="Tea" on="touch.head"/>',
+        '<expect ends="ask" reason="unloaded"/>',
+        '<never ends="ask" reason="error.semantic"/>',
+        '<in-order><expect event="human.found"/></in-order>',
+        '<when at="10s"><say>Tea.</say></when>',
+        '<expect state="start" at="10s"/>',
+        '<expect state="start" at="end"/>',
+        '<person x="4" y="3"/>',
+        '<when at="1s"><walk x="2" y="9"/></when>',
+    ],
+)
+def test_what_is_right_in_a_scenario_is_not_told(tmp_path: Path, content: str) -> None:
+    assert written(tmp_path, "visit.xml", scenario(content, 'until="10s"')) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ('<in-order><expect event="mesage"/></in-order>', 'Did you mean "message"?'),
+        ('<when at="8s" after="3s"><say>Tea.</say></when>', "or a later until."),
+        ('<person x="2" y="9"/>', "They stand from -1 to 3."),
+    ],
+)
+def test_what_is_wrong_deeper_in_a_scenario_is_told(
+    tmp_path: Path, content: str, says: str
+) -> None:
+    (found,) = written(tmp_path, "visit.xml", scenario(content, 'until="10s"'))
+    assert found.severity == "warning" and says in found.remedy
+
+
+def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
+    tmp_path: Path,
+) -> None:
+    robot = (
+        '<robot xmlns="urn:prima:robot:1" version="1.0" id="robot">'
+        '<device name="neck"/><device name="necks"/></robot>'
+    )
+    assert written(tmp_path, "robot.xml", robot) == []
+
+
+def test_two_applications_of_one_id_are_named_by_their_options(tmp_path: Path) -> None:
+    ask = MISTAKES / "beside" / "ask.xml"
+    other = tmp_path / "other.xml"
+    other.write_bytes(ask.read_bytes())
+    twice = prima("run", "--ea", str(ask), "--ea", str(ask))
+    assert twice.returncode == 2 and twice.stdout == ""
+    assert f"--ea {ask} is given twice." in twice.stderr
+    both = prima("run", "--fa", str(ask), "--ea", str(other))
+    assert both.returncode == 2 and "stage.xml" not in both.stderr
+    assert f'--fa {ask} and --ea {other} have the same id, "ask".' in both.stderr

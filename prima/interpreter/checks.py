@@ -49,7 +49,7 @@ from prima.interpreter.expressions import (
     check_script,
     plain_context,
 )
-from prima.interpreter.names import declared_names, free_names
+from prima.interpreter.names import IDENTIFIER, declared_names, free_names
 from prima.markup.slips import half
 from prima.markup.tree import Node
 from prima.values import read_value
@@ -68,6 +68,7 @@ MANY_STEPS = 200
 STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
 ASSIGNMENT = re.compile(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
 BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+CALL = re.compile(r"\s*\(")
 """What expressions and texts are looked through for."""
 
 LEAVES, LISTS = (str, int, frozenset), (list, tuple)
@@ -351,6 +352,8 @@ class Checker:
         inside = self._reached(called, calls=False)
         exiting = self._exiting()
         for name, form in forms.items():
+            if not name:
+                continue  # nothing can name it, which has been told
             if name not in reached:
                 self.note(
                     form.node, "unreachable", f'Nothing leads to the form "{name}".',
@@ -417,9 +420,8 @@ class Checker:
         for name in names:
             if name not in known:
                 message = f'There is no {what} "{name}".'
-                self.note(
-                    holder.node, "no-such-item", message, did_you_mean(name, known), "namelist"
-                )
+                remedy = did_you_mean(name, filter(IDENTIFIER.fullmatch, known))
+                self.note(holder.node, "no-such-item", message, remedy, "namelist")
 
     def _gather(self) -> None:
         """Names by the form that declares them, found in one go."""
@@ -502,13 +504,23 @@ class Checker:
                 if name not in known:
                     self._undeclared(value.node.attribute_place("namelist"), name, known)
 
-    def _undeclared(self, place: Place, name: str, known: set[str], bare: bool = False) -> None:
-        shown = {word for word in known | VARIABLES if not word.startswith("$")}
-        remedy = ABSENT.get(name) or did_you_mean(name, shown)
-        remedy = remedy or f'Declare it: <var name="{name}"/>.'
+    def _undeclared(
+        self,
+        place: Place,
+        name: str,
+        known: set[str],
+        bare: bool = False,
+        called: bool = False,
+    ) -> None:
+        remedy = ABSENT.get(name) or did_you_mean(name, _names_to_write(known))
+        if called:
+            message = f'There is no function "{name}".'
+            remedy = remedy or "Define it in a <script>."
+        else:
+            message = f'The variable "{name}" is not declared.'
+            remedy = remedy or f'Declare it: <var name="{name}"/>.'
         if bare and name not in ABSENT:
             remedy = f"{remedy} For the text itself write '{name}'."
-        message = f'The variable "{name}" is not declared.'
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _expression(self, expr: Expression, known: set[str]) -> None:
@@ -516,7 +528,8 @@ class Checker:
             for name, start in free_names(expr.code).items():
                 if name not in known:
                     bare = expr.code.strip() == name and expr.node.tag != "value"
-                    self._undeclared(_place_in(expr, start), name, known, bare)
+                    called = CALL.match(expr.code, start + len(name)) is not None
+                    self._undeclared(_place_in(expr, start), name, known, bare, called)
             self._assigns(expr)
 
     def _assigns(self, expr: Expression) -> None:
@@ -537,7 +550,7 @@ class Checker:
                     message = f'The script uses "{name}", which nothing declares.'
                     place = _place_in(act.code, start)
                     code = "undeclared-variable"
-                    remedy = ABSENT.get(name, "") or did_you_mean(name, known | VARIABLES)
+                    remedy = ABSENT.get(name, "") or did_you_mean(name, _names_to_write(known))
                     self.problems.append(Problem(place, "warning", code, message, remedy))
 
     def _compiles(self, expr: Expression, check: Callable[[Any, str], None]) -> bool:
@@ -772,6 +785,15 @@ class Checker:
 def _place_in(expr: Expression, characters: int) -> Place:
     """The place of a character of an expression or script."""
     return expr.node.source.inside(expr.node.index, expr.attribute, characters)
+
+
+def _names_to_write(known: set[str]) -> set[str]:
+    """Variables that an author may have meant: names that code can hold, and not our own."""
+    return {
+        word
+        for word in known | VARIABLES
+        if IDENTIFIER.fullmatch(word) and not word.startswith("$")
+    }
 
 
 def _devices(step: StepTemplate) -> frozenset[str]:

@@ -91,7 +91,8 @@ def near(word: str, known: Iterable[str]) -> str:
         return ""
     folded = word.casefold().replace("-", "").replace("_", "")
     plain = {one.replace("-", ""): one for one in words}
-    found = get_close_matches(folded, plain, n=1, cutoff=NEAR)
+    swapped = [one for one in plain if sorted(one) == sorted(folded)]
+    found = swapped or get_close_matches(folded, plain, n=1, cutoff=NEAR)
     return plain[found[0]] if found else ""
 
 

@@ -10,7 +10,16 @@ from prima.interpreter.events import STANDARD, Events, beginnings, near
 from prima.interpreter.surroundings import Sayings, Surroundings, check_surroundings
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
+from prima.sim.scenario import Map
+from prima.values import read_value
 
+ENDINGS = frozenset({"exit", "unloaded"})
+"""Why an application ends, beside the names of events."""
+OPEN = (
+    *("end.", "cancel.", "interrupted.", "reply.", "error.service."),
+    *("error.unsupported.", "error.badfetch."),
+)
+"""Beginnings of events that go on with a name that is not the language's own."""
 MOST = 500
 """So many triggers of a kind are looked at: each is compared with all that may be said."""
 
@@ -23,10 +32,11 @@ def check_hearing(cast: Cast) -> list[Problem]:
     )
     documents = [document for document in cast.documents if isinstance(document, Document)]
     problems = [one for document in documents for one in check_surroundings(document, names)]
+    nodes = list(_nodes(cast.scenario.node))
+    problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application says and hears is known only when it runs
     events = [Events(document) for document in documents]
-    nodes = list(_nodes(cast.scenario.node))
     problems += _services(events, {service.name for service in cast.scenario.services})
     problems += _words(nodes, documents)
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
@@ -75,21 +85,59 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
 
 
 def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
-    """Triggers that wait for an event whose name is most likely a slip."""
+    """Triggers and expectations of an event whose name is most likely a slip."""
     known = set(STANDARD) | {f"touch.{sensor}" for sensor in cast.robot.touch}
     known |= {corner.event for corner in cast.world.corners}
     known |= {node.get("name") for node in nodes if node.tag == "event"}
     known |= {raised.name for one in events for raised in one.raised}
     begins = {name for one in known for name in beginnings(one)}
-    for node in [one for one in nodes if one.tag == "when"][:MOST]:
-        name = node.get("on")
-        if not name or name in begins:
+    for node in [one for one in nodes if one.tag in ("when", "expect", "never")][:MOST]:
+        for attribute in ("on", "event", "reason"):
+            name = node.get(attribute)
+            ending = ENDINGS if attribute == "reason" else frozenset()
+            if not name or name in begins | ending or name.startswith(OPEN):
+                continue
+            nearest = near(name, known | ending)
+            if nearest:
+                message = f'Nothing raises an event "{name}".'
+                if nearest in ending:
+                    message = f'No application ends with "{name}".'
+                remedy = f'Did you mean "{nearest}"?'
+                place = node.attribute_place(attribute)
+                yield Problem(place, "warning", "unknown-event", message, remedy)
+
+
+def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
+    """What is written for a time (ms) at which the run is over."""
+    for node in nodes:
+        at = node.get("at") if node.tag in ("when", "expect", "never") else ""
+        if not at or at == "end":
             continue
-        nearest = near(name, known)
-        if nearest:
-            message, remedy = f'Nothing raises an event "{name}".', f'Did you mean "{nearest}"?'
-            place = node.attribute_place("on")
-            yield Problem(place, "warning", "unknown-event", message, remedy)
+        after = node.get("after") if node.tag == "when" else ""
+        if sum(int(read_value("duration", one)) for one in (at, after) if one) > until:
+            message = f"The run is over after {until / 1000:g} s (until): this never comes."
+            remedy = "Write an earlier time, or a later until."
+            place = node.attribute_place("at")
+            yield Problem(place, "warning", "out-of-range", message, remedy)
+
+
+def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
+    """A user who begins outside (m) the walls of a world whose places are all inside."""
+    corners = [end for wall in world.walls for end in wall]
+    if not corners:
+        return
+    (left, right), (low, high) = ((min(side), max(side)) for side in zip(*corners, strict=True))
+    if not all(left <= x <= right and low <= y <= high for x, y in world.places.values()):
+        return  # the walls do not stand around the world
+    for node in nodes:
+        if node.tag != "person" or not {"x", "y"} <= node.attributes.keys():
+            continue
+        for name, least, most in (("x", left, right), ("y", low, high)):
+            if not least <= float(read_value("number", node.get(name))) <= most:
+                message = f'{name} "{node.get(name)}" is outside the walls of the world.'
+                remedy = f"They stand from {least:g} to {most:g}."
+                place = node.attribute_place(name)
+                yield Problem(place, "warning", "out-of-range", message, remedy)
 
 
 def _services(events: list[Events], names: set[str]) -> Iterator[Problem]:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from prima.commands import TABLE_4_2, Argument, CommandType
-from prima.errors import DocumentError, Problem, did_you_mean
+from prima.commands import DEVICES, TABLE_4_2, Argument, CommandType
+from prima.errors import DocumentError, Problem, Severity, did_you_mean
+from prima.interpreter.events import near
 from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
@@ -53,11 +54,17 @@ class Reader:
         return value
 
     def problem(
-        self, node: Node, code: str, message: str, attribute: str = "", remedy: str = ""
+        self,
+        node: Node,
+        code: str,
+        message: str,
+        attribute: str = "",
+        remedy: str = "",
+        severity: Severity = "error",
     ) -> None:
         """Note a problem."""
         place = node.attribute_place(attribute) if attribute in node.attributes else node.place
-        self.problems.append(Problem(place, "error", code, message, remedy))
+        self.problems.append(Problem(place, severity, code, message, remedy))
 
     def known(self, node: Node, name: str, words: Iterator[str] | set[str], what: str) -> None:
         """Note a problem where an attribute names something that is not there."""
@@ -194,6 +201,8 @@ class Profile:
     commands: dict[str, CommandType] = field(default_factory=dict)
     durations: dict[str, int] = field(default_factory=dict)
     motions: dict[str, Motion] = field(default_factory=dict)
+    warnings: list[Problem] = field(default_factory=list)
+    """What is odd in its document, and no error."""
 
 
 @dataclass(slots=True)
@@ -236,6 +245,7 @@ def read_robot(file: str, data: bytes) -> Profile:
         devices=frozenset(node.get("name") for node in root.all("device")),
         touch=frozenset(node.get("sensor") for node in root.all("touch")),
     )
+    _check_devices(reader, profile)
     for node in root.all("camera"):
         profile.camera_angle = reader.get(node, "angle") or 60.0
         profile.camera_range = reader.get(node, "range") or 4.0
@@ -275,7 +285,19 @@ def read_robot(file: str, data: bytes) -> Profile:
     for node in root.all("substitute"):
         _substitute(reader, node, rows, profile)
     reader.finish()
+    profile.warnings = reader.problems
     return profile
+
+
+def _check_devices(reader: Reader, profile: Profile) -> None:
+    """A device of the robot's own whose name is most likely a slip of a device of Table 4.2."""
+    for node in reader.root.all("device"):
+        name = node.get("name")
+        meant = "" if name in DEVICES else near(name, set(DEVICES) - profile.devices)
+        if meant:
+            message = f'No Command of the language needs a device "{name}".'
+            remedy = f'Did you mean "{meant}"?'
+            reader.problem(node, "no-such-name", message, "name", remedy, "warning")
 
 
 def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
@@ -504,6 +526,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         _check_where(reader, person, "at", "a place to be at", needed=False)
     if person is not None and "x" in person.attributes:
         point = (reader.get(person, "x") or 0.0, reader.get(person, "y") or 0.0)
+    _check_services(reader)
     scenario = Scenario(
         id=root.get("id"),
         title=root.get("title"),
@@ -540,6 +563,18 @@ def read_scenario(file: str, data: bytes) -> Scenario:
     )
     reader.finish()
     return scenario
+
+
+def _check_services(reader: Reader) -> None:
+    """Each service has its own name: what is sent to a name goes to one of them."""
+    seen: set[str] = set()
+    for node in reader.root.all("service"):
+        name = node.get("name")
+        if name in seen:
+            message = f'Two services have the name "{name}".'
+            remedy = "Rename one, or put the replies of both into one."
+            reader.problem(node, "duplicate-name", message, "name", remedy)
+        seen.add(name)
 
 
 def _when(reader: Reader, node: Node) -> When:
