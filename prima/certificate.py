@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from prima.errors import Place
+from prima.errors import DocumentError, Place, UsageError
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
 from prima.loading import documents_folder, read_application, read_file
@@ -121,13 +121,17 @@ def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> lis
         for path in sorted(folder.glob("*.xml"))
         if path != chosen
     ]
+    fas, eas = list(fas), list(eas)
     read = {name: _read(name) for name in {*fas, *eas}}
+    for names, kind, other in ((fas, "fa", "an EA"), (eas, "ea", "an FA")):
+        for name in names:
+            document = read[name]
+            if isinstance(document, Document) and document.kind != kind:
+                raise UsageError(f"{name}: is {other}; --with FA EA compares an FA with an EA.")
     return [certify(read[fa], read[ea], profile, others) for ea in eas for fa in fas]
 
 
 def _read(path: str) -> AnyDocument:
-    from prima.errors import DocumentError
-
     document, problems = read_application(path, read_file(path))
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(problems)

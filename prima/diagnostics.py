@@ -46,6 +46,8 @@ def excerpt(line: str, column: int) -> tuple[str, str]:
     start = min(max(column - 1, 0), len(line))
     token = TOKEN.match(line, start)
     length = len(token[0]) if token else 1
+    if line[start : start + 1] in "\"'" and line[:start].rstrip()[-1:] != "=":
+        length = 1  # the quote that ends a value: what is wrong is that it ends there
     cut = 0
     if len(line) > WIDEST and start > WIDEST // 2:
         cut = start - WIDEST // 2

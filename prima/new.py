@@ -37,7 +37,10 @@ def write(kind: str, name: str) -> list[Path]:
         UsageError: the file is there already, or cannot be written.
     """
     ending = ".vxml" if kind == "vxml" else ".xml"
-    path = Path(name if name.endswith(ending) else name + ending)
+    stem = name.removesuffix(".vxml").removesuffix(".xml")
+    if Path(name).name in ("", ".", "..") or name.endswith("/"):
+        raise UsageError(f'"{name}" is not a file\'s name.')
+    path = Path(stem + ending)
     if path.exists():
         raise UsageError(f"{path}: is there already; name another file.")
     if kind == "scenario":

@@ -316,3 +316,13 @@ def test_every_command_has_a_help_with_an_example(name: str) -> None:
 def test_every_module_of_a_command_is_listed() -> None:
     modules = {path.stem for path in (ROOT / "prima" / "cli").glob("*.py")}
     assert modules - {"__init__", "common", "terminal"} == set(COMMANDS)
+
+
+def test_prima_alone_shows_its_help_once() -> None:
+    done = prima()
+    assert done.returncode == 2 and done.stderr.count("Usage:") == 1
+
+
+def test_a_code_has_no_rows() -> None:
+    done = prima("explain", "unknown-element", "3")
+    assert done.returncode == 2 and "unknown-element is a code" in done.stderr

@@ -86,3 +86,15 @@ def test_a_scenario_leaves_out_what_has_errors(tmp_path: Path) -> None:
     assert prima("new", "scenario", "visit", cwd=tmp_path).returncode == 0
     assert "broken" not in (tmp_path / "visit.xml").read_text()
     assert prima("run", "visit.xml", cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/"])
+def test_a_name_that_is_none(tmp_path: Path, name: str) -> None:
+    assert prima("new", "ea", name, cwd=tmp_path).returncode == 2
+
+
+@pytest.mark.parametrize(("kind", "name"), [("vxml", "v.xml"), ("ea", "v.vxml"), ("ea", "v.xml")])
+def test_either_ending_is_understood(tmp_path: Path, kind: str, name: str) -> None:
+    assert prima("new", kind, name, cwd=tmp_path).returncode == 0
+    (made,) = tmp_path.iterdir()
+    assert made.name == ("v.vxml" if kind == "vxml" else "v.xml")

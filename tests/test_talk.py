@@ -312,7 +312,9 @@ def test_a_saved_session_runs_to_the_same_transcript(
     type_in(talk, *lines)
     mine, again, path = replayed(talk, tmp_path)
     assert mine == again, path.read_text(encoding="utf-8")
-    assert not [one for one in api.validate([path]) if one.severity != "note"], paper.told
+    problems = [one for one in api.validate([path]) if one.severity != "note"]
+    later = {"out-of-range"} if scripted else set()  # what the script had still to come
+    assert not [one for one in problems if one.code not in later], paper.told
 
 
 @settings(

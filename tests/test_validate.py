@@ -192,3 +192,29 @@ def test_a_thousand_files_in_one_call(tmp_path: Path) -> None:
     done = prima("validate", ".", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (0, "")
     assert "files: 1000; no problems" in done.stderr
+
+
+def test_the_mark_ends_where_a_value_ends() -> None:
+    _, under = excerpt('  <value expr="drink +"/> is on the table', 23)
+    assert under.strip() == "^"
+
+
+@pytest.mark.parametrize(
+    "given", [["--watch"], ["--notes"], ["--format", "short"], ["--format", "sarif"]]
+)
+def test_a_certificate_takes_no_option_of_problems(given: list[str]) -> None:
+    documents = ROOT / "documents"
+    fa, ea = documents / "fa" / "follow.xml", documents / "ea" / "library.xml"
+    assert prima("validate", "--with", fa, ea, *given, cwd=ROOT).returncode == 2
+
+
+def test_a_certificate_compares_an_fa_with_an_ea() -> None:
+    fa, ea = ROOT / "documents" / "fa" / "follow.xml", ROOT / "documents" / "ea" / "library.xml"
+    done = prima("validate", "--with", ea, fa, cwd=ROOT)
+    assert done.returncode == 2 and "library.xml: is an EA" in done.stderr
+    done = prima("validate", "--with", fa, "documents/ea", cwd=ROOT)
+    assert done.returncode == 0 and "What pizza can do to follow" in done.stdout
+
+
+def test_watching_an_empty_folder_is_told(tmp_path: Path) -> None:
+    assert prima("validate", ".", "--watch", cwd=tmp_path).returncode == 2

@@ -109,6 +109,9 @@ def main() -> None:
     except RunError as error:
         tell(f"prima: {error}")
         code = 3
+    except click.exceptions.NoArgsIsHelpError as error:
+        tell(error.format_message())
+        code = 2
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
         usage = f"{context.get_usage()}\n" if context is not None else ""

@@ -29,16 +29,20 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     prima explain undeclared-variable
     prima explain mediated.jsonl 16
     """
+    from prima.codes import CODES
+
     if what is None:
         _list(form)
-    elif row is None and not os.path.exists(what):
+    elif not os.path.exists(what) and (row is None or what in CODES):
+        if row is not None:
+            raise UsageError(f"{what} is a code, which has no rows: prima explain {what}.")
         _code(what, form)
     elif row is None:
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
     else:
         from prima import api
 
-        text = api.explain_row(api.read(what), row)
+        text = api.explain_row(api.read(what, partial=True), row)
         if form == "json":
             print_json({"row": row, "lines": text.split("\n")})
         else:

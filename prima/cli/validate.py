@@ -74,6 +74,8 @@ def validate(
     raise_limits(limits)
     if robot and not fas:
         raise UsageError("--robot goes with --with.")
+    if fas and (watch or notes or form in ("short", "sarif")):
+        raise UsageError("A certificate (--with) takes --format text or json alone.")
     if fas:
         _certify(fas, files, robot, form)
         return
@@ -86,10 +88,12 @@ def validate(
 
 def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) -> None:
     from prima.certificate import certificate_data, certificates, format_certificate
+    from prima.loading import is_application
 
-    if form == "sarif":
-        raise UsageError("A certificate is no list of problems: --format text or json.")
-    found = certificates(fas, list(_expanded(eas)), robot)
+    applications = [
+        name for name in _expanded(eas) if name in eas or is_application(name)
+    ]  # of a folder's documents, those that can be certified
+    found = certificates(fas, applications, robot)
     if form == "json":
         print_json([certificate_data(one) for one in found])
     else:
@@ -166,7 +170,7 @@ def _watch(files: tuple[str, ...], form: str, notes: bool) -> None:
     """Check now and after every change, until somebody interrupts."""
     import time
 
-    seen: dict[str, float] = {}
+    seen: dict[str, float] | None = None
     while True:
         now = _changes(files)
         if now != seen:

@@ -131,12 +131,12 @@ def _map(view: View, index: int, runs: int) -> str:
     elif view.walk.robot:
         told = (
             "Only the places that the robot reported: a transcript holds neither the map nor"
-            " the user's way. With --scenario the report shows both."
+            " the user's way. prima report with --scenario shows both."
         )
     else:
         told = (
             "The robot reported no places in this run."
-            " With --scenario the report shows the map and the user."
+            " prima report with --scenario shows the map and the user."
         )
     drawn = bool(view.walk.robot or view.walk.plan)
     frame = f'<div class="map" id="map-{index}"></div>' if drawn else ""

@@ -708,7 +708,7 @@
   for (const kind of ["wheel", "touchmove"]) addEventListener(kind, () => { state.follow = false; }, { passive: true });
   addEventListener("hashchange", fromAddress);
   timelines.forEach((one) => one.redraw());
-  if (longest > 120) view(0, 120);
+  if (longest > 900) view(0, 120);
   go(0);
   fromAddress();
 })();
