@@ -692,6 +692,7 @@ def test_a_terminal_step_by_step(tmp_path: Path) -> None:
     terminal.until("Every application has ended")
     terminal.type("/save visit.xml\r")
     terminal.until("Saved visit.xml.")
+    terminal.until("> ")  # before, the key would be nobody's
     terminal.type("\x04")
     assert terminal.end() == 0
     assert (tmp_path / "visit.xml").exists()
@@ -716,6 +717,7 @@ def test_ctrl_c_ends_with_130_and_what_was_saved_is_intact(tmp_path: Path) -> No
         terminal.until("Ouch.")
         terminal.type("/save first.xml\r")
         terminal.until("Saved first.xml.")
+        terminal.until("> ")  # before, the key would be nobody's
         terminal.type("half a li")
         terminal.until("half a li")
         terminal.type("\x03")

@@ -42,7 +42,7 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     else:
         from prima import api
 
-        text = api.explain_row(api.read(what, partial=True), row)
+        text = api.explain_row(api.read(what), row)
         if form == "json":
             print_json({"row": row, "lines": text.split("\n")})
         else:
