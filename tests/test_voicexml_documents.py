@@ -56,7 +56,8 @@ def ask(content: str, name: str = "f", more: str = "") -> str:
 def problems(text: str) -> list[str]:
     """What is wrong with a document: line, column and code of each problem."""
     try:
-        found = read_page("d.vxml", "d.vxml", text.encode()).problems
+        page = read_page("d.vxml", "d.vxml", text.encode())
+        found = [*page.problems, *page.later]
     except DocumentError as error:
         found = error.problems
     return [f"{p.place.line}:{p.place.column} {p.code}" for p in sorted(found)]

@@ -87,18 +87,24 @@ def _entry(element: Element) -> Entry:
 ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 
-def check_tree(root: Node) -> list[Problem]:
-    """Give every node its key, take out what is of foreign namespaces, and tell what is wrong."""
+def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
+    """Give every node its key, take out what is of foreign namespaces, and tell what is wrong.
+
+    The second list has elements whose attributes exclude each other, or lack one of several:
+    they are ``error.badfetch`` when they are reached (5.3.7 and others), and no error before.
+    """
     root.key = "vxml"
     if problem := version_problem(root):
-        return [problem]  # of another version, what else seems wrong may be right
+        return [problem], []  # of another version, what else seems wrong may be right
     problems: list[Problem] = []
+    later: list[Problem] = []
     stack = [root]
     while stack:
         node = stack.pop()
         entry = ENTRIES[node.key]
         if node.attributes or entry.required or entry.alternatives:
             _check_attributes(node, entry, problems)
+            (problems if node.key == "meta" else later).extend(alternatives(node))
         check = RULES.get(node.key)
         if check is not None:
             check(node, problems)
@@ -107,7 +113,7 @@ def check_tree(root: Node) -> list[Problem]:
             problems.append(Problem(node.place, "error", "stray-text", message))
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
-    return _most(problems)
+    return _most(problems), _most(later)
 
 
 def _most(problems: list[Problem]) -> list[Problem]:
@@ -196,8 +202,6 @@ def _check_attributes(node: Node, entry: Entry, problems: list[Problem]) -> None
         if name not in node.attributes:
             message = f'<{node.tag}> needs the attribute "{name}".'
             problems.append(Problem(node.place, "error", "missing-attribute", message))
-    for names in entry.alternatives:
-        _check_alternatives(node, names, problems)
 
 
 _REMEDIES = {
@@ -231,6 +235,15 @@ def _unknown(node: Node, name: str) -> Problem:
     place = node.attribute_place(name, value=False)
     hint = did_you_mean(name, ENTRIES[node.key].known)
     return Problem(place, "error", "unknown-attribute", message, hint)
+
+
+def alternatives(node: Node) -> list[Problem]:
+    """Attributes of an element that exclude each other, or none where one is needed."""
+    problems: list[Problem] = []
+    entry = ENTRIES.get(node.key)  # what a Command of PRIMA holds has no key
+    for names in entry.alternatives if entry is not None else ():
+        _check_alternatives(node, names, problems)
+    return problems
 
 
 def _check_alternatives(node: Node, names: tuple[str, ...], problems: list[Problem]) -> None:

@@ -49,6 +49,8 @@ class Page:
     dialogs: dict[str, Node] = field(default_factory=dict)
     """Forms and menus by their id, in document order; those without one by a number."""
     problems: list[Problem] = field(default_factory=list)
+    later: list[Problem] = field(default_factory=list)
+    """What is ``error.badfetch`` when it is reached, and no error before."""
 
     @property
     def lang(self) -> str:
@@ -78,7 +80,7 @@ class Page:
 
     def warnings(self) -> list[Problem]:
         """What is no error until it is reached; found only for who asks."""
-        return check_code(self.root, set(self.dialogs))
+        return [*self.later, *check_code(self.root, set(self.dialogs))]
 
 
 def legal(uri: str) -> str:
@@ -114,7 +116,8 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     root = parse(file, data)
     bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
-    page = Page(uri, root, problems=[*bare, *check_tree(root)])
+    problems, later = check_tree(root)
+    page = Page(uri, root, problems=[*bare, *problems], later=later)
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:

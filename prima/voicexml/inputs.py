@@ -136,6 +136,7 @@ class Inputs:
 
     def _links(self, context: Context, node: Node, page: Page) -> Iterator[Active]:
         for link in node.all("link"):
+            self.owner.content.demand(link)
             for grammar in link.all("grammar"):
                 yield self._grammar(context, grammar, link, page, node)
             if link.get("dtmf"):
@@ -156,6 +157,7 @@ class Inputs:
     def _option(
         self, context: Context, option: Node, node: Node, page: Page, dtmf: str
     ) -> Iterator[Active]:
+        self.owner.content.demand(option)
         target = option if option.tag == "choice" else node
         words = words_of(option)
         value: Json = option.get("value") or words or dtmf
@@ -178,6 +180,7 @@ class Inputs:
     def _grammar(
         self, context: Context, node: Node, owner: Node, page: Page, level: Node
     ) -> Active:
+        self.owner.content.demand(node)
         uri = node.get("src")
         if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
             local = self.owner.local()

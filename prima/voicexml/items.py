@@ -161,6 +161,8 @@ class Items:
     def _params(self, context: Context, item: Node) -> dict[str, Json]:
         """What a subdialog is given, by value (6.4)."""
         local = self.owner.local()
+        for param in item.all("param"):
+            self.owner.content.demand(param)
         return {
             param.get("name"): self.owner.content.value(param, "expr", context, local)
             if "expr" in param.attributes

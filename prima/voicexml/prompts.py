@@ -13,6 +13,7 @@ from prima.interpreter.expressions import Scope, ScriptError
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Json
 from prima.values import shown
+from prima.voicexml.check import alternatives
 from prima.voicexml.cues import (
     MAX_CUES,
     MAX_NAME,
@@ -165,6 +166,15 @@ class Speaker:
             self.owner.count_step(node)
         return found
 
+    def demand(self, node: Node) -> None:
+        """See that an element has just one of the attributes that exclude each other.
+
+        Raises:
+            Thrown: ``error.badfetch``, as the element's own section says.
+        """
+        for problem in alternatives(node):
+            raise Thrown("error.badfetch", problem.message, source(node))
+
     # Prompts ------------------------------------------------------------------------
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
@@ -259,10 +269,12 @@ class Speaker:
             case "value":
                 speech.parts.append(self.text(node, context, local))
             case "audio":
+                self.demand(node)
                 self.audio(node, context, local, speech)
             case "sub":
                 speech.parts.append(f" {node.get('alias') or node.text} ")
             case "mark":
+                self.demand(node)
                 self.mark_here(node, context, local, speech)
             case "break":
                 ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
