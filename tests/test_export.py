@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -196,8 +197,52 @@ def read_eaf(data: bytes, folder: Path) -> Eaf:
     return Eaf(str(folder / "t.eaf"))
 
 
+EAF_ATTRIBUTES = {
+    "ANNOTATION_DOCUMENT": "AUTHOR! DATE! FORMAT VERSION! noNamespaceSchemaLocation",
+    "HEADER": "MEDIA_FILE TIME_UNITS",
+    "PROPERTY": "NAME",
+    "TIME_ORDER": "",
+    "TIME_SLOT": "TIME_SLOT_ID! TIME_VALUE",
+    "TIER": "TIER_ID! PARTICIPANT ANNOTATOR LINGUISTIC_TYPE_REF! PARENT_REF LANG_REF",
+    "ANNOTATION": "",
+    "ALIGNABLE_ANNOTATION": "ANNOTATION_ID! TIME_SLOT_REF1! TIME_SLOT_REF2!",
+    "REF_ANNOTATION": "ANNOTATION_ID! ANNOTATION_REF! CVE_REF",
+    "ANNOTATION_VALUE": "",
+    "LINGUISTIC_TYPE": "LINGUISTIC_TYPE_ID! TIME_ALIGNABLE CONSTRAINTS GRAPHIC_REFERENCES"
+    " CONTROLLED_VOCABULARY_REF",
+    "LANGUAGE": "LANG_ID! LANG_LABEL",
+    "CONSTRAINT": "STEREOTYPE! DESCRIPTION",
+    "CONTROLLED_VOCABULARY": "CV_ID!",
+    "DESCRIPTION": "LANG_REF!",
+    "CV_ENTRY_ML": "CVE_ID!",
+    "CVE_VALUE": "LANG_REF!",
+}
+"""The elements of EAF 3.0 that an export may have, with their attributes; ! marks needed ones."""
+
+
+def check_eaf_form(root: Any) -> None:
+    """Hold a document to what the schema of EAF 3.0 asks of the elements used."""
+    for element in root.iter():
+        words = EAF_ATTRIBUTES[element.tag].split()
+        names = {etree.QName(name).localname for name in element.attrib}
+        assert names <= {word.rstrip("!") for word in words}, element.tag
+        assert names >= {word[:-1] for word in words if word.endswith("!")}, element.tag
+        assert not (len(element) and (element.text or "").strip()), element.tag
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", root.get("DATE"))
+    assert root.get("FORMAT") == root.get("VERSION") == "3.0"
+    assert root.find("HEADER").get("TIME_UNITS") == "milliseconds"
+    assert all(len(one) == 1 for one in root.iter("ANNOTATION"))
+    names_of_all = ("TIME_SLOT_ID", "ANNOTATION_ID", "LANG_ID", "STEREOTYPE")
+    ids = [str(value) for name in names_of_all for value in root.xpath(f"//@{name}")]
+    assert len(ids) == len(set(ids))  # one space of names, of XML's kind
+    assert all(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_.-]*", one) for one in ids)
+    kinds = root.xpath("//@TIME_ALIGNABLE | //@GRAPHIC_REFERENCES")
+    assert set(kinds) <= {"true", "false"}
+
+
 def check_eaf(data: bytes, found: Timeline, folder: Path) -> None:
     root: Any = etree.fromstring(data)
+    check_eaf_form(root)
     order = [
         "HEADER",
         "TIME_ORDER",
