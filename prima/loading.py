@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
 from html import escape
 from itertools import islice
 from os.path import normpath
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, urlsplit
 
+from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean, one_of
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document

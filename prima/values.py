@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from datetime import UTC
+
+from prima.deferred import dataclass
 
 Value = str | int | float | bool
 

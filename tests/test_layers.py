@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
-    {"errors"},
+    {"deferred", "errors"},
     {"diagnostics"},
     {"values"},
     {"commands", "prelude"},

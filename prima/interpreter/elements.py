@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+from prima.deferred import dataclass, field
 from prima.interpreter.grammar import Answers, Grammar
 from prima.markup.tree import Node
 from prima.messages import Json

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass, field
 
+from prima.deferred import dataclass, field
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
 from prima.interpreter.expressions import Scope
 from prima.messages import Event, Json, Notice

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass, field
 
+from prima.deferred import dataclass, field
 from prima.errors import Place
 
 MARKUP = re.compile(
