@@ -6,13 +6,11 @@ text and values.
 
 from __future__ import annotations
 
-import hashlib
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from html import escape
 from itertools import islice
 from os.path import normpath
 from pathlib import Path
@@ -333,6 +331,8 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
         DocumentError: with the problems of all files, if any is an error.
         UsageError: two of the applications have one id.
     """
+    from html import escape
+
     demo = documents_folder()
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
     applications = [f'<application src="{escape(path)}" kind="{kind}"/>' for kind, path in given]
@@ -530,6 +530,8 @@ def favourite_problem(policy: str, documents: list[AnyDocument]) -> tuple[str, s
 
 
 def _digest(data: bytes) -> str:
+    import hashlib
+
     return hashlib.sha256(data).hexdigest()
 
 

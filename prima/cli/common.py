@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,6 +12,8 @@ import click
 from prima.errors import UsageError, did_you_mean, one_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from prima.api import Transcript
 
 POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
@@ -137,6 +138,8 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
     Raises:
         UsageError: it is an input, a document, or where a scenario's expected table stands.
     """
+    from pathlib import Path
+
     from prima.testing.finding import is_scenario
     from prima.testing.golden import golden_of
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import fields, is_dataclass
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from prima.commands import TABLE_4_2, CommandType
+from prima.deferred import field_names
 from prima.errors import Place, Problem, Severity, did_you_mean
 from prima.interpreter.elements import (
     Act,
@@ -165,9 +165,9 @@ def document_commands(document: Document) -> Iterator[CommandTemplate]:
 @cache
 def _parts(kind: type) -> tuple[str, ...]:
     """The fields of a value in which expressions may stand; looking them up is slow."""
-    if not is_dataclass(kind) or kind is Node:
+    if kind is Node:
         return ()
-    return tuple(entry.name for entry in fields(kind) if entry.name != "node")
+    return tuple(name for name in field_names(kind) if name != "node")
 
 
 @lru_cache(maxsize=1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from difflib import get_close_matches
 from typing import NamedTuple
 
 from prima.commands import DEVICES
@@ -86,6 +85,8 @@ def beginnings(event: str) -> Iterator[str]:
 
 def near(word: str, known: Iterable[str]) -> str:
     """The known name of which a word is most likely a slip, or nothing."""
+    from difflib import get_close_matches  # takes long to import, and few documents need it
+
     words = sorted(known)
     if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
         return ""

@@ -6,7 +6,6 @@ Matching folds case, width and punctuation (W3C SRGS works on tokens; a person's
 
 from __future__ import annotations
 
-import calendar
 import re
 import unicodedata
 from collections.abc import Callable
@@ -16,7 +15,7 @@ from prima.deferred import dataclass, field
 from prima.messages import Json
 
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
-_BETWEEN_CJK = re.compile(f"(?<=[{CJK}]) +| +(?=[{CJK}])")
+_BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
 _NUMBER = re.compile(r"(\d+(?:[.,:]\d+)+)")
 MAX_STEPS = 100_000
 """How many steps matching one utterance may take."""
@@ -26,10 +25,12 @@ MAX_STEPS = 100_000
 def fold(text: str) -> str:
     """Give text without what speech does not carry: case, width, punctuation, CJK spaces."""
     folded = unicodedata.normalize("NFKC", text).casefold()
-    folded = re.sub(r"['\u2019\u2018`\u00b4]", "", folded)
+    for quote in "'\u2019\u2018`\u00b4":
+        folded = folded.replace(quote, "")
     pieces = _NUMBER.split(folded)  # separators inside numbers and times are kept
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
-    return _BETWEEN_CJK.sub("", " ".join("".join(pieces).split()))
+    said = " ".join("".join(pieces).split())
+    return said if said.isascii() else re.sub(_BETWEEN_CJK, "", said)
 
 
 def _letter(letter: str) -> str:
@@ -123,8 +124,10 @@ def _date(text: str) -> Json:
     match = re.fullmatch(r"\s*(\d{4})[-/年](\d{1,2})[-/月](\d{1,2})日?[.。]?\s*", text)
     if match is None:
         return None
+    from calendar import monthrange  # not needed by most commands
+
     year, month, day = int(match[1]), int(match[2]), int(match[3])
-    if not (year and 1 <= month <= 12 and 1 <= day <= calendar.monthrange(year, month)[1]):
+    if not (year and 1 <= month <= 12 and 1 <= day <= monthrange(year, month)[1]):
         return None
     return f"{match[1]}-{month:02d}-{day:02d}"
 
