@@ -19,8 +19,9 @@ UNITS = {
     "MS": 1,
 }
 """Units of time that are not those of documents, in ms."""
-MEASURE = re.compile(r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*")
-NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*")
+# Compiled when they are used: most documents have no slips.
+MEASURE = r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*"
+NUMBER = r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*"
 TRUTHS = {"yes": "true", "1": "true", "on": "true", "no": "false", "0": "false", "off": "false"}
 LONG = 100
 """Letters of a value beyond which no guess is made."""
@@ -63,12 +64,12 @@ def meant(kind: str, text: str) -> str:
 
 
 def _guess(kind: str, text: str) -> str:
-    if kind == "duration" and (match := MEASURE.fullmatch(text)):
+    if kind == "duration" and (match := re.fullmatch(MEASURE, text)):
         number, unit = match[1].replace(",", "."), match[2]
         if unit in ("", "s", "ms"):
             return f"{number}{unit or 's'}"
         return f"{float(number) * UNITS[unit] / 1000:g}s" if unit in UNITS else ""
-    if kind in ("number", "integer") and (match := NUMBER.fullmatch(text)):
+    if kind in ("number", "integer") and (match := re.fullmatch(NUMBER, text)):
         return match[1].replace(",", ".")
     if kind == "boolean":
         return TRUTHS.get(text.strip().lower(), text.strip().lower())
