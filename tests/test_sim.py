@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from prima import api
+from prima.session import Session
+from prima.sim.rehearsal import Rehearsal
+from prima.sim.robot import Robot
 from prima.sim.scenario import Map, Profile
 from prima.sim.world import World
 
@@ -227,6 +231,79 @@ def test_a_thousand_times_real_time_needs_no_trick() -> None:
         r for r in api.rehearse(path).records if r["phase"] == "end" and r.get("outcome") == "again"
     ]
     assert len(loops) > 50
+
+
+def test_nothing_is_computed_while_nothing_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A robot waits ten hours for a message, sees the user all the time, and watches sensors."""
+    made: Counter[str] = Counter()
+
+    def count(owner: type, name: str) -> None:
+        kept = getattr(owner, name)
+
+        def counted(*given: object) -> object:
+            made[name] += 1
+            return kept(*given)
+
+        monkeypatch.setattr(owner, name, counted)
+
+    for owner, name in (
+        (Rehearsal, "step"), (Rehearsal, "due"), (World, "_step"), (World, "_look"),
+        (World, "clear"), (Robot, "collect"), (Session, "step"), (Session, "deadline"),
+    ):  # fmt: skip
+        count(owner, name)
+    body = """<form id="a"><watch name="warm" when="sensor.temperature &gt; 30"/>
+      <block><speak>I am waiting.</speak></block>
+      <on event="message"><speak>There it is.</speak><exit/></on></form>"""
+    script = """<person x="1.5" y="0"/>
+      <when at="36000s"><message from="Bob">Hello.</message></when>"""
+    transcript = rehearse(tmp_path, body, script, until="80000s")
+    assert when(transcript, "There it is.") == 36000
+    assert transcript.outcome == "over"
+    assert (made["_step"], made["_look"], made["clear"]) == (0, 1, 1)
+    assert made["step"] <= 2 * 5, "both step: start, seen, said, the message, said"
+    assert max(made.values()) <= 10
+
+
+def test_while_a_body_only_moves_on_nothing_is_decided(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    instants, decided = 0, Session.instants
+    advance = World.advance
+
+    def counted(world: World, to: int) -> None:
+        nonlocal instants
+        instants += 1
+        advance(world, to)
+
+    monkeypatch.setattr(World, "advance", counted)
+    body = '<form id="a"><block><turn angle="170"/><turn angle="-170"/><exit/></block></form>'
+    transcript = rehearse(tmp_path, body)
+    assert transcript.outcome == "over"
+    assert instants > 20
+    assert Session.instants - decided <= 3
+
+
+def test_a_world_that_offers_something_to_a_robot_that_is_not_there_comes_to_an_end(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "app.xml").write_text(
+        HEAD.format("ea", "app", "en") + '<form id="a"><block><exit/></block></form></prima>'
+    )
+    (tmp_path / "world.xml").write_text(
+        '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="door" x="0" y="0"/>'
+        '<area id="inside" title="a shop" application="app.xml" x1="4" y1="4" x2="6" y2="6"/>'
+        "</world>"
+    )
+    path = tmp_path / "scenario.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" entrances="open" until="60s"'
+        f' world="world.xml" robot="{ROOT}/documents/robots/papero.xml"/>'
+    )
+    transcript = api.rehearse(path)
+    assert [record["phase"] for record in transcript.records] == ["run", "over"]
+    assert transcript.outcome == "quiet"
 
 
 def test_a_way_is_chosen_that_the_body_fits_through() -> None:

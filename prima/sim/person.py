@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from heapq import heapify, heappop, heappush
 
 from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes
@@ -26,6 +27,9 @@ from prima.sim.world import World, distance
 
 KEYS_THAT_END = "#*"
 """Keys pressed at the end of what is recorded: there is no silence to wait for."""
+
+OVER = ("end", "cancel", "fail")
+"""How a behaviour ends in the records."""
 
 
 @dataclass(slots=True, order=True)
@@ -54,20 +58,31 @@ class Person:
         self.robot = robot
         self.sensors: dict[str, Json] = {}
         self._speed = scenario.person_speed
-        self._whens = scenario.whens
+        self._whens = [
+            (index, when) for index, when in enumerate(scenario.whens) if when.trigger != "at"
+        ]
+        """What the user waits for, with its number in the scenario."""
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._scripts: list[Script] = []
+        """What is still to be done, as a heap: what comes next is first."""
+        self._playing: list[Script] = []
+        """What is being done at this instant, and not in the heap meanwhile."""
         self._serial = 0
+        self._listens = any(when.trigger in ("asked", "said") for _, when in self._whens)
+        """Whether it matters to the user what is said."""
         self._texts: dict[str, str] = {}
+        """What the behaviours that go on have said."""
         self._following: float | None = None
-        for when in self._whens:
+        for when in scenario.whens:
             if when.trigger == "at":
                 self._begin(when.doings, int(when.what) + when.after, False)
 
-    def _begin(self, doings: list[Doing], time: int, triggered: bool) -> None:
+    def _begin(self, doings: list[Doing], time: int, triggered: bool) -> Script:
         self._serial += 1
-        self._scripts.append(Script(time, triggered, self._serial, list(doings)))
+        script = Script(time, triggered, self._serial, list(doings))
+        heappush(self._scripts, script)
+        return script
 
     def play(self, time: int, doings: list[Doing]) -> Callable[[], bool]:
         """Do something at a time (ms) that is still to come, as a ``when`` at that time would.
@@ -75,10 +90,7 @@ class Person:
         Returns:
             what tells whether all of it has been done.
         """
-        self._begin(doings, time, False)
-        script = self._scripts[-1]
-        # As if it had been known from the beginning, so that a scenario can repeat it.
-        self._scripts.sort(key=lambda one: (one.triggered, one.serial))
+        script = self._begin(doings, time, False)
         return lambda: not any(one is script for one in self._scripts)
 
     @property
@@ -92,12 +104,14 @@ class Person:
         """See what has happened, and react to it after a while."""
         for record in records:
             phase = record["phase"]
-            if phase == "start" and record.get("text"):
+            if phase == "start" and self._listens and record.get("text"):
                 self._texts[record["behavior"].partition(".")[0]] = record["text"]
             if phase in ("start", "end", "listening", "event"):
-                for index, when in enumerate(self._whens):
-                    if when.trigger != "at" and self._is(when, phase, record):
+                for index, when in self._whens:
+                    if self._is(when, phase, record):
                         self._trigger(index, when, now)
+            if self._texts and phase in OVER and record.get("outcome") != "again":
+                self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
 
     def _trigger(self, index: int, when: When, now: int) -> None:
         self._seen[index] = self._seen.get(index, 0) + 1
@@ -131,15 +145,19 @@ class Person:
 
     def due(self) -> int | None:
         """When something is to be done next, if ever."""
-        return min((script.time for script in self._scripts), default=None)
+        return self._scripts[0].time if self._scripts else None
 
     def collect(self, now: int) -> list[Inbound]:
         """Everything that happens at ``now`` by the scenario's script."""
         made: list[Inbound] = []
-        for script in sorted(script for script in self._scripts if script.time <= now):
-            made += self._go_on(script, now)
-            if not script.left and not script.speaking:
-                self._scripts.remove(script)
+        if self._scripts and self._scripts[0].time <= now:
+            while self._scripts and self._scripts[0].time <= now:
+                self._playing.append(heappop(self._scripts))
+            for script in self._playing:
+                made += self._go_on(script, now)
+            self._scripts += [one for one in self._playing if one.left or one.speaking]
+            heapify(self._scripts)  # whoever hangs up changes when others go on
+            self._playing.clear()
         if self._following is not None:
             self._follow(self._following)
         return made
@@ -212,7 +230,7 @@ class Person:
     def _hang_up(self, now: int) -> Inbound:
         """Hang up, and say nothing more; what is being recorded is told as far as it goes."""
         data: dict[str, Json] = {}
-        for script in self._scripts:
+        for script in sorted([*self._playing, *self._scripts], key=lambda one: one.serial):
             spoken = min(now - script.began, script.lasts)
             if script.speaking and script.told and spoken:
                 said = _part(self._timeline(script.speaking), spoken)

@@ -118,9 +118,17 @@ class Rehearsal:
         """Applications of PRIMA's own language."""
         self._inside: set[str] = set()
         """Areas that the robot is in."""
+        self._crossed: Point | None = None
+        """Where the robot was when areas were compared with its place last."""
+        self._deadline = self.session.deadline()
+        """When the session has to be stepped even if nothing happens: only a step changes it."""
+        self._ended = self.session.over
+        """Whether every application has ended, likewise."""
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.made = 0
+        self._full = False
+        """Whether the run has made as much as it may."""
         self.now = 0
         """The instant that was carried out last (ms)."""
 
@@ -146,7 +154,7 @@ class Rehearsal:
         due = None if self.outcome else self.due()
         if due is None or due > until:
             return None
-        if self.made > MAX_RECORDS or self.session.written > MAX_WRITTEN:
+        if self._full:
             self.outcome = "limit"
             return None
         return self.step(max(due, self.now))
@@ -165,34 +173,43 @@ class Rehearsal:
     @property
     def over(self) -> bool:
         """Whether every application has ended, and none is still to come."""
-        return self.session.over and not self._loads and not self.person.will_load
+        return self._ended and not self._loads and not self.person.will_load
 
     def step(self, now: int) -> list[Record]:
-        """One instant."""
+        """One instant. Where a body only moved on, nobody is told and nothing is decided."""
         self.now = now
-        world, session = self.world, self.session
-        world.advance(now)
-        inbound: list[Inbound] = []
-        while self._loads and self._loads[0][0] <= now:
-            inbound.append(self._loaded(self._loads.pop(0)[2]))
-        inbound += self._cross()
-        inbound += self.robot.collect(now)
-        said = self.person.collect(now)
-        inbound += [
-            self._loaded(value.app) if isinstance(value, Loaded) else value for value in said
-        ]
-        inbound += self.services.collect(now)
-        inbound += self.telephone.collect(now)
-        if self._watching:
-            inbound += self.robot.sense(self.person.sensors)
+        self.world.advance(now)
+        inbound, said = self._happened(now)
+        if not inbound and (self._deadline is None or now < self._deadline):
+            return []
+        session = self.session
         for order in session.step(now, inbound):
             self._device(order).order(now, order)
+        self._deadline, self._ended = session.deadline(), session.over
         if said:
             self.robot.speech_over(now)
         records = session.drain()
         self.made += len(records)
+        self._full = self.made > MAX_RECORDS or session.written > MAX_WRITTEN
         self.person.observe(now, records)
         return records
+
+    def _happened(self, now: int) -> tuple[list[Inbound], bool]:
+        """All that happens at ``now``, and whether something of it is the person's doing."""
+        inbound: list[Inbound] = []
+        while self._loads and self._loads[0][0] <= now:
+            inbound.append(self._loaded(self._loads.pop(0)[2]))
+        if self.cast.offers:
+            inbound += self._cross()
+        inbound += self.robot.collect(now)
+        said = self.person.collect(now)
+        for value in said:
+            inbound.append(self._loaded(value.app) if isinstance(value, Loaded) else value)
+        inbound += self.services.collect(now)
+        inbound += self.telephone.collect(now)
+        if self._watching:
+            inbound += self.robot.sense(self.person.sensors)
+        return inbound, bool(said)
 
     def _device(self, order: Order) -> Robot | Services | Telephone:
         """Who carries out an order."""
@@ -207,31 +224,37 @@ class Rehearsal:
 
     def _cross(self) -> list[Inbound]:
         """Load what an area offers that the robot has come into, and unload what it has left."""
+        here = self.world.position
+        if here is self._crossed:
+            return []
+        self._crossed = here
         crossed: list[Inbound] = []
         for area, name in self.cast.offers:
             inside = area.id in self._inside
-            if not inside and area.holds(self.world.position):
+            if not inside and area.holds(here):
                 self._inside.add(area.id)
                 crossed.append(self._loaded(name, area.title))
-            elif inside and not area.holds(self.world.position, THRESHOLD):
+            elif inside and not area.holds(here, THRESHOLD):
                 self._inside.discard(area.id)
                 crossed.append(Unloaded(name, area.title))
         return crossed
 
     def due(self) -> int | None:
         """When the next instant is (ms), if ever."""
-        times = [
-            0 if self.cast.offers and not self.made else None,
+        due: int | None = None
+        for time in (
+            0 if self._crossed is None and self.cast.offers else None,
             self._loads[0][0] if self._loads else None,
             self.robot.due(),
             self.person.due(),
             self.services.due(),
             self.telephone.due(),
-            self.session.deadline(),
-        ]
-        if self.world.moving or self._has_controls():
-            times.append(self.world.time + STEP_MS)
-        return min((time for time in times if time is not None), default=None)
+            self._deadline,
+            self.world.time + STEP_MS if self.world.moving or self._has_controls() else None,
+        ):
+            if time is not None and (due is None or time < due):
+                due = time
+        return due
 
     def _has_controls(self) -> bool:
         """Whether a motion has been ordered that has not set the wheels going yet."""

@@ -120,11 +120,17 @@ class Robot:
         self._marks: dict[str, tuple[str, int]] = {}
         """The last mark that each application's speech has passed, and when."""
         self._plans: dict[str, Plan] = {}
+        """Of Commands whose loop has ended at this instant: a later one begins afresh (U2)."""
         self._owners: dict[str, Task] = {}
         self._now = 0
         self._seen = False
         self._unseen_since: int | None = None
         self._sensed: dict[str, Json] = {}
+        """What the sensors have said last."""
+        self._around: tuple[object, ...] = ()
+        """Where robot and person were then, and how the robot was turned and driven."""
+        self._values: dict[str, Json] = {}
+        """What was measured by other sensors then."""
         self._loops: dict[str, Callable[[Task], bool]] = {
             "topological-move": self._drive_path,
             "set-position": self._drive_path,
@@ -207,11 +213,11 @@ class Robot:
         return max(task.said.total - task.skipped, 1)
 
     def _start_loop(self, task: Task, order: Order) -> None:
-        plan = self._plans.get(task.name)
+        plan = self._plans.pop(task.name, None)
         if plan is None or order.loop == 1 or order.resumed:
             if "locomotion" in task.devices:
                 self.world.drive = (0.0, 0.0)
-            plan = self._plans[task.name] = Plan(since=self._now)
+            plan = Plan(since=self._now)
             self._prepare(task, plan)
         task.plan = plan
         loop = self.profile.durations.get(task.command.type, self.profile.loop)
@@ -424,17 +430,24 @@ class Robot:
 
     def due(self) -> int | None:
         """The next instant at which something is to be reported, if one is known."""
-        times = [time for task in self.tasks.values() for time in (task.ends, task.listens) if time]
-        if self._halted:
-            times.append(self._now + 1)
+        due: int | None = None
+        for task in self.tasks.values():
+            for time in (task.ends, task.listens):
+                if time and (due is None or time < due):
+                    due = time
+        soon: int | None = None
         if self._unseen_since is not None:
-            times.append(self._unseen_since + LOST_AFTER_MS)
+            soon = self._unseen_since + LOST_AFTER_MS
         elif self._seen and not self.world.sees_person():
-            times.append(self._now + 1)  # somebody has just gone: begin to miss him
-        return min(times, default=None)
+            soon = self._now + 1  # somebody has just gone: begin to miss him
+        if self._halted:
+            soon = self._now + 1
+        return due if soon is None else soon if due is None else min(due, soon)
 
     def collect(self, now: int) -> list[Inbound]:
         """Everything that the devices report at ``now``."""
+        if now > self._now:
+            self._plans.clear()
         self._now = now
         reports, self._halted = self._halted, []
         # What goes somewhere sets the wheels first; a dance adds to it (X5).
@@ -482,6 +495,7 @@ class Robot:
                 self.world.drive = (0.0, 0.0)
         if not row.feedback:
             return [Ended(task.id, True, data)]
+        self._plans[task.name] = task.plan
         return self._end_loop(task, data)
 
     def _end_loop(self, task: Task, data: dict[str, float]) -> list[Inbound]:
@@ -528,11 +542,9 @@ class Robot:
 
     def _look(self) -> list[Inbound]:
         """V4: the camera comes to see the human, or has lost him."""
-        visible = self.world.sees_person()
-        if visible:
+        if self.world.sees_person():
             self._unseen_since = None
-            sensing = any(t.command.type == "active-sensing-human" for t in self.tasks.values())
-            if not self._seen and not sensing:
+            if not self._seen and not self._is_sensing():
                 self._seen = True
                 return [Occurred("human.found", "robot", self._whereabouts())]
             return []
@@ -545,18 +557,26 @@ class Robot:
             return [Occurred("human.lost", "robot")]
         return []
 
+    def _is_sensing(self) -> bool:
+        return any(task.command.type == "active-sensing-human" for task in self.tasks.values())
+
     def sense(self, values: dict[str, Json]) -> list[Inbound]:
         """What the sensors say, if it has changed: for applications that watch them."""
-        person, pose = self.world.person, self.world.pose()
+        world = self.world
+        around = (world.position, world.heading, world.pan, world.person, world.drive)
+        if around == self._around and values == self._values:
+            return []
+        self._around, self._values = around, dict(values)
+        person, pose = world.person, world.pose()
         now: dict[str, Json] = {
-            "human.visible": self.world.sees_person(),
+            "human.visible": world.sees_person(),
             "human.distance": (
-                None if person is None else round(distance(self.world.position, person), 1)
+                None if person is None else round(distance(world.position, person), 1)
             ),
             "position.x": round(pose["x"], 1),
             "position.y": round(pose["y"], 1),
             "position.heading": round(pose["heading"]) % 360,
-            "moving": self.world.drive != (0.0, 0.0),
+            "moving": world.drive != (0.0, 0.0),
             **values,
         }
         changed = {key: value for key, value in now.items() if self._sensed.get(key, ...) != value}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from heapq import heappop, heappush
 from html import escape
 from urllib.parse import urlsplit
 
@@ -67,19 +68,18 @@ class Services:
 
     def _later(self, now: int, after: int, value: Inbound) -> None:
         self._serial += 1
-        self._pending.append((now + after, self._serial, value))
+        heappush(self._pending, (now + after, self._serial, value))
 
     def due(self) -> int | None:
         """When the next answer arrives, if any is under way."""
-        return min((pending[0] for pending in self._pending), default=None)
+        return self._pending[0][0] if self._pending else None
 
     def collect(self, now: int) -> list[Inbound]:
         """The answers that arrive at ``now``."""
-        arrived = sorted(
-            (pending for pending in self._pending if pending[0] <= now), key=lambda p: p[:2]
-        )
-        self._pending = [pending for pending in self._pending if pending[0] > now]
-        return [value for _, _, value in arrived]
+        arrived: list[Inbound] = []
+        while self._pending and self._pending[0][0] <= now:
+            arrived.append(heappop(self._pending)[2])
+        return arrived
 
 
 def _serial(order: Order) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from prima.messages import Cue
 
@@ -21,6 +22,7 @@ KANJI = 2.0
 """A kanji in Japanese is read as about two kana."""
 
 
+@lru_cache(maxsize=10_000)
 def weight(letter: str, lang: str) -> float:
     """How many of its language's letters a character counts for in speech."""
     category = unicodedata.category(letter)

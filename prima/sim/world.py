@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import pymunk
 
@@ -11,13 +12,15 @@ from prima.sim.scenario import Corner, Map, Point, Profile
 STEP_MS = 50
 """The longest step of physics."""
 WALLS = pymunk.ShapeFilter(mask=0b10)
+FAR = 3.0
+"""How far (m) walls are looked for around the robot."""
+EPSILON = 1e-6
 LOST_AFTER_MS = 1000
 """How long a human must be out of sight before the camera has lost him."""
 
 
-def distance(a: Point, b: Point) -> float:
-    """Metres between two points."""
-    return math.hypot(b[0] - a[0], b[1] - a[1])
+distance: Callable[[Point, Point], float] = math.dist
+"""Metres between two points."""
 
 
 def bearing(a: Point, b: Point) -> float:
@@ -59,6 +62,11 @@ class World:
         self._space.add(self._body, shape)
         self._body.position = at
         self._body.angle = math.radians(heading)
+        self._free: tuple[Point, float] = (at, -1.0)
+        """A place, and how far (m) around it there is no wall."""
+        self._looked: tuple[object, ...] = ()
+        """From where to where the camera has looked last, and how it was turned."""
+        self._visible = False
         self._settle()
         self.drive = (0.0, 0.0)
         """What the wheels are told: metres a second forward, degrees a second to the left."""
@@ -67,12 +75,15 @@ class World:
         self._goal: Point | None = None
         self._walking = 1.0
         self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
+        self._searched = self._at
+        """Where the robot was when it was last looked for corners near to it."""
 
     def _settle(self) -> None:
         """Read where physics has left the body: it moves nowhere else, and reading is slow."""
         place = self._body.position
         self._at: Point = (place.x, place.y)
-        self._heading = math.degrees(self._body.angle) % 360.0
+        self._angle = self._body.angle
+        self._heading = math.degrees(self._angle) % 360.0
 
     # The robot -----------------------------------------------------------------
 
@@ -117,8 +128,17 @@ class World:
         )
 
     def sees_person(self) -> bool:
-        """Whether the person is in the camera's field of view, near enough and not hidden."""
-        person, position = self.person, self.position
+        """Whether the person is in the camera's field of view, near enough and not hidden.
+
+        It is computed anew only where one of them has moved or turned.
+        """
+        looks = (self._at, self._heading, self.pan, self.person)
+        if looks != self._looked:
+            self._looked, self._visible = looks, self._look()
+        return self._visible
+
+    def _look(self) -> bool:
+        person, position = self.person, self._at
         if person is None or distance(position, person) > self.profile.camera_range:
             return False
         off = difference(bearing(position, person), self.heading + self.pan)
@@ -143,27 +163,36 @@ class World:
         forward, turning = self.drive
         if forward or turning:
             body = self._body
-            if self._wall_ahead(forward, seconds):
+            if forward and self._wall_ahead(forward, seconds):
                 forward = 0.0
-            body.velocity = (forward * math.cos(body.angle), forward * math.sin(body.angle))
+            # Each step sets both anew: what a push has left of them counts for nothing.
+            body.velocity = (forward * math.cos(self._angle), forward * math.sin(self._angle))
             body.angular_velocity = math.radians(turning)
             self._space.step(seconds)
-            body.velocity = (0.0, 0.0)
-            body.angular_velocity = 0.0
             self._settle()
         if self._goal is not None and self.person is not None:
             self._step_person(self._goal, seconds)
 
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
         """Whether going on would press the body against a wall."""
-        if not forward:
-            return False
-        angle = self._body.angle if forward > 0 else self._body.angle + math.pi
-        x, y = self.position
         reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
-        ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
         thick = self.profile.radius * 0.7
+        if not self._wall_within(reach + thick):
+            return False
+        angle = self._angle if forward > 0 else self._angle + math.pi
+        x, y = self._at
+        ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
         return self._space.segment_query_first((x, y), ahead, thick, WALLS) is not None
+
+    def _wall_within(self, reach: float) -> bool:
+        """Whether a wall may be as near as that (m): measured only where it may have changed."""
+        at, free = self._free
+        if distance(at, self._at) + reach < free:
+            return False
+        nearest = self._space.point_query_nearest(self._at, FAR, WALLS)
+        free = FAR if nearest is None else nearest.distance
+        self._free = (self._at, free - EPSILON)
+        return reach >= free - EPSILON
 
     def _step_person(self, goal: Point, seconds: float) -> None:
         assert self.person is not None
@@ -177,6 +206,9 @@ class World:
 
     def corners(self) -> list[Corner]:
         """Corners that the robot has come near to since the last time."""
+        if self._at is self._searched:
+            return []
+        self._searched = self._at
         reached = []
         for corner in self.map.corners:
             if not self._near(corner):
