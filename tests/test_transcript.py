@@ -9,9 +9,10 @@ import jsonschema
 import pytest
 
 from prima import api
+from prima.messages import Record
 from prima.sim import voice
 from prima.transcript.diff import compare, format_difference, summary_line
-from prima.transcript.lines import ORDER
+from prima.transcript.lines import ORDER, finished, line
 from prima.transcript.record import FIELDS
 from prima.transcript.table import Row, format_rows, width
 
@@ -55,6 +56,29 @@ def test_a_transcript_reads_back_as_it_was_written(tmp_path: Path) -> None:
     path.write_text(transcript.dumps(), encoding="utf-8")
     assert api.read(path).records == transcript.records
     assert api.read(path).dumps() == transcript.dumps()
+
+
+class Word(str):
+    """A string of a kind that JSON does not know."""
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"list": [1, (2, [3])], "none": None, "yes": True, "nothing": -0.0, "large": 10**20},
+        {1: "one", "deep": {2.5: "x", None: [{True: 1}]}},
+        {"word": Word("a"), "words": [Word("b")], "letters": "é\ud800\u2028"},
+        {},
+    ],
+    ids=["kinds", "keys", "words", "empty"],
+)
+def test_a_kept_record_is_what_its_line_reads_back(data: dict[object, object]) -> None:
+    record: Record = {"data": data, "event": None, "time": 1234, "phase": "event", "actor": "user"}
+    kept = finished(record)
+    read: Record = json.loads(line(record))
+    assert (kept, repr(kept), list(kept)) == (read, repr(read), list(read))
+    assert list(kept) == ["time", "phase", "actor", "data"]
+    assert kept["data"] is not data, "later changes do not reach it"
 
 
 def test_diff_tells_moved_added_lost_changed() -> None:

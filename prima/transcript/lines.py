@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Iterator
 
 from prima.errors import UsageError
-from prima.messages import Record
+from prima.messages import Json, Record
 
 ORDER = [
     "time",
@@ -85,17 +85,46 @@ MAX_LINE = 1_000_000
 """Characters that a line of a transcript may have."""
 
 
+_encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
+_orders: dict[tuple[str, ...], list[str]] = {}
+"""The fields of records in their order, by the order in which a record has come to have them:
+what records something has always the same fields."""
+
+
 def line(record: Record) -> str:
     """A record of a run as a line of JSON; its time goes from ms to seconds."""
-    shown = {name: record[name] for name in ORDER if name in record and record[name] is not None}
-    shown["time"] = record["time"] / 1000
-    return json.dumps(shown, ensure_ascii=False, separators=(",", ":")) + "\n"
+    return _encode(_shown(record)) + "\n"
 
 
 def finished(record: Record) -> Record:
     """A record of a run as it is read back from a line."""
-    made: Record = json.loads(line(record))
-    return made
+    return {name: _read_back(value) for name, value in _shown(record).items()}
+
+
+def _shown(record: Record) -> Record:
+    """A record's fields in order, without those that do not apply; its time in seconds."""
+    fields = tuple(record)
+    names = _orders.get(fields)
+    if names is None:
+        names = _orders[fields] = [name for name in ORDER if name in record]
+    shown = {name: value for name in names if (value := record[name]) is not None}
+    shown["time"] = record["time"] / 1000
+    return shown
+
+
+_SCALARS = frozenset({str, int, float, bool, type(None)})
+
+
+def _read_back(value: Json) -> Json:
+    """A value as JSON gives it back: a copy, of lists and dicts with names as keys."""
+    kind = type(value)
+    if kind in _SCALARS:
+        return value
+    if kind is list or kind is tuple:
+        return [_read_back(one) for one in value]
+    if kind is dict and all(type(key) is str for key in value):
+        return {key: _read_back(one) for key, one in value.items()}
+    return json.loads(_encode(value))
 
 
 def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) -> Iterator[Record]:
