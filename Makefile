@@ -19,6 +19,7 @@ check: $(VENV)/.dev
 	$(BIN)/python -m prima.pictures --check
 
 bench: $(VENV)/.bench
+	$(BIN)/python -m bench.peers
 	$(BIN)/python -m bench.run
 
 schemas: $(VENV)/.dev

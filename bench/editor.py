@@ -83,6 +83,11 @@ async def measure(elements: int) -> list[float]:
     return taken
 
 
+def problems(elements: int) -> float:
+    """Seconds from a change of a document of so many elements to its problems: the median."""
+    return statistics.median(asyncio.run(measure(elements))) / 1000
+
+
 def main() -> None:
     """Measure and print."""
     elements = int(sys.argv[1]) if len(sys.argv) > 1 else 2_000

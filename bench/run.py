@@ -1,239 +1,209 @@
-"""One command that measures everything and writes the table of docs/performance.md.
+"""One command that measures everything and writes the tables of docs/performance.md.
 
-Every figure is taken in a fresh process; the processes of all workloads and
-peers are shuffled together, round after round, and medians are compared.
-``python -m bench.run [--rounds N] [--quick]``.
+``python -m bench.run [--rounds N] [--only WORDS] [--quick]``. Every figure is taken in a fresh
+process. A comparison is measured in pairs: our process and the peer's back to back, in either
+order, and the ratio of each pair counts. The pairs of all rows are shuffled together.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import platform
 import random
-import subprocess
 import sys
-from importlib.metadata import version
-from pathlib import Path
-from statistics import median
-from typing import Any
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from statistics import median, quantiles
+from time import perf_counter
 
-from bench import workloads
+from bench import peers
+from bench.fresh import ROOT, Figure, fresh
+from bench.rows import SECTIONS, Call, Row
 
-ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
-MANY = {"prima": 1_000, "sismic": 1_000, "transitions": 10_000}
-
-JOBS: dict[str, tuple[str, list[Any]]] = {
-    **{
-        f"W1 {system}": ("rate", [system, 2, events])
-        for system, events in (("prima", 20_000), ("sismic", 5_000), ("transitions", 50_000))
-    },
-    **{
-        f"ring {system}": ("rate", [system, 1_000, events])
-        for system, events in (("prima", 20_000), ("sismic", 2_000), ("transitions", 50_000))
-    },
-    **{
-        f"W2 {system}": ("rate", [system, 2, events, True])
-        for system, events in (("prima", 20_000), ("sismic", 5_000), ("transitions", 50_000))
-    },
-    **{
-        f"W3 {states} {system}": ("load", [system, states])
-        for states in (1_000, 10_000)
-        for system in ("prima", "sismic", "transitions")
-        if (system, states) != ("sismic", 10_000)
-    },
-    **{f"voicexml {system}": ("voicexml", [system, 260]) for system in ("prima", "lxml")},
-    **{f"W4 {system}": ("many", [system, count]) for system, count in MANY.items()},
-    **{f"mediator {n}": ("decisions", [n, 4_000 if n < 500 else 400]) for n in (2, 10, 100, 1_000)},
-    "simulation": ("simulate", [5]),
-    **{
-        f"process {what}": ("process", [what])
-        for what in (
-            *("bare", "click", "light", "imports", "help", "validate", "run"),
-            *("sismic", "transitions"),
-        )
-    },
-}
+HEAD = "| what | figure | beside | ratio | target | |\n| --- | --- | --- | --- | --- | --- |"
+VERSIONS = ("transitions", "sismic", "quickjs-ng", "lxml", "pymunk")
+QUICK_SIZE, QUICK_SECONDS = 20, 0.01
 
 
-def measure(name: str, quick: bool) -> Any:
-    """Take one figure in a fresh process."""
-    function, args = JOBS[name]
+@dataclass
+class Measured:
+    """A row's figures, pair by pair."""
+
+    row: Row
+    ours: list[Figure] = field(default_factory=list)
+    peers: list[Figure] = field(default_factory=list)
+
+    @property
+    def results(self) -> list[float]:
+        """What the target is for: the ratio of each pair, or the figures themselves."""
+        if self.row.peer is None:
+            return [figure.value for figure in self.ours]
+        return [a.value / b.value for a, b in zip(self.ours, self.peers, strict=True)]
+
+    def take(self, quick: bool) -> None:
+        """Measure one pair, in either order."""
+        sides = [(self.row.ours, self.ours)]
+        if self.row.peer is not None:
+            sides.append((self.row.peer, self.peers))
+        random.shuffle(sides)
+        for call, figures in sides:
+            figures.append(measure(call, quick))
+
+
+def measure(call: Call, quick: bool = False) -> Figure:
+    """Take a figure; quickly, of a small size, which shows only that the work is done."""
+    args = call.args
     if quick:
-        args = [min(arg, 20) if isinstance(arg, int) and arg > 20 else arg for arg in args]
-    code = (
-        "import json, sys; from bench import workloads; a = json.loads(sys.argv[2]);"
-        "print(json.dumps(getattr(workloads, sys.argv[1])(*a)))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, function, json.dumps(args)],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        check=False,
-    )
-    if done.returncode:
-        raise SystemExit(f"{name}: {done.stderr}")
-    return json.loads(done.stdout)
+        args = tuple(_small(arg) for arg in args)
+    return fresh(call.function, *args)
 
 
-def collect(rounds: int, quick: bool) -> dict[str, list[Any]]:
-    """All figures of all rounds, shuffled together."""
-    order = [name for name in JOBS for _ in range(rounds)]
-    random.Random(1).shuffle(order)
-    found: dict[str, list[Any]] = {name: [] for name in JOBS}
-    for number, name in enumerate(order, 1):
+def _small(arg: object) -> object:
+    if isinstance(arg, float):
+        return min(arg, QUICK_SECONDS)
+    return min(arg, QUICK_SIZE) if type(arg) is int else arg
+
+
+def available(name: str) -> bool:
+    """Whether what a row needs is installed."""
+    if name in peers.PEERS:
+        return peers.installed(name)
+    return not name or find_spec(name) is not None
+
+
+def collect(rows: list[Row], rounds: int, quick: bool) -> dict[Row, Measured]:
+    """All figures of some rows, their pairs shuffled together."""
+    found = {row: Measured(row) for row in rows}
+    order = [row for row in rows for _ in range(1 if quick else row.rounds or rounds)]
+    random.shuffle(order)
+    for number, row in enumerate(order, 1):
         if sys.stderr.isatty():
-            print(f"\r{number}/{len(order)} {name:<24}", end="", file=sys.stderr)
-        found[name].append(measure(name, quick))
+            print(f"\r\x1b[K{number}/{len(order)} {row.what}", end="", file=sys.stderr)
+        found[row].take(quick)
+    if sys.stderr.isatty():
+        print("\r\x1b[K", end="", file=sys.stderr)
     return found
 
 
-class Table:
-    """Rows with medians, spreads and ratios."""
+def line(one: Measured) -> str:
+    """A row of the table."""
+    row, result = one.row, median(one.results)
+    bounds = [("≥", row.least), ("≤", row.most)]
+    target = next((f"{sign} {told(bound, row)}" for sign, bound in bounds if bound is not None), "")
+    met = (row.least is None or result >= row.least) and (row.most is None or result <= row.most)
+    mark = "" if not target else "met" if met else "**not met**"
+    own, beside, ratio = shown(middle(one.ours), row.unit) + noted(one.ours), "", ""
+    if row.peer is None:
+        own += spread(one.results, row)
+    else:
+        beside = f"{row.beside}: {shown(middle(one.peers), row.unit)}{noted(one.peers)}"
+        ratio = told(result, row) + spread(one.results, row)
+    return f"| {row.what} | {own} | {beside} | {ratio} | {target} | {mark} |"
 
-    def __init__(self, found: dict[str, list[Any]]) -> None:
-        self.found = found
-        self.rows: list[str] = []
 
-    def value(self, name: str) -> float:
-        """The median of a figure."""
-        return float(median(one[0] if isinstance(one, list) else one for one in self.found[name]))
+def middle(figures: list[Figure]) -> float:
+    """The median."""
+    return median(figure.value for figure in figures)
 
-    def spread(self, name: str) -> str:
-        """How far the figures lie apart, as a share of the median."""
-        held = [one[0] if isinstance(one, list) else one for one in self.found[name]]
-        return f"±{(max(held) - min(held)) / 2 / median(held):.0%}"
 
-    def row(self, what: str, own: str, ratio: str, target: str, met: bool | None) -> None:
-        """One line: our figure, its ratio to a peer or floor, and the target."""
-        mark = "" if met is None else ("met" if met else "**not met**")
-        self.rows.append(f"| {what} | {own} | {ratio} | {target} | {mark} |")
+def noted(figures: list[Figure]) -> str:
+    """What has to be said of figures, as the first of them says it."""
+    return next((f" ({figure.note})" for figure in figures if figure.note), "")
+
+
+def told(value: float, row: Row) -> str:
+    """A row's result or bound: a ratio, or a figure with its unit."""
+    return number(value) if row.peer is not None else shown(value, row.unit)
+
+
+def spread(results: list[float], row: Row) -> str:
+    """Between what the middle half of the results lies."""
+    if len(results) < 3:
+        return ""
+    low, _, high = quantiles(results, n=4, method="inclusive")
+    return f" ({told(low, row)} to {told(high, row)})"
+
+
+def shown(value: float, unit: str) -> str:
+    """A figure with its unit; seconds in one that fits."""
+    if unit != "s":
+        return f"{number(value)} {unit}"
+    if value >= 1:
+        return f"{number(value)} s"
+    if value >= 1e-3:
+        return f"{number(value * 1e3)} ms"
+    return f"{number(value * 1e6)} µs"
 
 
 def number(value: float) -> str:
-    """A figure as people read it."""
-    return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
-
-
-def table(found: dict[str, list[Any]]) -> str:
-    """The whole table as Markdown."""
-    made = Table(found)
-    for name, what, factor in (("W1", "two states", 4.5), ("W2", "three guards a state", 4.0)):
-        own = made.value(f"{name} prima")
-        peer, slow = made.value(f"{name} transitions"), made.value(f"{name} sismic")
-        made.row(
-            f"{name}: events/s, {what}",
-            f"{number(own)} ({made.spread(f'{name} prima')})",
-            f"{own / peer:.2f} × transitions ({number(peer)}), {own / slow:.1f} × sismic ({number(slow)})",
-            f"≥ {factor:g} × transitions",
-            own >= factor * peer,
-        )
-    ring = made.value("ring prima") / made.value("W1 prima")
-    made.row(
-        "W1: ring of 1,000 states ÷ two states",
-        f"{ring:.2f}",
-        "transitions {:.2f}, sismic {:.2f}".format(
-            made.value("ring transitions") / made.value("W1 transitions"),
-            made.value("ring sismic") / made.value("W1 sismic"),
-        ),
-        "≥ 0.95",
-        ring >= 0.95,
-    )
-    for states in (1_000, 10_000):
-        own, peer = made.value(f"W3 {states} prima"), made.value(f"W3 {states} transitions")
-        slower = f", {own / made.value('W3 1000 sismic'):.2f} × sismic" if states == 1_000 else ""
-        made.row(
-            f"W3: load {states:,} states",
-            f"{own * 1000:.0f} ms ({made.spread(f'W3 {states} prima')})",
-            f"{own / peer:.1f} × transitions ({peer * 1000:.0f} ms){slower}",
-            "≤ 3 × transitions",
-            own <= 3 * peer,
-        )
-    own, peer = made.value("voicexml prima"), made.value("voicexml lxml")
-    made.row(
-        "VoiceXML: a document of 100 KB, to its first question",
-        f"{own * 1000:.1f} ms ({made.spread('voicexml prima')})",
-        f"{own / peer:.1f} × lxml's parse and XSD ({peer * 1000:.1f} ms)",
-        "≤ 10 ×",
-        own <= 10 * peer,
-    )
-    each = {system: made.value(f"W4 {system}") / count for system, count in MANY.items()}
-    memory = median(one[1] for one in found["W4 prima"]) * 10_000 / MANY["prima"]
-    made.row(
-        f"W4: a machine with ten events (PRIMA: {MANY['prima']:,} measured, not 10,000)",
-        f"{each['prima'] * 1000:.2f} ms, {memory:,.0f} MB for 10,000",
-        f"{each['prima'] / each['transitions']:.1f} × transitions,"
-        f" {each['prima'] / each['sismic']:.2f} × sismic",
-        "≤ 0.4 × transitions, ≤ 60 MB",
-        each["prima"] <= 0.4 * each["transitions"] and memory <= 60,
-    )
-    for n in (2, 10, 100, 1_000):
-        own = made.value(f"mediator {n}")
-        made.row(
-            f"Mediator: decisions/s, {n:,} waiting",
-            f"{number(own)} ({made.spread(f'mediator {n}')})",
-            f"{made.value('mediator 2') / own:.1f} × the cost with 2",
-            "",
-            None,
-        )
-    own = made.value("simulation")
-    made.row(
-        "Demo: simulated seconds a second",
-        f"{number(own)} ({made.spread('simulation')})",
-        "real time is 1",
-        "≥ 1,000",
-        own >= 1000,
-    )
-    starts = (
-        ("help", "click", "`prima --help`", "bare Python + click", 1.2),
-        ("validate", "light", "`prima validate`, one file", "bare Python + its imports", 1.3),
-        ("run", "imports", "W5: `prima run` of the demo", "bare Python + its imports", 3.0),
-    )
-    for what, floor, title, beside, most in starts:
-        own, least = made.value(f"process {what}"), made.value(f"process {floor}")
-        more = (
-            "; sismic's smallest {:.0f} ms, transitions' {:.0f} ms".format(
-                made.value("process sismic") * 1000, made.value("process transitions") * 1000
-            )
-            if what == "run"
-            else ""
-        )
-        made.row(
-            title,
-            f"{own * 1000:.0f} ms ({made.spread(f'process {what}')})",
-            f"{own / least:.2f} × {beside} ({least * 1000:.0f} ms){more}",
-            f"≤ {most:g} ×",
-            own <= most * least,
-        )
-    head = "| what | PRIMA | beside | target | |\n| --- | --- | --- | --- | --- |"
-    return "\n".join([head, *made.rows])
+    """A number as people read it: three digits, or all of a whole one."""
+    return f"{value:,.0f}" if abs(value) >= 100 or value == int(value) else f"{value:.3g}"
 
 
 def machine(rounds: int) -> str:
-    """The machine and versions."""
-    libraries = ("sismic", "transitions", "quickjs-ng", "lxml", "pymunk", "networkx")
-    names = ", ".join(f"{library} {version(library)}" for library in libraries)
+    """The machine, the versions, and how it was measured."""
+    names = [f"{name} {version(name)}" for name in VERSIONS if _has(name)]
+    names += [
+        f"{one.title} {peers.version(key)}" for key, one in peers.PEERS.items() if available(key)
+    ]
     return (
         f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores,"
-        f" {platform.python_implementation()} {platform.python_version()}; {names};"
-        f" medians of {rounds} fresh processes each, shuffled together, with half the range."
+        f" {platform.python_implementation()} {platform.python_version()}; {', '.join(names)};"
+        f" medians of {rounds} pairs where nothing else is said, in brackets their middle half."
     )
 
 
-def main() -> None:
-    """Measure, print, and write the page."""
+def _has(name: str) -> bool:
+    try:
+        version(name)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def chosen(only: str) -> dict[str, list[Row]]:
+    """The rows of each section whose section or text holds some words."""
+    words = only.lower()
+    found = {
+        section: [row for row in rows() if words in f"{section} {row.what} {row.beside}".lower()]
+        for section, rows in SECTIONS.items()
+    }
+    return {section: rows for section, rows in found.items() if rows}
+
+
+def tables(sections: dict[str, list[Row]], rounds: int, quick: bool) -> str:
+    """Everything measured, as Markdown."""
+    able = [row for rows in sections.values() for row in rows if available(row.needs)]
+    found = collect(able, rounds, quick)
+    parts = []
+    for section, rows in sections.items():
+        lines = [line(found[row]) for row in rows if row in found]
+        if lines:
+            parts.append("\n".join([f"### {section}\n", HEAD, *lines]))
+    wanted = {row.needs for rows in sections.values() for row in rows}
+    missing = sorted(name for name in wanted if not available(name))
+    if missing:
+        parts.append(f"Left out, because it is not installed here: {', '.join(missing)}.")
+    return "\n\n".join(parts)
+
+
+def main(given: list[str] | None = None) -> None:
+    """Measure, print, and write the page if all was measured."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=5, help="pairs of each row (default 5)")
+    parser.add_argument("--only", default="", help="rows that hold these words; writes nothing")
     parser.add_argument("--quick", action="store_true", help="tiny sizes; writes nothing")
-    given = parser.parse_args()
-    found = collect(1 if given.quick else given.rounds, given.quick)
-    text = f"{machine(given.rounds)}\n\n{table(found)}"
-    print(text)
-    if not given.quick:
+    options = parser.parse_args(given)
+    began = perf_counter()
+    measured = tables(chosen(options.only), options.rounds, options.quick)
+    minutes = (perf_counter() - began) / 60
+    text = f"{machine(options.rounds)} All of it took {minutes:.1f} minutes.\n\n{measured}"
+    print("Tiny sizes: the work is done, the figures say nothing.\n" if options.quick else "", text)
+    if not options.quick and not options.only:
         page = PAGE.read_text(encoding="utf-8")
         before, _, rest = page.partition(BEGIN)
         after = rest.partition(END)[2]
@@ -241,5 +211,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    assert workloads
     main()

@@ -1,32 +1,37 @@
-"""Each workload does its work, checks the result, and gives one figure.
+"""Machines and documents: each workload does its work, checks it, and gives one figure.
 
-Figures are events, decisions or simulated seconds a second (``rate``), or
-seconds (``time``).
+Figures are events a second (``rate``), seconds, megabytes, or plain numbers.
 """
 
 from __future__ import annotations
 
 import gc
+import math
+import os
+import random
 import resource
-import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
-from statistics import median
+from statistics import linear_regression, median
 from time import perf_counter
 
+from bench import peers
+from bench.fresh import check, fresh, note
 from bench.machines import Prima, Sismic, Transitions, prima_text, sismic_text
 
 Machine = Prima | Sismic | Transitions
-ROOT = Path(__file__).parent.parent
-DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
+BATCH = 200
+"""Events between two looks at the clock."""
+MOST_EVENTS = 100_000
+"""Events of one measurement: the trace of all of them is kept."""
+MOST_TICKS = 1_000
+"""Events that show that a loaded machine works: once round, if it is not too far."""
 
 
 def build(system: str, states: int, guards: bool = False) -> Callable[[], Machine]:
-    """How to make a system's machine from its text or data."""
+    """How to make a system's machine from its text or data; a text is one that nobody has read."""
     if system == "prima":
-        text = prima_text(states, guards)
+        text = f"<!-- {os.urandom(8).hex()} -->{prima_text(states, guards)}"
         return lambda: Prima(text)
     if system == "sismic":
         chart = sismic_text(states, guards)
@@ -34,76 +39,148 @@ def build(system: str, states: int, guards: bool = False) -> Callable[[], Machin
     return lambda: Transitions(states, guards)
 
 
-def rate(system: str, states: int, events: int, guards: bool = False) -> float:
-    """W1, W2: events a second."""
+def rate(system: str, states: int, seconds: float, guards: bool = False) -> float:
+    """W1, W2: events a second, of as many as come in that time."""
+    if system in peers.PEERS:
+        return peers.rate(system, states, seconds, guards)
     machine = build(system, states, guards)()
-    machine.tick(max(events // 20, 1))
+    machine.tick(BATCH)
+    events, lasted = 0, 0.0
     began = perf_counter()
-    machine.tick(events)
-    lasted = perf_counter() - began
-    assert machine.count() == events + max(events // 20, 1), "events are missing"
+    while lasted < seconds and events < MOST_EVENTS:
+        machine.tick(BATCH)
+        events += BATCH
+        lasted = perf_counter() - began
+    check(machine.count() == BATCH + events, f"{system}: events are missing")
     return events / lasted
 
 
+# Load -------------------------------------------------------------------------
+
+
 def load(system: str, states: int) -> float:
-    """W3: seconds from text to a started machine, which must then work."""
-    make = build(system, states)
-    began = perf_counter()
-    machine = make()
-    lasted = perf_counter() - began
-    machine.tick(3)
-    assert machine.count() == 3
-    return lasted
+    """W3: seconds from text to a started machine, which must then work; imports are done before.
+
+    The median of several for a small one.
+    """
+    build(system, 2)()
+    ticks = min(states, MOST_TICKS) + 3
+    taken = []
+    for _ in range(max(2_000 // states, 1)):
+        make = build(system, states)
+        gc.collect()
+        began = perf_counter()
+        machine = make()
+        taken.append(perf_counter() - began)
+        machine.tick(ticks)
+        check(machine.count() == ticks, f"{system}: events are missing")
+    if system == "prima":
+        refuses_what_is_wrong()
+    return median(taken)
 
 
-def many(system: str, machines: int) -> tuple[float, float]:
-    """W4: seconds for machines with ten events each, and MB that they take."""
+def refuses_what_is_wrong() -> None:
+    """Whether PRIMA checks what it loads, and knows where everything stands.
+
+    Raises:
+        WrongAnswer: it does not.
+    """
+    from prima.interpreter.reader import read_document
+
+    text = prima_text(20).replace("><form", ">\n  <form")
+    wrong = text.replace('next="#s0"', 'nxet="#s0"')
+    where = wrong.splitlines().index(next(x for x in wrong.splitlines() if "nxet" in x))
+    column = wrong.splitlines()[where].index("nxet")
+    found = [one.place for one in read_document("ring.xml", wrong.encode())[1]]
+    check(
+        any((place.line, place.column) == (where + 1, column + 1) for place in found),
+        f"an unknown attribute at {where + 1}:{column + 1} is told at {found}",
+    )
+
+
+def growth(largest: int) -> float:
+    """How load grows with the number of states: the exponent, over sizes up to the largest."""
+    sizes = sorted({max(largest // part, 1) for part in (200, 20, 4, 1)})
+    taken = {size: fresh(load, "prima", size).value for size in random.sample(sizes, len(sizes))}
+    logs = [math.log(size) for size in sizes], [math.log(taken[size]) for size in sizes]
+    return linear_regression(*logs).slope
+
+
+def second_load(states: int) -> float:
+    """What reading the same bytes again costs, as a share of the first time."""
+    from prima.interpreter.reader import read_document
+
+    build("prima", 2)()
+    text = f"<!-- {os.urandom(8).hex()} -->{prima_text(states)}"
+    taken = []
+    for _ in range(2):
+        data = text.encode()  # equal bytes, but not the same ones
+        gc.collect()
+        began = perf_counter()
+        document, problems = read_document("ring.xml", data)
+        taken.append(perf_counter() - began)
+        check(not problems and document.id == "ring", "it is not read")
+    one, other = Prima(text), Prima(text)
+    one.tick(3)
+    other.tick(2)
+    check((one.count(), other.count()) == (3, 2), "what is loaded twice shares its state")
+    other_text = text.replace('expr="n + 1"', 'expr="n + 2"', states)
+    third = Prima(other_text)
+    third.tick(3)
+    check(third.count() == 6, "other bytes are taken for the same ones")
+    return taken[1] / taken[0]
+
+
+# Many -------------------------------------------------------------------------
+
+
+def memory() -> float:
+    """Megabytes that this process has in memory now (where that is not told: at most)."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as stream:
+            return int(stream.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+    except OSError:
+        unit = 1 if sys.platform == "darwin" else 1024
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
+
+
+def _many(system: str, machines: int, seconds: float) -> tuple[float, float]:
+    """Seconds and megabytes for machines that live at once, with ten events each.
+
+    What is not ready in that time is reckoned from what is.
+    """
     make = build(system, 2)
+    make().tick(1)
     gc.collect()
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    before = memory()
+    made: list[Machine] = []
     began = perf_counter()
-    made = [make() for _ in range(machines)]
-    for machine in made:
-        machine.tick(10)
+    while len(made) < machines and perf_counter() - began < seconds:
+        made.append(make())
+        made[-1].tick(10)
     lasted = perf_counter() - began
-    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    assert all(machine.count() == 10 for machine in made)
-    return lasted, (after - before) / 1024
+    more = memory() - before
+    check(all(machine.count() == 10 for machine in made), f"{system}: events are missing")
+    if len(made) < machines:
+        note(f"{len(made):,} measured")
+    return lasted * machines / len(made), more * machines / len(made)
 
 
-def decisions(waiting: int, ends: int) -> float:
-    """Mediator: decisions a second while that many ABs of as many applications wait."""
-    from prima.commands import TABLE_4_2
-    from prima.messages import Command, Request, Step
-    from prima.scheduler.chronicle import Chronicle
-    from prima.scheduler.mediator import Mediator
-    from prima.scheduler.selection import policy_named
+def many(system: str, machines: int, seconds: float) -> float:
+    """W4: seconds for machines with ten events each."""
+    return _many(system, machines, seconds)[0]
 
-    chronicle = Chronicle()
-    mediator = Mediator(policy_named("prima"), TABLE_4_2, chronicle)
-    for index in range(waiting + 1):
-        mediator.load(f"a{index}", "ea")
-        mediator.request(f"a{index}", Request(1, [Step(Command("speak", {}, "Hello."))], 1))
-    mediator.select()
-    chronicle.drain()
-    made = 0
-    began = perf_counter()
-    for turn in range(ends):
-        chronicle.now += 1
-        running = next(iter(mediator.memory.running.values()))
-        mediator.ended(running.id, True, {})
-        mediator.told.clear()
-        again = Request(turn + 2, [Step(Command("speak", {}, "Hello."))], 1)
-        mediator.request(running.app.name, again)
-        mediator.select()
-        made += sum(record["phase"] == "decision" for record in chronicle.drain())
-    lasted = perf_counter() - began
-    assert made == ends, "decisions are missing"
-    return made / lasted
+
+def many_memory(system: str, machines: int, seconds: float) -> float:
+    """W4: megabytes for machines with ten events each."""
+    return _many(system, machines, seconds)[1]
+
+
+# VoiceXML ---------------------------------------------------------------------
 
 
 def voicexml_text(dialogs: int) -> bytes:
-    """A VoiceXML document of forms with fields, options, handlers and conditions."""
+    """A VoiceXML document that nobody has read: forms with fields, handlers and conditions."""
     forms = "".join(
         f"""<form id="f{i}"><field name="a{i}"><prompt timeout="4s">Question {i} of
 <value expr="count"/>: what is it?</prompt><option value="one">the first</option>
@@ -113,27 +190,28 @@ def voicexml_text(dialogs: int) -> bytes:
         for i in range(dialogs)
     )
     head = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">'
-    return f'{head}<var name="count" expr="0"/>{forms}</vxml>'.encode()
+    unread = f"<!-- {os.urandom(8).hex()} -->"
+    return f'{unread}{head}<var name="count" expr="0"/>{forms}</vxml>'.encode()
 
 
 def voicexml(system: str, dialogs: int) -> float:
     """Seconds from a VoiceXML document's bytes to its first question; ``lxml`` parses and validates.
 
-    The document is loaded once before: imports and the schema's own compilation do not count.
+    Another one is loaded before: imports and the schema's own compilation do not count.
     """
-    data = voicexml_text(dialogs)
-    once = _lxml(data) if system == "lxml" else _prima_voice(data)
-    once()
+    once = _lxml() if system == "lxml" else _prima_voice
+    once(voicexml_text(dialogs))
     taken = []
     for _ in range(7):
+        data = voicexml_text(dialogs)
         gc.collect()
         began = perf_counter()
-        once()
+        once(data)
         taken.append(perf_counter() - began)
     return median(taken)
 
 
-def _lxml(data: bytes) -> Callable[[], None]:
+def _lxml() -> Callable[[bytes], None]:
     """Parse, and validate by an XML Schema of VoiceXML's elements and attributes."""
     from dataclasses import replace
 
@@ -153,81 +231,25 @@ def _lxml(data: bytes) -> Callable[[], None]:
             loose = "" if "xs:import" in line else '<xs:anyAttribute processContents="skip"/>'
             text = text.replace(line, loose)
     schema = etree.XMLSchema(etree.fromstring(text.encode()))
-    wrong = etree.fromstring(data.replace(b"<exit/>", b"<exti/>", 1))
-    assert not schema.validate(wrong), "the schema checks nothing"
+    wrong = etree.fromstring(voicexml_text(1).replace(b"<exit/>", b"<exti/>", 1))
+    check(not schema.validate(wrong), "the schema checks nothing")
 
-    def once() -> None:
-        assert schema.validate(etree.fromstring(data)), schema.error_log
+    def once(data: bytes) -> None:
+        check(schema.validate(etree.fromstring(data)), str(schema.error_log))
 
     return once
 
 
-def _prima_voice(data: bytes) -> Callable[[], None]:
+def _prima_voice(data: bytes) -> None:
     from prima.commands import TABLE_4_2
     from prima.loading import read_application
     from prima.messages import Loaded
     from prima.scheduler.selection import policy_named
     from prima.session import Session
 
-    def once() -> None:
-        document, problems = read_application("bench.vxml", data)
-        assert not problems, problems[0]
-        session = Session([document], policy_named("prima"), TABLE_4_2)
-        session.step(0, [Loaded(document.id)])
-        (asked,) = session.mediator.memory.running.values()
-        assert asked.command and asked.command.text == "Question 0 of 0: what is it?"
-
-    return once
-
-
-def simulate(runs: int) -> float:
-    """Simulated seconds a second of the demo, in one process, physics on."""
-    from prima import api
-
-    loaded = api.load_scenario(DEMO)
-    simulated = 0.0
-    api.rehearse(loaded, keep=False)
-    began = perf_counter()
-    for _ in range(runs):
-        transcript = api.rehearse(loaded, keep=False)
-        simulated += transcript.summary().seconds
-    lasted = perf_counter() - began
-    assert simulated > runs * 60, "the demo was cut short"
-    return simulated / lasted
-
-
-IMPORTS = "import click, lxml.etree, pydantic, pymunk, networkx, _quickjs"
-LIGHT = "import click, lxml.etree, _quickjs"
-TINY_SISMIC = (
-    "from bench.machines import Sismic, sismic_text\n"
-    "m = Sismic(sismic_text(2)); m.tick(1); assert m.count() == 1"
-)
-TINY_TRANSITIONS = (
-    "from bench.machines import Transitions\nm = Transitions(2); m.tick(1); assert m.count() == 1"
-)
-
-
-def process(what: str) -> float:
-    """W5 and start: seconds of a whole process, which must end well."""
-    python = sys.executable
-    with tempfile.TemporaryDirectory() as folder:
-        pair = [python, "-m", "prima", "run", str(DEMO), "-o", f"{folder}/t.jsonl"]
-        commands = {
-            "bare": [python, "-c", "pass"],
-            "click": [python, "-c", "import click"],
-            "light": [python, "-c", LIGHT],
-            "imports": [python, "-c", IMPORTS],
-            "help": [python, "-m", "prima", "--help"],
-            "validate": [python, "-m", "prima", "validate", str(ROOT / "documents/fa/follow.xml")],
-            "run": pair,
-            "sismic": [python, "-c", TINY_SISMIC],
-            "transitions": [python, "-c", TINY_TRANSITIONS],
-        }
-        began = perf_counter()
-        done = subprocess.run(commands[what], capture_output=True, cwd=ROOT, check=True)
-        lasted = perf_counter() - began
-        if what == "help":
-            assert b"validate" in done.stdout
-        if what == "run":
-            assert (Path(folder) / "t.jsonl").stat().st_size > 10_000
-        return lasted
+    document, problems = read_application("bench.vxml", data)
+    check(not problems, str(problems[:1]))
+    session = Session([document], policy_named("prima"), TABLE_4_2)
+    (order,) = session.step(0, [Loaded(document.id)])
+    asked = order.command.text if order.command else None
+    check(asked == "Question 0 of 0: what is it?", f"the first question is {asked!r}")

@@ -1,0 +1,93 @@
+"""The mediator alone: the end of what runs, and the choice among all that waits."""
+
+from __future__ import annotations
+
+import random
+from time import perf_counter
+
+from bench.fresh import check
+
+CHAIN = 4
+"""Commands that an application asks for at a time, each as a tree of its own."""
+MOST = 100_000
+"""Decisions of one measurement."""
+
+
+def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
+    """Decisions a second while one AB of each of so many applications waits.
+
+    One more application's AB runs. Each decision is the end of what runs, told to the mediator,
+    and a selection with its records and orders. All Commands are requested before; the clock
+    stands still while an application whose Commands have all been done asks for new ones.
+    """
+    from prima.commands import TABLE_4_2
+    from prima.messages import Command, Request, Step
+    from prima.scheduler.chronicle import Chronicle
+    from prima.scheduler.mediator import Mediator
+    from prima.scheduler.selection import policy_named
+
+    chronicle = Chronicle()
+    mediator = Mediator(policy_named(policy), TABLE_4_2, chronicle)
+    asked = 0
+
+    def ask(app: int) -> None:
+        nonlocal asked
+        for _ in range(CHAIN):
+            asked += 1
+            step = Step(Command("speak", {}, "Hello."))
+            mediator.request(f"a{app}", Request(asked, [step], 1))
+
+    times = request_times(waiting + 1)
+    for app in range(waiting + 1):
+        mediator.load(f"a{app}", "ea")
+    for app in sorted(times, key=lambda app: times[app]):
+        chronicle.now = times[app]
+        ask(app)
+        chronicle.drain()
+    chronicle.now += 1
+    mediator.select()
+    chronicle.drain()
+    (order,) = mediator.drain_orders()
+    turns: list[int] = []
+    lasted = 0.0
+    while lasted < seconds and CHAIN * len(turns) < MOST:
+        drained = []
+        began = perf_counter()
+        for _ in range(CHAIN):
+            chronicle.now += 1
+            mediator.ended(order.behavior, True, {})
+            mediator.told.clear()
+            mediator.select()
+            (order,) = mediator.drain_orders()
+            drained.append(chronicle.drain())
+        lasted += perf_counter() - began
+        winners = [
+            record["app"]
+            for records in drained
+            for record in records
+            if record["phase"] == "decision"
+        ]
+        check(len(winners) == CHAIN, f"{len(winners)} decisions are recorded")
+        check(len(set(winners[:-1])) == 1, "an application's next Command does not go on (S2c)")
+        turns.append(int(winners[0][1:]))
+        ask(turns[-1])
+        chronicle.drain()
+    check(turns == expected_turns(times, len(turns)), "another application had its turn (S2e, S2f)")
+    return CHAIN * len(turns) / lasted
+
+
+def cost(waiting: int, seconds: float) -> float:
+    """Seconds for a decision."""
+    return 1 / decisions(waiting, seconds)
+
+
+def request_times(apps: int) -> dict[int, int]:
+    """When (ms) each application asks at first: three at an instant, not in declared order."""
+    shuffled = random.Random(apps).sample(range(apps), apps)
+    return {app: index // 3 for index, app in enumerate(shuffled)}
+
+
+def expected_turns(times: dict[int, int], turns: int) -> list[int]:
+    """Whose turn it has to be: by time of request, then in declared order; then round and round."""
+    order = sorted(times, key=lambda app: (times[app], app))
+    return [order[turn % len(order)] for turn in range(turns)]

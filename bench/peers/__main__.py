@@ -1,0 +1,5 @@
+"""Install the peers: ``python -m bench.peers``."""
+
+from bench.peers import main
+
+main()

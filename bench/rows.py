@@ -1,0 +1,282 @@
+"""The rows of the table, as data: what is measured, beside what, and what it has to reach."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from bench import mediation, peers, processes, simulation, workloads
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function that gives one figure, to be called in a fresh process."""
+
+    function: Callable[..., float]
+    args: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True)
+class Row:
+    """One comparison, or one figure that is compared with nothing."""
+
+    what: str
+    unit: str
+    """What our figure is: see :func:`bench.run.shown`."""
+    ours: Call
+    beside: str = ""
+    peer: Call | None = None
+    least: float | None = None
+    """What our figure, divided by the peer's if there is one, has to be at least."""
+    most: float | None = None
+    rounds: int | None = None
+    """How often it is measured, where that is not left to the command."""
+    needs: str = ""
+    """What else has to be installed: a Python package, or a peer of :mod:`bench.peers`."""
+
+
+SECONDS = 0.7
+"""How long events are counted."""
+MANY_SECONDS = 6.0
+"""After how long no more machines are made."""
+TITLES = {
+    "transitions": "transitions",
+    "sismic": "sismic",
+    "xstate": "XState",
+    "scxml": "Commons SCXML",
+}
+
+
+def events() -> list[Row]:
+    """Events a second beside each peer's."""
+    rows = []
+    for guards, what, least in ((False, "two states", 4.5), (True, "three guards a state", 4.0)):
+        bounds = {"transitions": least, "xstate": 1.0, "scxml": 1.0}
+        for system, title in TITLES.items():
+            rows.append(
+                Row(
+                    f"W{1 + guards}: {what}",
+                    "events/s",
+                    Call(workloads.rate, ("prima", 2, SECONDS, guards)),
+                    title,
+                    Call(workloads.rate, (system, 2, SECONDS, guards)),
+                    least=bounds.get(system),
+                    rounds=3 if system in peers.PEERS else None,
+                    needs=system,
+                )
+            )
+    for system, title in {"prima": "PRIMA", **TITLES}.items():
+        ours = system == "prima"
+        rows.append(
+            Row(
+                "W1: ring of 1,000 states" + ("" if ours else f", {title}"),
+                "events/s",
+                Call(workloads.rate, (system, 1_000, SECONDS)),
+                "its two states",
+                Call(workloads.rate, (system, 2, SECONDS)),
+                least=0.95 if ours else None,
+                rounds=None if ours else 1,
+                needs=system,
+            )
+        )
+    return rows
+
+
+def loads() -> list[Row]:
+    """From text to a started machine."""
+    rows = [
+        Row(
+            f"W3: load {states:,} states",
+            "s",
+            Call(workloads.load, ("prima", states)),
+            "transitions",
+            Call(workloads.load, ("transitions", states)),
+            most=3,
+            needs="transitions",
+        )
+        for states in (1_000, 10_000)
+    ]
+    return [
+        *rows,
+        Row(
+            "W3: load 1,000 states",
+            "s",
+            Call(workloads.load, ("prima", 1_000)),
+            "sismic",
+            Call(workloads.load, ("sismic", 1_000)),
+            rounds=1,
+            needs="sismic",
+        ),
+        Row(
+            "Growth of load, 100 to 20,000 states",
+            "exponent",
+            Call(workloads.growth, (20_000,)),
+            most=1.05,
+            rounds=3,
+        ),
+        Row(
+            "A second load of the same bytes, 2,000 states",
+            "of the first",
+            Call(workloads.second_load, (2_000,)),
+            most=0.05,
+        ),
+        Row(
+            "VoiceXML: 100 KB, to its first question",
+            "s",
+            Call(workloads.voicexml, ("prima", 260)),
+            "lxml's parse and XSD",
+            Call(workloads.voicexml, ("lxml", 260)),
+            most=10,
+            needs="lxml",
+        ),
+    ]
+
+
+def many() -> list[Row]:
+    """Applications that live at once."""
+    given = (10_000, MANY_SECONDS)
+    return [
+        Row(
+            "W4: 10,000 machines, ten events each",
+            "s",
+            Call(workloads.many, ("prima", *given)),
+            title,
+            Call(workloads.many, (system, *given)),
+            most=0.4 if system == "transitions" else None,
+            rounds=3 if system == "transitions" else 1,
+            needs=system,
+        )
+        for system, title in (("transitions", "transitions"), ("sismic", "sismic"))
+    ] + [
+        Row(
+            "W4: memory of 10,000 machines",
+            "MB",
+            Call(workloads.many_memory, ("prima", *given)),
+            most=60,
+            rounds=1,
+        ),
+    ]
+
+
+def mediator() -> list[Row]:
+    """Decisions while so many wait."""
+    rows = [
+        Row(
+            "Decisions, 10 waiting",
+            "decisions/s",
+            Call(mediation.decisions, (10, SECONDS)),
+            least=200_000,
+        )
+    ]
+    return rows + [
+        Row(
+            f"A decision, {waiting:,} waiting",
+            "s",
+            Call(mediation.cost, (waiting, SECONDS)),
+            "10 waiting",
+            Call(mediation.cost, (10, SECONDS)),
+            most=round(math.log(waiting) / math.log(10), 2),
+        )
+        for waiting in (100, 1_000, 10_000)
+    ]
+
+
+def simulated() -> list[Row]:
+    """The simulated robot."""
+    return [
+        *(
+            Row(
+                f"Situation {number} of the study",
+                "× real time",
+                Call(simulation.situation, (number, SECONDS)),
+                least=2_000,
+                rounds=3,
+            )
+            for number in range(1, 11)
+        ),
+        Row(
+            "Memory, from hour 10 to hour 100, twenty visits an hour",
+            "MB more",
+            Call(simulation.visits_memory, (100, 20)),
+            most=1,
+            rounds=1,
+        ),
+        Row(
+            "Instants computed in 100 quiet hours",
+            "instants",
+            Call(simulation.quiet, (100,)),
+            most=0,
+            rounds=1,
+        ),
+    ]
+
+
+def starts() -> list[Row]:
+    """Whole processes."""
+    run = Call(processes.run)
+    return [
+        Row(
+            "`prima --help`",
+            "s",
+            Call(processes.help_),
+            "Python + click",
+            Call(processes.floor, ("click",)),
+            most=1.2,
+        ),
+        Row(
+            "`prima validate`, one file",
+            "s",
+            Call(processes.validate),
+            "Python + its imports",
+            Call(processes.floor, ("validate",)),
+            most=1.3,
+        ),
+        Row(
+            "W5: `prima run` of the demo",
+            "s",
+            run,
+            "Python + its imports",
+            Call(processes.floor, ("run",)),
+            most=3,
+        ),
+        *(
+            Row(
+                "W5: `prima run` of the demo",
+                "s",
+                run,
+                f"{system}, two states",
+                Call(processes.peer, (system,)),
+                needs=system,
+            )
+            for system in ("transitions", "sismic")
+        ),
+    ]
+
+
+def editor() -> list[Row]:
+    """The language server."""
+    from bench import editor as lsp
+
+    return [
+        Row(
+            "From a change to its problems, 2,000 elements",
+            "s",
+            Call(lsp.problems, (2_000,)),
+            most=0.05,
+            rounds=1,
+            needs="pygls",
+        )
+    ]
+
+
+SECTIONS: dict[str, Callable[[], list[Row]]] = {
+    "Events": events,
+    "Load": loads,
+    "Many": many,
+    "Mediator": mediator,
+    "Simulation": simulated,
+    "Start": starts,
+    "Editor": editor,
+}

@@ -1,0 +1,136 @@
+"""The simulated robot: how fast time passes, and what a long day costs."""
+
+from __future__ import annotations
+
+import gc
+import os
+import tempfile
+from collections import Counter
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from bench.fresh import check
+from bench.workloads import memory
+
+if TYPE_CHECKING:
+    from prima.messages import Record
+    from prima.sim.rehearsal import Rehearsal
+
+HOUR = 3_600_000
+VISIT = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visits"
+    world="{documents}/worlds/room.xml" robot="{documents}/robots/papero.xml">
+  <robot at="middle"/>
+  <person x="4.6" y="0" speed="2"/>
+  <application src="{documents}/fa/emotions.xml"/>
+  <when at="1s">
+    <walk x="1" y="0"/><touch sensor="head"/><wait for="5s"/><walk x="4.6" y="0"/>
+  </when>
+</scenario>"""
+
+
+def situation(number: int, seconds: float) -> float:
+    """Simulated seconds a second of one of the ten situations, physics on, until time is up.
+
+    It has to go as its author expects: see the table beside it. Records are made and dropped.
+    """
+    from prima import api
+    from prima.study import situations
+    from prima.transcript.table import read_table
+
+    path = situations()[number - 1]
+    loaded = api.load_scenario(path)
+    first = api.rehearse(loaded)
+    expected = read_table(path.with_suffix(".txt").read_text(encoding="utf-8"))
+    said = Counter(row.what for row in first.rows() if row.actor == "R")
+    missing = Counter(row.what for row in expected if row.actor == "R") - said
+    check(not missing and not first.failures, f"{path.stem}: {missing} {first.failures}")
+    simulated = first.summary().seconds
+    runs, lasted = 0, 0.0
+    began = perf_counter()
+    while lasted < seconds:
+        again = api.rehearse(loaded, keep=False)
+        runs += 1
+        lasted = perf_counter() - began
+    check(again.summary() == first.summary(), f"{path.stem}: another run is another one")
+    return runs * simulated / lasted
+
+
+class Long:
+    """A robot whose user comes, touches it, and goes away, again and again."""
+
+    def __init__(self) -> None:
+        from prima import api
+        from prima.scheduler.selection import policy_named
+        from prima.sim.rehearsal import Rehearsal
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "visits.xml")
+            path.write_text(VISIT.format(documents=api.documents_folder().resolve()))
+            cast = api.load_scenario(path).cast
+        (visit,) = cast.scenario.whens
+        self.visit = visit.doings
+        cast.scenario.whens.clear()
+        self.rehearsal: Rehearsal = Rehearsal(cast, policy_named("prima"))
+        self.seen: Counter[str] = Counter()
+
+    def until(self, time: int) -> int:
+        """Let time pass; gives how many instants were computed."""
+        from prima.transcript.lines import line
+
+        instants = 0
+        with open(os.devnull, "w", encoding="utf-8") as nowhere:
+            while (records := self.rehearsal.advance(time)) is not None:
+                instants += 1
+                for record in records:
+                    nowhere.write(line(record))
+                    self.seen[told(record)] += 1
+        check(not self.rehearsal.outcome, f"the run has ended: {self.rehearsal.outcome}")
+        return instants
+
+    def come(self, time: int) -> None:
+        """The user comes at that time."""
+        self.rehearsal.person.play(time, self.visit)
+
+    def check(self, visits: int) -> None:
+        """Whether every visit was seen and answered.
+
+        Raises:
+            WrongAnswer: one was not.
+        """
+        for what in ("human.found", "touch.head", "end That feels good.", "human.lost"):
+            check(self.seen[what] == visits, f"{what}: {self.seen[what]} times, not {visits}")
+
+
+def told(record: Record) -> str:
+    """What a record is about, where a visit's are counted."""
+    if record["phase"] == "event":
+        return str(record["event"])
+    return f"{record['phase']} {record.get('text')}"
+
+
+def visits_memory(hours: int, an_hour: int) -> float:
+    """Megabytes that memory grows from a tenth of the hours to their end, with so many visits."""
+    run = Long()
+    before = 0.0
+    for visit in range(hours * an_hour):
+        if visit == hours * an_hour // 10:
+            gc.collect()
+            before = memory()
+        run.come(visit * HOUR // an_hour + 1)
+        run.until((visit + 1) * HOUR // an_hour)
+    run.check(hours * an_hour)
+    gc.collect()
+    return memory() - before
+
+
+def quiet(hours: int) -> float:
+    """Instants computed in hours in which nothing changes; a user comes before and after them."""
+    run = Long()
+    run.come(1)
+    check(run.until(HOUR) > 10, "nothing was computed while the user was there")
+    instants = run.until((hours + 1) * HOUR)
+    run.come((hours + 1) * HOUR + 1)
+    run.until((hours + 2) * HOUR)
+    run.check(2)
+    return instants
