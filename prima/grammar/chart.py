@@ -176,10 +176,6 @@ class Chart:
             end = start + len(folded)
             if self.utterance.edges[end]:
                 self._finish(spot, self.utterance.after(end), _NO_WAY)
-        self._opens(folded, start)
-
-    def _opens(self, folded: str, start: int) -> None:
-        """Whether the rest of the utterance is a beginning of some words."""
         if self._prefixes and len(folded) > len(self.said) - start:
             self.open |= folded.startswith(self.said[start:])
 
@@ -190,9 +186,7 @@ class Chart:
         tried = set(index.others)
         for length in index.lengths:
             if length > left:
-                if self._prefixes:
-                    for words in index.by_lead:
-                        self._opens(words, start)
+                self.open = self.open or (self._prefixes and index.goes_on(said[start:]))
                 break
             found = index.by_lead.get(said[start : start + length])
             if found is not None and self.utterance.edges[start + length]:

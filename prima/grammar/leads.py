@@ -75,7 +75,7 @@ class _Finder:
                 continue
             for text in texts:
                 by_lead.setdefault(text, []).append(number)
-        return LeadIndex(by_lead, sorted({len(text) for text in by_lead}), others)
+        return LeadIndex(by_lead, sorted({len(text) for text in by_lead}), others, sorted(by_lead))
 
     def leads(self, part: Part, depth: int) -> Leads:
         """In which ways an expansion begins; none at all if nothing matches it."""
@@ -122,6 +122,8 @@ class _Finder:
     def _sequence(self, parts: list[Part], depth: int) -> Leads:
         found: set[Lead] = set(NOTHING)
         for part in parts:
+            if isinstance(part, Tag):
+                continue
             begun = [lead for lead in found if lead.whole]
             if not begun:
                 break

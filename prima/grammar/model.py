@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
@@ -98,6 +99,13 @@ class LeadIndex:
     lengths: list[int]
     others: list[int]
     """Those that begin with something else."""
+    ordered: list[str] = field(default_factory=list)
+    """What is looked up in ``by_lead``, sorted."""
+
+    def goes_on(self, text: str) -> bool:
+        """Whether some words that alternatives begin with begin with a text, and are longer."""
+        place = bisect_right(self.ordered, text)
+        return place < len(self.ordered) and self.ordered[place].startswith(text)
 
 
 @dataclass(slots=True, eq=False)

@@ -329,6 +329,8 @@ class _Reader:
         return True
 
     def _attributes(self, node: Node, more: set[str]) -> None:
+        if not node.attributes:
+            return
         known = ATTRIBUTES[node.tag] | more
         for name in node.attributes:
             if name not in known and ":" not in name and not name.startswith("{"):
