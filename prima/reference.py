@@ -28,6 +28,7 @@ from prima.interpreter import (
     bounds,
     checks,
     content,
+    evaluation,
     expressions,
     frame,
     grammar,
@@ -223,7 +224,7 @@ def limits() -> str:
         ),
         (
             "a value that leaves ECMAScript",
-            f"{expressions.RESULT_LIMIT:,} characters",
+            f"{evaluation.RESULT_LIMIT:,} characters",
             "`error.semantic`",
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import prima
-from prima.interpreter.expressions import Engine, ScriptError
+from prima.interpreter.evaluation import ScriptError
+from prima.interpreter.expressions import Engine
 from tests.voice import Call
 
 DEMO = prima.documents_folder()

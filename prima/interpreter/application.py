@@ -9,8 +9,8 @@ is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from itertools import count
+from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.bounds import Bounds
 from prima.interpreter.content import Executor
@@ -24,7 +24,7 @@ from prima.interpreter.elements import (
     Watch,
     all_items,
 )
-from prima.interpreter.expressions import Engine, Scope, ScriptError
+from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.form import Algorithm
 from prima.interpreter.frame import (
     Abandoned,
@@ -39,6 +39,7 @@ from prima.interpreter.frame import (
 )
 from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Handling
+from prima.interpreter.plain import PlainEngine, is_plain
 from prima.messages import (
     Action,
     CloseUnit,
@@ -56,10 +57,13 @@ from prima.messages import (
     Step,
 )
 
+if TYPE_CHECKING:
+    from prima.interpreter.expressions import Engine
+
 MAX_TIMERS = 256
 
 
-class Interpreter(Bounds):
+class Interpreter(Bounds["Engine | PlainEngine"]):
     """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands."""
 
     def __init__(
@@ -69,11 +73,11 @@ class Interpreter(Bounds):
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        super().__init__(Engine())
+        super().__init__(evaluator_of(document))
         self.actions: list[Action] = []
         self.now = 0
         self.over = False
-        self.application = self.engine.scope()
+        self.application = self.engine.named("application")
         self.execute = Executor(self)
         self.handling = Handling(self)
         self.algorithm = Algorithm(self)
@@ -98,15 +102,14 @@ class Interpreter(Bounds):
         """Begin with the first form."""
         self._tick(now)
         first = next(iter(self.document.forms.values()))
-        self._guard(lambda: self._enter(first, None))
+        self._guard(self._enter, first)
 
     def event(self, now: int, event: Event) -> None:
         """Something happened that every application is told of, or this one alone."""
         self._tick(now)
         self.serial = event.serial
         if self.frame is not None:
-            frame = self.frame
-            self._guard(lambda: self.handling.dispatch(event, frame))
+            self._guard(self.handling.dispatch, event, self.frame)
         self.cause = None
 
     def notice(self, now: int, notice: Notice) -> None:
@@ -115,18 +118,18 @@ class Interpreter(Bounds):
         if self.over:
             return
         if notice.what == "unit-timeout":
-            self._guard(lambda: self.handling.unit_timeout(notice))
+            self._guard(self.handling.unit_timeout, notice)
         elif notice.what in ("ended", "interrupted"):
             kind = "end" if notice.what == "ended" else notice.what
-            self._guard(lambda: self.handling.command_event(notice, kind))
+            self._guard(self.handling.command_event, notice, kind)
         else:
             fiber = self._waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
                 self.cause = notice.cause
-                self._guard(lambda: self._resume(fiber, notice))
+                self._guard(self._resume, fiber, notice)
                 self.cause = None
             if notice.what == "cancelled":
-                self._guard(lambda: self.handling.command_event(notice, "cancel"))
+                self._guard(self.handling.command_event, notice, "cancel")
 
     def sensed(self, now: int, values: Data) -> list[str]:
         """Sensor values changed: gives the events whose conditions turned true (C6)."""
@@ -136,7 +139,7 @@ class Interpreter(Bounds):
             return []
         raised: list[str] = []
         for watch in self.handling.watches():
-            self._guard(partial(self._look, watch, raised))
+            self._guard(self._look, watch, raised)
         return raised
 
     def _look(self, watch: Watch, raised: list[str]) -> None:
@@ -161,7 +164,7 @@ class Interpreter(Bounds):
         self.serial = self.cause = event.serial
         frame = self.frame
         if frame is not None:
-            self._guard(lambda: self._transfer(frame, GoForm(link.form)))
+            self._guard(self.transfer, frame, GoForm(link.form))
         self.cause = None
 
     def answer(self, run: int, text: str) -> Json:
@@ -210,6 +213,7 @@ class Interpreter(Bounds):
         asked.hold = frame.form.hold
         if frame.item is not None and frame.item.hold is not None:
             asked.hold = frame.item.hold
+        frame.asked = True
         asked.connect = self.connects(frame) and any(says(step) for step in steps)
         if asked.connect:
             frame.connected = True
@@ -240,13 +244,13 @@ class Interpreter(Bounds):
             self._instant = self.now = now
             self.renew(now)
             if self._timed and not self.over:
-                self._guard(lambda: self.engine.clock(self.application, now / 1000))
+                self._guard(self.engine.clock, self.application, now / 1000)
 
-    def _guard(self, act: Callable[[], object]) -> None:
+    def _guard(self, act: Callable[..., object], *given: Any) -> None:
         """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""
         try:
             try:
-                act()
+                act(*given)
             except (Thrown, ScriptError) as error:
                 self._seek_handler(self.thrown(error))
         except (Thrown, ScriptError) as error:
@@ -304,27 +308,32 @@ class Interpreter(Bounds):
             raise
         except StopIteration:
             self._drop(fiber)
-            self._go_on(fiber.frame)
+            self.go_on(fiber.frame)
         except Abandoned:
             self._drop(fiber)
             fiber.frame.stalled = fiber.frame.stalled or fiber.main
         except Transfer as transfer:
             self._drop(fiber)
-            self._transfer(fiber.frame, transfer)
+            self.transfer(fiber.frame, transfer)
 
-    def _go_on(self, frame: Frame) -> None:
+    def go_on(self, frame: Frame) -> None:
         """A handler has ended: a form that was waiting looks for items to visit again."""
-        if frame is not self.frame or frame.stalled or any(one.main for one in frame.fibers):
+        if (
+            not frame.form.items
+            or frame is not self.frame
+            or frame.stalled
+            or any(one.main for one in frame.fibers)
+        ):
             return
         pending = self.begin(frame, setup=False)
         if pending is not None:
-            self._transfer(*pending)
+            self.transfer(*pending)
 
     def _drop(self, fiber: Fiber) -> None:
         if fiber in fiber.frame.fibers:
             fiber.frame.fibers.remove(fiber)
 
-    def _transfer(self, frame: Frame, transfer: Transfer) -> None:
+    def transfer(self, frame: Frame, transfer: Transfer) -> None:
         """Leave a state for another; goto chains go round here, not deeper."""
         while self.frame is not None and self.frame is not frame:
             self.leave(self.frame)  # a subdialog that the state had called
@@ -350,7 +359,7 @@ class Interpreter(Bounds):
         if any(fiber.main for fiber in frame.fibers):
             # A handler leaves what the state was doing: O3 for the item instead of the form.
             self.leave(frame)
-            frame.state = next(self.states)
+            frame.state, frame.asked = next(self.states), False
         frame.next_item = transfer.item
         frame.reprompt = True
         return self.begin(frame, setup=False)
@@ -394,8 +403,10 @@ class Interpreter(Bounds):
         for fiber in list(frame.fibers):
             self.forget(fiber)
         self.close_units(frame)
-        self._timers = [timer for timer in self._timers if timer[4] != frame.state]
-        self.actions.append(LeaveState(frame.state))
+        if self._timers:
+            self._timers = [timer for timer in self._timers if timer[4] != frame.state]
+        if frame.asked:  # else the mediator knows nothing of the state
+            self.actions.append(LeaveState(frame.state))
 
     def close_units(self, frame: Frame) -> None:
         """U5: conclude every unit that the state is in."""
@@ -403,27 +414,24 @@ class Interpreter(Bounds):
             self.actions.append(CloseUnit(number))
         frame.units.clear()
 
-    def _enter(self, form: Form, caller: Frame | None) -> None:
-        frame = self.frame_for(form, None)
-        pending = self.begin(frame)
+    def _enter(self, form: Form) -> None:
+        pending = self.begin(self.frame_for(form, None))
         if pending is not None:
-            self._transfer(*pending)
+            self.transfer(*pending)
 
     def frame_for(self, form: Form, before: Frame | None) -> Frame:
         """A frame for a form entered by goto (keeping the document's scope) or at the start."""
         document = before.document if before else self.new_document()
-        frame = Frame(form, next(self.states), document, self.engine.dialog())
-        frame.fresh = before is None
-        if before is not None:
+        frame = Frame(form, next(self.states), document, self.engine.named("dialog"))
+        if before is None:
+            frame.fresh = True
+        elif before.caller is not None:
             frame.caller, frame.called_by = before.caller, before.called_by
         return frame
 
     def new_document(self) -> object:
-        """An empty document scope; it has itself as its variable ``document``."""
-        scope = self.engine.scope()
-        self.engine.put(scope, "document", scope)
-        self.engine.put(self.application, "application", self.application)
-        return scope
+        """An empty document scope."""
+        return self.engine.named("document")
 
     def set_up_document(self, frame: Frame) -> None:
         """Declare the document's variables and run its scripts; they see no dialog."""
@@ -441,6 +449,8 @@ class Interpreter(Bounds):
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
+        if frame.form.bare and not frame.fresh and frame.called_by is None:
+            return None
         frame.stalled = False
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
@@ -480,6 +490,15 @@ class Interpreter(Bounds):
         self._set_up(setup, frame.dialog, fiber)
         for item in all_items(frame.form.items):
             self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)
+
+
+def evaluator_of(document: Document) -> Engine | PlainEngine:
+    """What evaluates a document's code: Python where that is all it needs."""
+    if is_plain(document):
+        return PlainEngine()
+    from prima.interpreter.expressions import Engine
+
+    return Engine()
 
 
 def says(step: Step) -> bool:

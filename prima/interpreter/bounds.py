@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
+from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
-from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.prelude import START
 from prima.values import moment
 
+if TYPE_CHECKING:
+    from prima.interpreter.expressions import Engine
+    from prima.interpreter.plain import PlainEngine
+
+Evaluator = TypeVar("Evaluator", bound="Engine | PlainEngine")
+"""What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
 MAX_SCRIPT_SECONDS = 3.0
@@ -19,10 +24,10 @@ MAX_OUTPUT = 1_000_000
 """Characters that an application may say, log and send in one instant."""
 
 
-class Bounds:
+class Bounds(Generic[Evaluator]):
     """Counts what an application does; interpreters of both languages are such."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Evaluator) -> None:
         self.engine = engine
         self.began = moment(START)
         """When the run began by its own calendar (ms since 1970, UTC)."""

@@ -43,9 +43,11 @@ from prima.interpreter.elements import (
     Throw,
     Unit,
     Watch,
+    all_acts,
     run_commands,
     unit_commands,
 )
+from prima.interpreter.evaluation import SCOPES
 from prima.interpreter.grammar import (
     Answers,
     fold,
@@ -69,6 +71,8 @@ class Builder:
         self.root = root
         self.problems: list[Problem] = []
         self.lang = root.get("xml:lang", "en")
+        self.expressions: list[Expression] = []
+        self.scripted = self.counting = False
         self._unnamed = 0
 
     # Reading attributes -----------------------------------------------------
@@ -99,7 +103,13 @@ class Builder:
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
         """An attribute as an expression, if it is there."""
         code = node.attributes.get(name)
-        return None if code is None or not code.strip() else Expression(code, node, name)
+        return None if code is None or not code.strip() else self.code(code, node, name)
+
+    def code(self, code: str, node: Node, attribute: str) -> Expression:
+        """An expression, noted as one of the document's."""
+        made = Expression(code, node, attribute)
+        self.expressions.append(made)
+        return made
 
     def either(self, node: Node, name: str, default: str = "") -> str | Expression:
         """An attribute, or the expression in NAME-expr; never both."""
@@ -203,6 +213,9 @@ class Builder:
             setup=self.setup(root),
             properties=self.properties(root),
             node=root,
+            expressions=self.expressions,
+            scripted=self.scripted,
+            counting=self.counting,
         )
 
     def form(self, node: Node) -> Form:
@@ -252,6 +265,7 @@ class Builder:
     def script(self, node: Node) -> Script:
         """A script."""
         code = "".join(item for item in node.content if isinstance(item, str))
+        self.scripted = True
         return Script(Expression(code, node, ""), node)
 
     def properties(self, node: Node) -> dict[str, Json]:
@@ -277,14 +291,17 @@ class Builder:
         for child in node.all(*HANDLERS):
             events = child.get("event").split() if child.tag == "on" else [child.tag]
             reactive = child.attributes.get("reactive")
+            count, content = self.value(child, "count", "integer", 1), self.content(child)
+            self.counting = self.counting or count > 1
             found.append(
                 Handler(
                     events=[event.rstrip(".") for event in events],
                     cond=self.expression(child, "cond"),
-                    count=self.value(child, "count", "integer", 1),
+                    count=count,
                     reactive=None if reactive is None else reactive == "true",
-                    content=self.content(child),
+                    content=content,
                     node=child,
+                    waits=any(isinstance(act, Run) for act in all_acts(content)),
                 )
             )
         return found
@@ -305,7 +322,7 @@ class Builder:
     def watches(self, node: Node) -> list[Watch]:
         """Watches in document order."""
         return [
-            Watch(child.get("name"), Expression(child.get("when"), child, "when"), child)
+            Watch(child.get("name"), self.code(child.get("when"), child, "when"), child)
             for child in node.all("watch")
         ]
 
@@ -554,7 +571,7 @@ class Builder:
             if bare != key:
                 if bare in node.attributes:
                     self.exclusive(node, bare, key)
-                args[bare] = Expression(text, node, key)
+                args[bare] = self.code(text, node, key)
                 continue
             try:
                 check_argument(bare, argument, text)
@@ -588,13 +605,13 @@ class Builder:
             case "script":
                 return self.script(node)
             case "assign":
-                return Assign(node.get("name"), Expression(node.get("expr"), node), node)
+                return self.assign(node)
             case "clear":
                 return Clear(self.names(node), node)
             case "if":
                 return self.condition(node)
             case "foreach":
-                array = Expression(node.get("array"), node, "array")
+                array = self.code(node.get("array"), node, "array")
                 self.plain_name(node, "item")
                 return Foreach(node.get("item"), array, self.content(node), node)
             case "log":
@@ -606,6 +623,8 @@ class Builder:
             case "goto":
                 return self.goto(node)
             case "return":
+                for name in self.names(node):
+                    self.code(name, node, "namelist")
                 return Return(self.names(node), node.get("event"), node)
             case "exit":
                 return Exit(node)
@@ -615,10 +634,17 @@ class Builder:
                 return self.send(node)
         return None
 
+    def assign(self, node: Node) -> Assign:
+        """An assign; what it names may be a part of a variable."""
+        name = node.get("name")
+        scope, _, part = name.partition(".")
+        self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
+        return Assign(name, self.code(node.get("expr"), node, "expr"), node)
+
     def condition(self, node: Node) -> If:
         """An if, divided by its elseif and else."""
         branches: list[tuple[Expression | None, list[Act]]] = []
-        cond: Expression | None = Expression(node.get("cond"), node, "cond")
+        cond: Expression | None = self.code(node.get("cond"), node, "cond")
         part: list[Node] = []
         for child in node.nodes:
             if child.tag not in ("elseif", "else"):
@@ -630,7 +656,7 @@ class Builder:
                 )
             branches.append((cond, self.acts(part)))
             part = []
-            cond = Expression(child.get("cond"), child, "cond") if child.tag == "elseif" else None
+            cond = self.code(child.get("cond"), child, "cond") if child.tag == "elseif" else None
         branches.append((cond, self.acts(part)))
         return If(branches, node)
 

@@ -42,14 +42,11 @@ from prima.interpreter.elements import (
     run_commands,
     unit_commands,
 )
+from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import Events, handlers_of, silent_fields, takes
-from prima.interpreter.expressions import (
-    ScriptError,
-    check_expression,
-    check_script,
-    plain_context,
-)
+from prima.interpreter.expressions import check_expression, check_script, plain_context
 from prima.interpreter.names import IDENTIFIER, declared_names, free_names
+from prima.interpreter.plain import compiled
 from prima.markup.slips import half
 from prima.markup.tree import Node
 from prima.values import read_value
@@ -524,8 +521,10 @@ class Checker:
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _expression(self, expr: Expression, known: set[str]) -> None:
-        if self._compiles(expr, check_expression):
-            for name, start in free_names(expr.code).items():
+        plain = compiled(expr.code)
+        if plain is not None or self._compiles(expr, check_expression):
+            names = free_names(expr.code) if plain is None else plain.names
+            for name, start in names.items():
                 if name not in known:
                     bare = expr.code.strip() == name and expr.node.tag != "value"
                     called = CALL.match(expr.code, start + len(name)) is not None
@@ -534,7 +533,7 @@ class Checker:
 
     def _assigns(self, expr: Expression) -> None:
         """A condition that gives a variable a value, where a comparison was meant."""
-        if expr.attribute not in ("cond", "when"):
+        if "=" not in expr.code or expr.attribute not in ("cond", "when"):
             return
         found = ASSIGNMENT.search(STRINGS.sub(lambda text: "_" * len(text[0]), expr.code))
         if found:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from prima.interpreter.elements import (
     Act,
@@ -27,7 +28,7 @@ from prima.interpreter.elements import (
     Throw,
     all_items,
 )
-from prima.interpreter.expressions import RESULT_LIMIT, Engine, Scope, ScriptError
+from prima.interpreter.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import (
     Abandoned,
     Content,
@@ -37,7 +38,9 @@ from prima.interpreter.frame import (
     GoItem,
     GoOut,
     Thrown,
+    Transfer,
 )
+from prima.interpreter.plain import PlainEngine
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step
 from prima.values import read_value, shown
@@ -58,7 +61,7 @@ class Executor:
 
     def __init__(self, owner: Interpreter) -> None:
         self.owner = owner
-        self.engine: Engine = owner.engine
+        self.engine = owner.engine
 
     def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
         """The scopes that content sees, outermost first."""
@@ -131,6 +134,7 @@ class Executor:
 
     def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
         """Run a script; what it declares belongs to the scope."""
+        assert not isinstance(self.engine, PlainEngine), "a document with a script has an engine"
         try:
             self.engine.script(act.code.code, scope, self.scopes(fiber))
         except ScriptError as error:
@@ -142,49 +146,76 @@ class Executor:
         """Run content in document order; waits where Commands have to end (O4)."""
         for act in content:
             self.owner.count_step(act.node)
-            if isinstance(act, Run):
+            simple = SIMPLE.get(type(act))
+            if simple is not None:
+                transfer = simple(self, act, fiber)
+                if transfer is not None:
+                    raise transfer
+            elif isinstance(act, Run):
                 yield from self.commands(act, fiber)
-            elif isinstance(act, If):
-                yield from self.branch(act, fiber)
-            elif isinstance(act, Foreach):
-                yield from self.foreach(act, fiber)
             else:
-                self.simple(act, fiber)
+                for part in self.parts(act, fiber):
+                    yield from self.run(part, fiber)
 
-    def simple(self, act: Act, fiber: Fiber) -> None:
-        """Content that takes no time."""
-        match act:
-            case Assign():
-                self.assign(act, fiber)
-            case Declare():
-                self.declare(act, self.local(fiber), fiber)
-            case Script():
-                self.script(act, self.local(fiber), fiber)
-            case Clear():
-                self.clear(act, fiber)
-            case Goto():
-                self.goto(act, fiber)
-            case Throw():
-                name = shown(self.plain(act.event, fiber))[:MAX_NAME]
-                message = shown(self.plain(act.message, fiber) or "")
-                raise Thrown(self.owner.internal(name, message), source(act.node))
-            case Return():
-                expressions = [Expression(name, act.node, "namelist") for name in act.names]
-                values = {one.code: self.evaluate(one, fiber) for one in expressions}
-                raise GoBack(values, act.event)
-            case Exit():
-                raise GoOut()
-            case Reprompt():
-                fiber.frame.reprompt = True
-            case Log():
-                label = f"{act.label}: " if act.label else ""
-                said = label + self.text(act.text, fiber, RESULT_LIMIT)
-                self.owner.count_output(len(said), act.node)
-                self.owner.actions.append(Say("log", said, source(act.node)))
-            case SendOut():
-                self.send(act, fiber)
-            case _:
-                raise AssertionError(act)
+    def run_at_once(self, content: list[Act], fiber: Fiber) -> Transfer | None:
+        """Run content in which no Command stands; gives the transfer of control that ends it."""
+        for act in content:
+            self.owner.count_step(act.node)
+            simple = SIMPLE.get(type(act))
+            transfer = None
+            if simple is not None:
+                transfer = simple(self, act, fiber)
+            else:
+                for part in self.parts(act, fiber):
+                    transfer = self.run_at_once(part, fiber)
+                    if transfer is not None:
+                        break
+            if transfer is not None:
+                return transfer
+        return None
+
+    def parts(self, act: Act, fiber: Fiber) -> Iterator[list[Act]]:
+        """The content inside an ``if`` or ``foreach`` that is to be run now."""
+        if isinstance(act, Foreach):
+            yield from self.foreach(act, fiber)
+        elif isinstance(act, If):
+            for cond, content in act.branches:
+                if cond is None or self.condition(cond, fiber):
+                    yield content
+                    return
+
+    def foreach(self, act: Foreach, fiber: Fiber) -> Iterator[list[Act]]:
+        """Content once for each element of an array."""
+        try:
+            elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
+        except ScriptError as error:
+            raise self.failure(error, act.array) from None
+        for element in elements:
+            self.owner.count_step(act.node)
+            self.engine.put(self.local(fiber), act.item, element)
+            yield act.content
+
+    def throw(self, act: Throw, fiber: Fiber) -> NoReturn:
+        """Throw an event (VoiceXML 5.2.1)."""
+        name = shown(self.plain(act.event, fiber))[:MAX_NAME]
+        message = shown(self.plain(act.message, fiber) or "")
+        raise Thrown(self.owner.internal(name, message), source(act.node))
+
+    def leave(self, act: Return, fiber: Fiber) -> Transfer:
+        """Return from a subdialog, with values (VoiceXML 5.3.10)."""
+        expressions = [Expression(name, act.node, "namelist") for name in act.names]
+        return GoBack({one.code: self.evaluate(one, fiber) for one in expressions}, act.event)
+
+    def log(self, act: Log, fiber: Fiber) -> None:
+        """Write to the transcript."""
+        label = f"{act.label}: " if act.label else ""
+        said = label + self.text(act.text, fiber, RESULT_LIMIT)
+        self.owner.count_output(len(said), act.node)
+        self.owner.actions.append(Say("log", said, source(act.node)))
+
+    def reprompt(self, _act: Reprompt, fiber: Fiber) -> None:
+        """Let the form ask again."""
+        fiber.frame.reprompt = True
 
     def assign(self, act: Assign, fiber: Fiber) -> None:
         """Give a declared variable a value; innermost scope first (VoiceXML 5.3.2)."""
@@ -212,19 +243,21 @@ class Executor:
                     key: count for key, count in frame.counters.items() if key[0] != name
                 }
 
-    def goto(self, act: Goto, fiber: Fiber) -> None:
+    def goto(self, act: Goto, fiber: Fiber) -> Transfer:
         """Leave for a form or an item."""
         if act.item is not None:
             name = shown(self.plain(act.item, fiber))
             if all(item.name != name for item in all_items(fiber.frame.form.items)):
                 message = f'{source(act.node)}: there is no form item "{name}"'
                 raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
-            raise GoItem(name)
-        target = shown(self.plain(act.form, fiber)).removeprefix("#")
+            return GoItem(name)
+        target = act.form
+        if not isinstance(target, str):
+            target = shown(self.plain(target, fiber)).removeprefix("#")
         if target not in self.owner.document.forms:
             message = f'{source(act.node)}: there is no form "{target}"'
             raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
-        raise GoForm(target)
+        return GoForm(target)
 
     def send(self, act: SendOut, fiber: Fiber) -> None:
         """Ask a service, or raise an event here after a delay."""
@@ -249,24 +282,6 @@ class Executor:
         message = f'{source(node)}: delay "{shown(value)}" is not a time'
         raise Thrown(self.owner.internal("error.semantic", message), source(node))
 
-    def branch(self, act: If, fiber: Fiber) -> Content:
-        """The first branch whose condition holds."""
-        for cond, content in act.branches:
-            if cond is None or self.condition(cond, fiber):
-                yield from self.run(content, fiber)
-                return
-
-    def foreach(self, act: Foreach, fiber: Fiber) -> Content:
-        """Content once for each element of an array."""
-        try:
-            elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
-        except ScriptError as error:
-            raise self.failure(error, act.array) from None
-        for element in elements:
-            self.owner.count_step(act.node)
-            self.engine.put(self.local(fiber), act.item, element)
-            yield from self.run(act.content, fiber)
-
     # Commands -----------------------------------------------------------------
 
     def commands(self, act: Run, fiber: Fiber) -> Content:
@@ -282,7 +297,7 @@ class Executor:
     def check(self, notice: Notice, fiber: Fiber) -> None:
         """Go on after a run's end, or not."""
         if notice.what == "failed":
-            fiber.commands = (notice.command.hook if notice.command else None) or []
+            fiber.commands = (notice.command.hook if notice.command else None) or ()
             place = notice.command.source if notice.command else ""
             message = f"{place}: {notice.message}" if place else notice.message
             raise Thrown(self.owner.internal(notice.event, message, notice.command), place)
@@ -324,6 +339,22 @@ class Executor:
         if template.handlers:
             command.hook = template.handlers
         return command
+
+
+SIMPLE: dict[type, Callable[[Executor, Any, Fiber], Transfer | None]] = {
+    Assign: Executor.assign,
+    Declare: lambda self, act, fiber: self.declare(act, self.local(fiber), fiber),
+    Script: lambda self, act, fiber: self.script(act, self.local(fiber), fiber),
+    Clear: Executor.clear,
+    Goto: Executor.goto,
+    Throw: Executor.throw,
+    Return: Executor.leave,
+    Exit: lambda self, act, fiber: GoOut(),
+    Reprompt: Executor.reprompt,
+    Log: Executor.log,
+    SendOut: Executor.send,
+}
+"""How content that takes no time is run, by its kind."""
 
 
 def source(node: Node) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from prima.deferred import dataclass, field
 from prima.interpreter.grammar import Answers, Grammar
 from prima.markup.tree import Node
@@ -202,6 +204,8 @@ class Handler:
     reactive: bool | None
     content: list[Act]
     node: Node
+    waits: bool = False
+    """Whether there is a Command in it, whose end is waited for."""
 
 
 @dataclass(slots=True)
@@ -312,6 +316,13 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
+    taking: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
+    """The handlers in scope by an item's and an event's name, as they have been looked for."""
+
+    @property
+    def bare(self) -> bool:
+        """Whether there is nothing to do when it is entered but to wait for events."""
+        return not (self.items or self.setup or self.watches)
 
 
 Content = tuple[Form | None, list[Act], Node]
@@ -333,6 +344,12 @@ class Document:
     setup: list[Declare | Script]
     properties: dict[str, Json]
     node: Node
+    expressions: list[Expression] = field(default_factory=list)
+    """All its code, but for scripts."""
+    scripted: bool = False
+    """Whether there is a script, or something is assigned to a part of a variable."""
+    counting: bool = False
+    """Whether any handler looks at how often its event has occurred."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
     def contents(self) -> list[Content]:

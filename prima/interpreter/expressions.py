@@ -10,29 +10,25 @@ from __future__ import annotations
 
 import json
 import re
-from time import perf_counter
+from time import thread_time
 from typing import Any
 
 import _quickjs as quickjs
 
+from prima.interpreter.evaluation import SCOPES, Scope, ScriptError, bounded, plain_number
 from prima.interpreter.names import assigned_names, declared_names
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that one evaluation may take."""
-RESULT_LIMIT = 100_000
-"""Characters that a value may have when it leaves the engine."""
-
-Scope = Any
-"""A scope object inside the engine."""
 
 HELPERS = r"""
 (function () {
 const stringify = JSON.stringify, isArray = Array.isArray, text = String;
 return {
   scope: function () { return {}; },
-  dialog: function () { const made = {}; made.dialog = made; return made; },
+  named: function (name) { const made = {}; made[name] = made; return made; },
   event: function (name, message, data) {
     return { event: { name, message, data: data === null ? {} : data },
       _event: name, _message: message };
@@ -55,19 +51,6 @@ HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
 """Half a surrogate pair in JSON, which is written as an escape; whole pairs are letters."""
 ODD = (TypeError, ValueError, OverflowError, MemoryError)
 """What the binding itself raises for values that it cannot give to Python."""
-
-SCOPES = ("application", "document", "dialog", "local")
-"""The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
-
-
-class ScriptError(Exception):
-    """An expression or script failed; becomes ``error.semantic`` in the application."""
-
-    def __init__(self, message: str, places: list[tuple[int, int]] | None = None) -> None:
-        super().__init__(message)
-        self.places = places or []
-        """Lines and columns of the functions that were being called, innermost first."""
-        self.line, self.column = self.places[-1] if self.places else (0, 0)
 
 
 def _script_error(error: Exception) -> ScriptError:
@@ -123,7 +106,7 @@ class Engine:
 
     def _call(self, function: Any, *args: Any) -> Any:
         Engine.evaluations += 1
-        began = perf_counter()
+        began = thread_time()
         try:
             if self._told != self.now:
                 self._told = self.now
@@ -133,7 +116,7 @@ class Engine:
             raise _script_error(error) from None
         finally:
             Engine.evaluations += 1
-            self.spent += perf_counter() - began
+            self.spent += thread_time() - began
 
     def compile(self, code: str) -> Any:
         """Give the function of an expression, compiled the first time.
@@ -162,9 +145,9 @@ class Engine:
             self.set(scope, name, value)
         return scope
 
-    def dialog(self) -> Scope:
-        """A new dialog scope; it has itself as its variable ``dialog`` (VoiceXML 5.1.2)."""
-        return self._call(self._help["dialog"])
+    def named(self, name: str) -> Scope:
+        """A new scope that has itself as a variable, as a dialog's ``dialog`` (VoiceXML 5.1.2)."""
+        return self._call(self._help["named"], name)
 
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
@@ -209,7 +192,7 @@ class Engine:
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
         text = str(self._call(self._help["text"], self.raw(code, scopes)))
-        return self._bounded(text)
+        return bounded(text)
 
     def value(self, code: str, scopes: tuple[Scope, ...]) -> Json:
         """Evaluate an expression and give its value as plain data."""
@@ -218,15 +201,15 @@ class Engine:
     def out(self, value: Any) -> Json:
         """An engine's value as plain data; functions and undefined become None."""
         if value is None or isinstance(value, bool | int | float):
-            return value
+            return plain_number(value)
         if isinstance(value, str):
-            return self._bounded(value)
+            return bounded(value)
         text = self._call(self._help["json"], value)
         if not isinstance(text, str):
             return None
         if "\\ud" in text:
             text = HALF_PAIR.sub(r"\1\\ufffd", text)
-        return json.loads(self._bounded(text))
+        return json.loads(bounded(text))
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
@@ -304,12 +287,6 @@ class Engine:
     def _has(self, name: str) -> str:
         """Code that tells whether any scope has a variable."""
         return "||".join(f"{json.dumps(name)} in {_short(scope)}" for scope in self._scopes)
-
-    @staticmethod
-    def _bounded(text: str) -> str:
-        if len(text) > RESULT_LIMIT:
-            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
-        return text
 
 
 def _short(scope: str) -> str:

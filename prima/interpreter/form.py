@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import MAX_TEXT, source
 from prima.interpreter.elements import Block, Field, Filled, Item, Subdialog, Unit, all_items
-from prima.interpreter.expressions import ScriptError
+from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.frame import (
     MAX_DEPTH,
     Content,
@@ -171,15 +171,8 @@ class Algorithm:
             message = f"{source(item.node)}: more than {MAX_DEPTH} subdialogs inside each other"
             raise Thrown(self.owner.internal("error.semantic", message), source(item.node))
         form = self.owner.document.forms[item.form]
-        inner = Frame(
-            form,
-            next(self.owner.states),
-            self.owner.new_document(),
-            self.owner.engine.dialog(),
-            frame,
-            item,
-            fresh=True,
-        )
+        inner = self.owner.frame_for(form, None)
+        inner.caller, inner.called_by = frame, item
         result: Notice | None = None
         pending = self.owner.begin(inner)
         if pending is not None and isinstance(pending[1], GoBack) and pending[0] is inner:
@@ -235,7 +228,7 @@ class Algorithm:
                 unit.types,
             )
         )
-        frame.connected = True
+        frame.connected = frame.asked = True
         frame.units.append((number, unit))
         outer, fiber.unit = fiber.unit, number
         self.owner.engine.set(frame.dialog, unit.name, True)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 
-from prima.deferred import dataclass, field
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
-from prima.interpreter.expressions import Scope
+from prima.interpreter.evaluation import Scope
 from prima.messages import Event, Json, Notice
 
 MAX_DEPTH = 32
@@ -16,46 +15,59 @@ Content = Generator[int, Notice, None]
 """A piece of content as a coroutine: it yields the run it waits for and is sent its fate."""
 
 
-@dataclass(slots=True, eq=False)
 class Frame:
-    """A form that is active, or whose subdialog is (VoiceXML 2.3.4)."""
+    """A form that is active, or whose subdialog is (VoiceXML 2.3.4).
 
-    form: Form
-    state: int
-    document: Scope
-    dialog: Scope
+    Frames come and go with every event: what few of them need has its value in the class.
+    """
+
     caller: Frame | None = None
     called_by: Subdialog | None = None
-    counters: dict[tuple[str, str], int] = field(default_factory=dict)
-    """Occurrences of an event's names while an item ("" for the form) was visited."""
-    prompts: dict[str, int] = field(default_factory=dict)
     item: Item | None = None
     """The item being visited."""
-    next_item: str = ""
-    reprompt: bool = True
-    stalled: bool = False
+    next_item = ""
+    reprompt = True
+    stalled = False
     """What the form was doing has been cancelled (O2): it waits for an event to move it."""
-    units: list[tuple[int, Unit]] = field(default_factory=list)
-    fibers: list[Fiber] = field(default_factory=list)
-    connected: bool = False
+    connected = False
     """Whether the state has asked for the channel (X4)."""
-    fresh: bool = False
+    fresh = False
     """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
+    asked = False
+    """Whether the mediator has heard of the state: of a Command, or a unit."""
+
+    def __init__(self, form: Form, state: int, document: Scope, dialog: Scope) -> None:
+        self.form = form
+        self.state = state
+        self.document = document
+        self.dialog = dialog
+        self.counters: dict[tuple[str, str], int] = {}
+        """Occurrences of an event's names while an item ("" for the form) was visited."""
+        self.prompts: dict[str, int] = {}
+        self.units: list[tuple[int, Unit]] = []
+        self.fibers: list[Fiber] = []
 
 
-@dataclass(slots=True, eq=False)
 class Fiber:
     """A piece of content that is under way: the form's own, or a handler's."""
 
-    frame: Frame
     content: Content | None = None
-    main: bool = False
-    local: Scope = None
-    """The innermost scope, made when something first looks into it."""
     unit: int | None = None
-    commands: list[Handler] = field(default_factory=list)
-    """Handlers written inside the Command whose event is being handled."""
     waiting: int | None = None
+
+    def __init__(
+        self,
+        frame: Frame,
+        main: bool = False,
+        local: Scope = None,
+        commands: Sequence[Handler] = (),
+    ) -> None:
+        self.frame = frame
+        self.main = main
+        self.local = local
+        """The innermost scope, made when something first looks into it."""
+        self.commands = commands
+        """Handlers written inside the Command whose event is being handled."""
 
 
 class Thrown(Exception):
@@ -77,7 +89,6 @@ class GoForm(Transfer):
     """A goto to a form."""
 
     def __init__(self, form: str) -> None:
-        super().__init__(form)
         self.form = form
 
 
@@ -85,7 +96,6 @@ class GoItem(Transfer):
     """A goto to an item of this form."""
 
     def __init__(self, item: str) -> None:
-        super().__init__(item)
         self.item = item
 
 
@@ -93,7 +103,6 @@ class GoBack(Transfer):
     """A return from a subdialog, with its values or an event."""
 
     def __init__(self, values: dict[str, Json], event: str) -> None:
-        super().__init__(event)
         self.values = values
         self.event = event
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Handler, Item, Watch
-from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
-from prima.interpreter.selection import prefixes, select_handler
+from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.messages import Event, Json, Notice
 
 if TYPE_CHECKING:
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MAX_FIBERS = 64
 """Handlers that may be under way at once in a state."""
+MOST_KEPT = 1_000
+"""Names of events for which a form keeps its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a field asks again where nobody handles them (VoiceXML 5.2.5)."""
 
@@ -42,7 +44,7 @@ class Handling:
             thrown.sought = True
             raise thrown
         fiber.local = self._event_scope(event)
-        fiber.commands = []
+        fiber.commands = ()
         if handler.reactive is not None:  # else a throw keeps what it has (C5)
             self._allow_reaction(handler, event)
         try:
@@ -58,8 +60,11 @@ class Handling:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
         item = frame.item
         self.count_event(frame, item, event.name)
-        fiber = Fiber(frame, local=self._event_scope(event))
-        handler = self.find_handler(frame, fiber, item, event)
+        candidates = self._taking(frame, item, event.name)
+        handler = None
+        if candidates:
+            fiber = Fiber(frame, local=self._event_scope(event))
+            handler = self._select(frame, fiber, item, candidates)
         if handler is None:
             if event.name.startswith("error."):
                 unhandled = Thrown(event, place)
@@ -76,9 +81,30 @@ class Handling:
         for number, unit in frame.units:
             if handler in unit.handlers or any(handler in one.handlers for one in unit.items):
                 fiber.unit = number
-        fiber.content = self._handler_content(fiber, handler)
-        frame.fibers.append(fiber)
+        if handler.waits:
+            self._go_along(fiber, self._handler_content(fiber, handler))
+        else:
+            self._run_at_once(fiber, handler)
+
+    def _go_along(self, fiber: Fiber, content: Content) -> None:
+        """Let content run beside what the state is doing."""
+        fiber.content = content
+        fiber.frame.fibers.append(fiber)
         self.owner.drive(fiber, None)
+
+    def _run_at_once(self, fiber: Fiber, handler: Handler) -> None:
+        """Run a handler that waits for nothing: no coroutine is needed."""
+        frame = fiber.frame
+        try:
+            transfer = self.owner.execute.run_at_once(handler.content, fiber)
+        except (Thrown, ScriptError) as error:
+            thrown = self.owner.thrown(error)
+            self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
+            return
+        if transfer is not None:
+            self.owner.transfer(frame, transfer)
+        else:
+            self.owner.go_on(frame)
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
         frame = fiber.frame
@@ -94,13 +120,13 @@ class Handling:
             return
         name = f"{kind}.{command.type}"
         event = Event(name, self.owner.serial, dict(notice.data), reactive=False)
-        fiber = Fiber(frame, commands=command.hook or [])
-        handlers = [*fiber.commands, *self._in_scope(frame, frame.item)]
-        if not any(name.startswith(word) for one in handlers for word in one.events):
+        fiber = Fiber(frame, commands=command.hook or ())
+        candidates = self._candidates(frame, fiber, frame.item, name)
+        if not candidates:
             return
         fiber.local = self._event_scope(event)
         self.count_event(frame, frame.item, name)
-        handler = self.find_handler(frame, fiber, frame.item, event)
+        handler = self._select(frame, fiber, frame.item, candidates)
         if handler is not None:
             self._allow_reaction(handler, event)
             self._launch(fiber, handler)
@@ -122,9 +148,7 @@ class Handling:
         frame.item = unit
         event = self.owner.internal(notice.event, f"{source(unit.node)}: {notice.message}")
         fiber = Fiber(frame, main=True, local=self._event_scope(event))
-        fiber.content = self.owner.algorithm.after_timeout(frame, fiber, unit, event)
-        frame.fibers.append(fiber)
-        self.owner.drive(fiber, None)
+        self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, event))
 
     def _allow_reaction(self, handler: Handler, event: Event) -> None:
         """C5: what is requested first because of the event is a reaction, or not."""
@@ -132,11 +156,14 @@ class Handling:
         self.owner.cause = event.serial if reactive else None
 
     def _event_scope(self, event: Event) -> Scope:
-        data = dict(event.data)
-        return self.owner.engine.event(event.name, str(data.get("message", "")), data)
+        data = event.data
+        message = str(data.get("message", "")) if data else ""
+        return self.owner.engine.event(event.name, message, dict(data) if data else None)
 
     def count_event(self, frame: Frame, item: Item | None, name: str) -> None:
         """Count an occurrence for the item being visited, under all the event's prefixes."""
+        if not self.owner.document.counting:
+            return
         where = item.name if item is not None else ""
         for prefix in prefixes(name):
             key = (where, prefix)
@@ -150,21 +177,40 @@ class Handling:
                 found += unit.handlers
         return [*found, *frame.form.handlers, *self.owner.document.handlers]
 
-    def find_handler(
-        self, frame: Frame, fiber: Fiber, item: Item | None, event: Event
+    def _taking(self, frame: Frame, item: Item | None, event: str) -> Taking:
+        """The handlers in scope whose names take an event; a form keeps what has been found."""
+        if frame.units:
+            return taking(self._in_scope(frame, item), event)
+        kept = frame.form.taking
+        key = (item.name if item is not None else "", event)
+        found = kept.get(key)
+        if found is None:
+            if len(kept) >= MOST_KEPT:
+                kept.clear()
+            found = kept[key] = taking(self._in_scope(frame, item), event)
+        return found
+
+    def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
+        """Handlers inside the Command whose event is handled, and those in scope."""
+        inside = taking(fiber.commands, event) if fiber.commands else ()
+        return inside + self._taking(frame, item, event)
+
+    def _select(
+        self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking
     ) -> Handler | None:
-        """The handler that takes an event here (VoiceXML 5.2.4)."""
         where = item.name if item is not None else ""
 
         def holds(cond: Expression) -> bool:
             return self.owner.execute.condition(cond, fiber)
 
-        return select_handler(
-            [fiber.commands, self._in_scope(frame, item)],
-            event.name,
-            lambda name: frame.counters.get((where, name), 0),
-            holds,
-        )
+        return select_handler(candidates, lambda name: frame.counters.get((where, name), 0), holds)
+
+    def find_handler(
+        self, frame: Frame, fiber: Fiber, item: Item | None, event: Event
+    ) -> Handler | None:
+        """The handler that takes an event here (VoiceXML 5.2.4)."""
+        candidates = self._candidates(frame, fiber, item, event.name)
+        return self._select(frame, fiber, item, candidates)
 
     def watches(self) -> list[Watch]:
         """The watches of the active form and of the document."""

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 
 from prima.interpreter.elements import Expression, Handler
+
+Taking = tuple[tuple[Handler, tuple[str, ...]], ...]
+"""Handlers that take an event, innermost scope first, each with the names that it takes it by."""
 
 
 def takes(handler_event: str, event: str) -> bool:
@@ -12,32 +16,36 @@ def takes(handler_event: str, event: str) -> bool:
     return not handler_event or event == handler_event or event.startswith(f"{handler_event}.")
 
 
-def prefixes(event: str) -> list[str]:
+@lru_cache(maxsize=1000)
+def prefixes(event: str) -> tuple[str, ...]:
     """All names under which an event counts: itself, its prefixes, and the empty one."""
     parts = event.split(".")
-    return ["", *(".".join(parts[: n + 1]) for n in range(len(parts)))]
+    return ("", *(".".join(parts[: n + 1]) for n in range(len(parts))))
+
+
+def taking(handlers: Iterable[Handler], event: str) -> Taking:
+    """Those of a list of handlers whose names take an event."""
+    found = []
+    for handler in handlers:
+        names = tuple(name for name in handler.events if takes(name, event))
+        if names:
+            found.append((handler, names))
+    return tuple(found)
 
 
 def select_handler(
-    scopes: Iterable[list[Handler]],
-    event: str,
-    occurrences: Callable[[str], int],
-    holds: Callable[[Expression], bool],
+    candidates: Taking, occurrences: Callable[[str], int], holds: Callable[[Expression], bool]
 ) -> Handler | None:
-    """Find the handler of an event.
+    """Find the handler of an event among those whose names take it.
 
-    The handlers of all scopes, innermost first, make one list. Those whose name
-    or condition does not fit are left out; of the rest, those with the highest
+    Those whose condition does not hold are left out; of the rest, those with the highest
     count that the occurrences have reached remain, and the first of them it is.
     """
-    fitting: list[tuple[Handler, int]] = []
-    for handlers in scopes:
-        for handler in handlers:
-            names = [name for name in handler.events if takes(name, event)]
-            if not names:
-                continue
-            seen = max(occurrences(name) for name in names)
-            if handler.count <= seen and (handler.cond is None or holds(handler.cond)):
-                fitting.append((handler, handler.count))
-    highest = max((count for _, count in fitting), default=0)
-    return next((handler for handler, count in fitting if count == highest), None)
+    found: Handler | None = None
+    for handler, names in candidates:
+        if handler.count > 1 and handler.count > max(map(occurrences, names)):
+            continue
+        holding = handler.cond is None or holds(handler.cond)
+        if holding and (found is None or handler.count > found.count):
+            found = handler
+    return found

@@ -35,7 +35,7 @@ Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
 
 
-class VoiceInterpreter(Bounds):
+class VoiceInterpreter(Bounds["Engine"]):
     """Runs one VoiceXML application; its interface is :class:`prima.interpreter.application`'s."""
 
     def __init__(

@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of
+from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import (
-    ScriptError,
     check_expression,
     check_script,
     plain_context,

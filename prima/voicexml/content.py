@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.expressions import RESULT_LIMIT, Scope, ScriptError
+from prima.interpreter.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Json, Say

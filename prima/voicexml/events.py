@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node

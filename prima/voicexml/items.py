@@ -143,7 +143,7 @@ class Items:
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
         blank = self.engine.scope()
-        inner = Context(context.session, page, blank, blank, self.engine.dialog())
+        inner = Context(context.session, page, blank, blank, self.engine.named("dialog"))
         inner.params, inner.depth = params, context.depth + 1
         self.owner.context = inner
         try:

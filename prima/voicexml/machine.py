@@ -6,7 +6,7 @@ from collections.abc import Generator
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Json
@@ -159,7 +159,7 @@ class Machine:
     def start(self) -> Flow:
         """Run the application from its first dialog to its end (1.5.1)."""
         page, blank = self.document.page, self.engine.scope()
-        context = Context(self.documents.session(), page, blank, blank, self.engine.dialog())
+        context = Context(self.documents.session(), page, blank, blank, self.engine.named("dialog"))
         self.context = context
         reason = GoOut()
         try:
@@ -257,7 +257,7 @@ class Machine:
 
     def _initialise(self, context: Context, form: Node) -> Flow:
         """Make a form's variables and those of its items, in document order (2.1.6.1)."""
-        context.dialog = self.engine.dialog()
+        context.dialog = self.engine.named("dialog")
         params, context.params = context.params or {}, None
         for node in form.nodes if form.tag == "form" else ():
             if node.tag == "var" and node.get("name") in params:

@@ -9,7 +9,7 @@ from urllib.parse import urldefrag
 
 from prima.commands import TABLE_4_2
 from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
-from prima.interpreter.expressions import Scope, ScriptError
+from prima.interpreter.evaluation import Scope, ScriptError
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Json
 from prima.values import shown

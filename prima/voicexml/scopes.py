@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.interpreter.content import source
-from prima.interpreter.expressions import Scope
+from prima.interpreter.evaluation import Scope
 from prima.markup.tree import Node
 from prima.voicexml.document import Page, legal
 from prima.voicexml.fetching import Request, load_page
@@ -96,7 +96,7 @@ class Documents:
         self.engine.put(scope, "document", scope)
         if context.application is scope:
             self.engine.put(scope, "application", scope)
-        context.dialog = self.engine.dialog()
+        context.dialog = self.engine.named("dialog")
         for node in page.root.all("var", "script", "data"):
             yield from self.declare(node, scope, context)
 

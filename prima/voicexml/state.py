@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
-from prima.interpreter.expressions import Scope
+from prima.interpreter.evaluation import Scope
 from prima.markup.tree import Node
 from prima.messages import Data, Event, Json
 from prima.voicexml.document import Page

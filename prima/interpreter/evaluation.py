@@ -1,0 +1,45 @@
+"""What evaluating code of documents gives, and how it fails, whoever evaluates it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from prima.messages import Json
+
+Scope = Any
+"""A scope object, of whatever kind the evaluator has."""
+
+RESULT_LIMIT = 100_000
+"""Characters that a value may have when it leaves its application's scopes."""
+SCOPES = ("application", "document", "dialog", "local")
+"""The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
+LARGEST = 2**53
+"""Whole numbers up to here are exact."""
+
+
+class ScriptError(Exception):
+    """An expression or script failed; becomes ``error.semantic`` in the application."""
+
+    def __init__(self, message: str, places: list[tuple[int, int]] | None = None) -> None:
+        super().__init__(message)
+        self.places = places or []
+        """Lines and columns of the functions that were being called, innermost first."""
+        self.line, self.column = self.places[-1] if self.places else (0, 0)
+
+
+def bounded(text: str) -> str:
+    """Text that is not too long to leave its scopes.
+
+    Raises:
+        ScriptError: it is.
+    """
+    if len(text) > RESULT_LIMIT:
+        raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
+    return text
+
+
+def plain_number(value: Json) -> Json:
+    """A number as JSON has it: whole ones without a point; other values as they are."""
+    if isinstance(value, float) and abs(value) < LARGEST and value == int(value):
+        return int(value)
+    return value

@@ -1,0 +1,825 @@
+"""Expressions that need no engine: names, members, literals and operators, as functions.
+
+Most expressions of documents are of this kind, and an application that has no others
+(:func:`is_plain`) is evaluated here: each expression is compiled once to nested functions of
+the scopes that it sees, and the values are Python's: ``float``, ``str``, ``bool``, ``None``
+(null), :data:`UNDEFINED`, ``list`` and ``dict``. They mean what ECMAScript 2024 says of them.
+Whatever could mean more (calls, functions, assignments, members that prototypes have) is
+beyond it, and its whole application runs in an :class:`~prima.interpreter.expressions.Engine`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+import re
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+from weakref import WeakValueDictionary
+
+from prima.interpreter.elements import Document
+from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number
+from prima.interpreter.names import GLOBALS, RESERVED
+from prima.messages import Json
+
+
+class Undefined:
+    """The type of :data:`UNDEFINED`."""
+
+    def __repr__(self) -> str:
+        return "undefined"
+
+
+UNDEFINED = Undefined()
+"""What a variable without a value has."""
+
+
+class Scope(dict[str, Any]):
+    """The variables of an application, document, dialog or piece of content."""
+
+    __slots__ = ("__weakref__",)
+
+
+class Named(Scope):
+    """A scope that its own expressions know by name: ``application``, ``document``, ``dialog``."""
+
+    __slots__ = ()
+
+
+Scopes = tuple[Scope, Scope, Scope, Scope]
+"""The scopes that an expression sees: application, document, dialog and local."""
+Function = Callable[[Scopes], Any]
+
+
+class Compiled(NamedTuple):
+    """An expression's function, and the names that it uses with where each first stands."""
+
+    call: Function
+    names: Mapping[str, int]
+
+
+MOST_TOKENS = 200
+"""Pieces of code beyond which an expression is left to the engine: functions nest so deep."""
+LONGEST = 100_000
+"""Characters that a text may have; nothing longer could leave the scopes."""
+MOST_HELD = 4_000_000
+"""Characters of long texts that all variables of an application may have together."""
+LONG = 1_000
+"""Characters from which on a text counts as long."""
+
+VARIABLES = frozenset(
+    ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
+)
+"""Variables that the language itself declares."""
+WORDS = {"true": True, "false": False, "null": None}
+CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
+INHERITED = frozenset(
+    [
+        *(
+            "constructor",
+            "toString",
+            "toLocaleString",
+            "valueOf",
+            "hasOwnProperty",
+            "isPrototypeOf",
+        ),
+        *("propertyIsEnumerable", "__proto__", "__defineGetter__", "__defineSetter__"),
+        *("__lookupGetter__", "__lookupSetter__"),
+    ]
+)
+"""Names that every object has from its prototype, scopes included."""
+METHODS = frozenset(
+    [
+        *("at", "concat", "copyWithin", "fill", "find", "findIndex", "findLast", "findLastIndex"),
+        *("lastIndexOf", "pop", "push", "reverse", "shift", "unshift", "slice", "sort", "splice"),
+        *("includes", "indexOf", "join", "keys", "entries", "values", "forEach", "filter", "flat"),
+        *("flatMap", "map", "every", "some", "reduce", "reduceRight", "toReversed", "toSorted"),
+        *("toSpliced", "with", "charCodeAt", "charAt", "codePointAt", "endsWith", "isWellFormed"),
+        *("toWellFormed", "localeCompare", "match", "matchAll", "normalize", "padEnd", "padStart"),
+        *(
+            "repeat",
+            "replace",
+            "replaceAll",
+            "search",
+            "split",
+            "startsWith",
+            "substr",
+            "substring",
+        ),
+        *(
+            "toLowerCase",
+            "toLocaleLowerCase",
+            "toUpperCase",
+            "toLocaleUpperCase",
+            "trim",
+            "trimEnd",
+        ),
+        *("trimStart", "trimLeft", "trimRight", "anchor", "big", "blink", "bold", "fixed"),
+        *("fontcolor", "fontsize", "italics", "link", "small", "strike", "sub", "sup"),
+        *("toExponential", "toFixed", "toPrecision"),
+    ]
+)
+"""Members that texts, numbers and arrays have from theirs."""
+BUILT_IN = (GLOBALS - VARIABLES - CONSTANTS.keys()) | {
+    *("AsyncDisposableStack", "DisposableStack", "InternalError", "SuppressedError"),
+    *("atob", "btoa"),
+}
+"""Names of the engine's own."""
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
+SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
+"""What ECMAScript takes for white space."""
+TOKEN = re.compile(
+    r"""(?P<space>[ \t\n\r]+)"""
+    r"""|(?P<number>(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.]))"""
+    r"""|(?P<name>[A-Za-z_$][\w$]*)|(?P<text>"[^"\\\n\r]*"|'[^'\\\n\r]*')"""
+    r"""|(?P<escaped>"(?:\\[^ux0-9\n\r]|[^"\\\n\r])*"|'(?:\\[^ux0-9\n\r]|[^'\\\n\r])*')"""
+    r"""|(?P<mark>[=!]==?|[<>]=|&&|\|\||\+(?![+=])|-(?![-=])|\*(?![*=])|/(?![/*=])|%(?!=)|[<>](?![<>])"""
+    r"""|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
+    re.ASCII,
+)
+NUMERIC = re.compile(
+    r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
+)
+SURROGATE = re.compile("[\ud800-\udfff]")
+
+
+def is_plain(document: Document) -> bool:
+    """Whether all the code of a document can be evaluated here."""
+    return not document.scripted and all(compiled(one.code) for one in document.expressions)
+
+
+class _Beyond(Exception):
+    """The code is none of what is compiled here."""
+
+
+class _Token(NamedTuple):
+    kind: str
+    text: str
+    start: int
+
+
+END = _Token("end", "", -1)
+LEVELS: dict[str, int] = {
+    "||": 1, "&&": 2, "==": 3, "!=": 3, "===": 3, "!==": 3, "<": 4, ">": 4, "<=": 4, ">=": 4,
+    "+": 5, "-": 5, "*": 6, "/": 6, "%": 6,
+}  # fmt: skip
+"""How strongly operators bind."""
+
+
+def compiled(code: str) -> Compiled | None:
+    """An expression as a function of the scopes it sees, or None if it needs an engine."""
+    return _kept(code) if len(code) <= LONG else None
+
+
+@lru_cache(maxsize=20_000)
+def _kept(code: str) -> Compiled | None:
+    try:
+        parser = _Parser(code)
+        call = parser.conditional()
+        parser.expect("")
+    except _Beyond:
+        return None
+    return Compiled(call, parser.names)
+
+
+class _Parser:
+    """Reads an expression by the strength of its operators, and gives its function."""
+
+    def __init__(self, code: str) -> None:
+        self.code = code
+        self.names: dict[str, int] = {}
+        self.tokens: list[_Token] = []
+        position = 0
+        while position < len(code):
+            match = TOKEN.match(code, position)
+            if match is None or len(self.tokens) > MOST_TOKENS:
+                raise _Beyond
+            position = match.end()
+            if match.lastgroup != "space":
+                self.tokens.append(_Token(match.lastgroup or "", match[0], match.start()))
+        self.tokens.append(END)
+        self.at = 0
+
+    def take(self) -> _Token:
+        """The next piece."""
+        token = self.tokens[self.at]
+        self.at += token is not END
+        return token
+
+    def comes(self, text: str) -> bool:
+        """Take a mark if it comes next."""
+        token = self.tokens[self.at]
+        if token.kind == "mark" and token.text == text:
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, text: str) -> None:
+        """Take a mark, or with none see that the code is over."""
+        token = self.take()
+        if token.text != text or token.kind not in ("mark", "end"):
+            raise _Beyond
+
+    def place(self, start: int) -> tuple[int, int]:
+        """Line and column of a piece of the code."""
+        before = self.code[:start]
+        return before.count("\n") + 1, start - before.rfind("\n")
+
+    def conditional(self) -> Function:
+        """``a ? b : c``, and what binds more strongly."""
+        test = self.binary(1)
+        if not self.comes("?"):
+            return test
+        first = self.conditional()
+        self.expect(":")
+        second = self.conditional()
+        return lambda scopes: first(scopes) if truth(test(scopes)) else second(scopes)
+
+    def binary(self, level: int) -> Function:
+        """Operators of a level or above, those of one level from the left."""
+        left = self.unary()
+        while True:
+            token = self.tokens[self.at]
+            strength = LEVELS.get(token.text, 0) if token.kind == "mark" else 0
+            if strength < level:
+                return left
+            self.at += 1
+            left = _operation(token.text, left, self.binary(strength + 1))
+
+    def unary(self) -> Function:
+        """``!a``, ``-a``, ``+a``, ``typeof a``, and what binds more strongly."""
+        token = self.tokens[self.at]
+        if token.kind == "mark" and token.text in "!-+":
+            self.at += 1
+            inner = self.unary()
+            if token.text == "!":
+                return lambda scopes: not truth(inner(scopes))
+            if token.text == "-":
+                return lambda scopes: -number(inner(scopes))
+            return lambda scopes: number(inner(scopes))
+        if token.kind == "name" and token.text == "typeof":
+            self.at += 1
+            return self.type_of()
+        return self.member()
+
+    def type_of(self) -> Function:
+        """``typeof a``; a name that nothing declares is no error here."""
+        start = self.at
+        inner = self.unary()
+        read = [token for token in self.tokens[start : self.at] if token.text not in "()"]
+        if len(read) > 1 or read[0].kind != "name" or read[0].text in WORDS:
+            return lambda scopes: kind_of(inner(scopes))
+
+        def declared(scopes: Scopes) -> str:
+            try:
+                return kind_of(inner(scopes))
+            except ScriptError:
+                return "undefined"
+
+        return declared
+
+    def member(self) -> Function:
+        """``a.b`` and ``a["b"]``; which member it is must be written out."""
+        start = self.place(self.tokens[self.at].start)
+        value = self.primary()
+        while True:
+            if self.comes("."):
+                token = self.take()
+                if token.kind != "name":
+                    raise _Beyond
+                value = _member(value, token.text, start)
+            elif self.comes("["):
+                token = self.take()
+                if token.kind == "number":
+                    value = _member(value, number_text(float(token.text)), start)
+                elif token.kind == "text":
+                    value = _member(value, token.text[1:-1], start)
+                else:
+                    raise _Beyond
+                self.expect("]")
+            else:
+                return value
+
+    def primary(self) -> Function:
+        """A literal, a name, or an expression in brackets."""
+        token = self.take()
+        match token.kind:
+            case "number":
+                return _constant(float(token.text))
+            case "text":
+                return _constant(token.text[1:-1])
+            case "escaped":
+                unescape = lambda match: ESCAPES.get(match[1], match[1])  # noqa: E731
+                return _constant(re.sub(r"\\(.)", unescape, token.text[1:-1]))
+            case "name":
+                return self.name(token)
+        if token.text == "(":
+            inner = self.conditional()
+            self.expect(")")
+            return inner
+        if token.text == "[":
+            return self.array()
+        if token.text == "{":
+            return self.object()
+        raise _Beyond
+
+    def name(self, token: _Token) -> Function:
+        """A variable or a word that stands for a value."""
+        name = token.text
+        if name in WORDS:
+            return _constant(WORDS[name])
+        if name in RESERVED or name in INHERITED or name in BUILT_IN:
+            raise _Beyond
+        if name not in CONSTANTS and name not in VARIABLES:
+            self.names.setdefault(name, token.start)
+        return _variable(name, self.place(token.start))
+
+    def literal(self) -> Any:
+        """A number, text or word in an array or object: nothing that is computed."""
+        token = self.take()
+        sign = token.text == "-" and token.kind == "mark"
+        token = self.take() if sign else token
+        if token.kind == "number":
+            return -float(token.text) if sign else float(token.text)
+        if sign or token.kind not in ("text", "name"):
+            raise _Beyond
+        if token.kind == "text":
+            return token.text[1:-1]
+        if token.text not in WORDS:
+            raise _Beyond
+        return WORDS[token.text]
+
+    def array(self) -> Function:
+        """An array of literals: a new one at every evaluation."""
+        values: list[Any] = []
+        while not self.comes("]"):
+            values.append(self.literal())
+            if not self.comes(","):
+                self.expect("]")
+                break
+        return lambda scopes: values.copy()
+
+    def object(self) -> Function:
+        """An object of literals: a new one at every evaluation."""
+        values: dict[str, Any] = {}
+        while not self.comes("}"):
+            token = self.take()
+            key = token.text[1:-1] if token.kind == "text" else token.text
+            if token.kind not in ("text", "name") or key.isdigit() or key == "__proto__":
+                raise _Beyond
+            self.expect(":")
+            values[key] = self.literal()
+            if not self.comes(","):
+                self.expect("}")
+                break
+        return lambda scopes: values.copy()
+
+
+# The functions of which expressions are made ----------------------------------------------
+
+
+def _constant(value: Any) -> Function:
+    return lambda scopes: value
+
+
+def _variable(name: str, place: tuple[int, int]) -> Function:
+    def read(scopes: Scopes) -> Any:
+        application, document, dialog, local = scopes
+        if name in local:
+            return local[name]
+        if name in dialog:
+            return dialog[name]
+        if name in document:
+            return document[name]
+        if name in application:
+            return application[name]
+        if name in CONSTANTS:
+            return CONSTANTS[name]
+        if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
+            return scope
+        raise ScriptError(f"ReferenceError: {name} is not defined", [place])
+
+    return read
+
+
+def _member(value: Function, key: str, place: tuple[int, int]) -> Function:
+    if key in INHERITED or key in METHODS:
+        raise _Beyond
+    index = int(key) if key.isdigit() and key == str(int(key)) else -1
+
+    def read(scopes: Scopes) -> Any:
+        found = value(scopes)
+        if isinstance(found, dict):
+            return found.get(key, UNDEFINED)
+        if found is None or found is UNDEFINED:
+            what = "null" if found is None else "undefined"
+            raise ScriptError(f"TypeError: cannot read property '{key}' of {what}", [place])
+        if not isinstance(found, list | str):
+            return UNDEFINED
+        if key == "length":
+            return float(len(found) if isinstance(found, list) else units(found))
+        if isinstance(found, str):
+            return unit(found, index)
+        return found[index] if 0 <= index < len(found) else UNDEFINED
+
+    return read
+
+
+def _operation(mark: str, left: Function, right: Function) -> Function:
+    match mark:
+        case "&&":
+            return lambda scopes: right(scopes) if truth(value := left(scopes)) else value
+        case "||":
+            return lambda scopes: value if truth(value := left(scopes)) else right(scopes)
+        case "===":
+            return lambda scopes: same(left(scopes), right(scopes))
+        case "!==":
+            return lambda scopes: not same(left(scopes), right(scopes))
+        case "==":
+            return lambda scopes: alike(left(scopes), right(scopes))
+        case "!=":
+            return lambda scopes: not alike(left(scopes), right(scopes))
+        case "+":
+            return _sum(left, right)
+        case "-" | "*" | "/" | "%":
+            return _arithmetic(ARITHMETIC[mark], left, right)
+    return _comparison(COMPARISONS[mark], left, right)
+
+
+def _sum(left: Function, right: Function) -> Function:
+    def add(scopes: Scopes) -> Any:
+        first, second = left(scopes), right(scopes)
+        if type(first) is float and type(second) is float:
+            return first + second
+        first, second = primitive(first), primitive(second)
+        if not isinstance(first, str) and not isinstance(second, str):
+            return number(first) + number(second)
+        joined = text(first) + text(second)
+        if len(joined) > LONGEST:
+            raise ScriptError("it used too much memory")
+        return joined
+
+    return add
+
+
+def _arithmetic(act: Callable[[float, float], float], left: Function, right: Function) -> Function:
+    def calculate(scopes: Scopes) -> float:
+        first, second = left(scopes), right(scopes)
+        if type(first) is float and type(second) is float:
+            return act(first, second)
+        return act(number(first), number(second))
+
+    return calculate
+
+
+def _comparison(act: Callable[[Any, Any], bool], left: Function, right: Function) -> Function:
+    def compare(scopes: Scopes) -> bool:
+        first, second = left(scopes), right(scopes)
+        if type(first) is float and type(second) is float:
+            return act(first, second)
+        first, second = primitive(first), primitive(second)
+        if isinstance(first, str) and isinstance(second, str):
+            return act(order(first), order(second))
+        return act(number(first), number(second))
+
+    return compare
+
+
+def divide(first: float, second: float) -> float:
+    """Division, which has a value by nought as well."""
+    if second:
+        return first / second
+    if first == 0 or first != first or second != second:
+        return math.nan
+    return math.copysign(math.inf, first) * math.copysign(1, second)
+
+
+def remainder(first: float, second: float) -> float:
+    """The remainder, with the sign of what is divided."""
+    if second == 0 or math.isinf(first):
+        return math.nan
+    return math.fmod(first, second)
+
+
+ARITHMETIC: dict[str, Callable[[float, float], float]] = {
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": divide,
+    "%": remainder,
+}
+COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
+    "<": operator.lt,
+    ">": operator.gt,
+    "<=": operator.le,
+    ">=": operator.ge,
+}
+
+
+# Values (ECMAScript 2024, chapter 7) --------------------------------------------------------
+
+
+def truth(value: Any) -> bool:
+    """A value as a condition (7.1.2)."""
+    if value is True or value is False:
+        return bool(value)
+    if isinstance(value, list | dict):
+        return True
+    return value is not UNDEFINED and bool(value) and value == value
+
+
+def primitive(value: Any) -> Any:
+    """An array or object as the text that it is where a plain value is needed (7.1.1)."""
+    if isinstance(value, dict) and "toString" in value:
+        raise ScriptError("TypeError: toPrimitive")
+    return text(value) if isinstance(value, list | dict) else value
+
+
+def number(value: Any) -> float:
+    """A value as a number (7.1.4)."""
+    if isinstance(value, float):
+        return value
+    if value is None or isinstance(value, bool):
+        return float(value or 0)
+    if value is UNDEFINED:
+        return math.nan
+    code = text(value).strip(SPACE)
+    if not code:
+        return 0.0
+    if NUMERIC.fullmatch(code) is None:
+        return math.nan
+    return float(int(code, 0)) if code[1:2] in tuple("xXoObB") else float(code)
+
+
+def text(value: Any) -> str:
+    """A value as text (7.1.17)."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return number_text(value)
+    if value is None or isinstance(value, bool):
+        return "null" if value is None else str(value).lower()
+    if isinstance(value, list):
+        return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
+    return "[object Object]" if isinstance(value, dict) else "undefined"
+
+
+def number_text(value: float) -> str:
+    """A number as text (6.1.6.1.20)."""
+    if value != value or math.isinf(value):
+        return "NaN" if value != value else "Infinity" if value > 0 else "-Infinity"
+    if value == int(value) and abs(value) < LARGEST:
+        return str(int(value))
+    found, _, exponent = repr(value).partition("e")
+    power = int(exponent or 0)
+    sign, digits = ("-", found[1:]) if found[0] == "-" else ("", found)
+    if -7 < power < 0:
+        return f"{sign}0.{'0' * (-power - 1)}{digits.replace('.', '')}"
+    if 0 < power < 21:
+        return sign + digits.replace(".", "").ljust(power + 1, "0")
+    return f"{sign}{digits}e{power:+d}" if exponent else sign + digits.removesuffix(".0")
+
+
+def kind_of(value: Any) -> str:
+    """What ``typeof`` says of a value."""
+    if isinstance(value, bool):
+        return "boolean"
+    if isinstance(value, float | str):
+        return "number" if isinstance(value, float) else "string"
+    return "undefined" if value is UNDEFINED else "object"
+
+
+def same(first: Any, second: Any) -> bool:
+    """``===`` (7.2.14)."""
+    if type(first) is not type(second):
+        return False
+    return first is second if isinstance(first, list | dict) else bool(first == second)
+
+
+def alike(first: Any, second: Any) -> bool:
+    """``==`` (7.2.13)."""
+    if type(first) is type(second):
+        return same(first, second)
+    absent = (None, UNDEFINED)
+    if first in absent or second in absent:
+        return first in absent and second in absent
+    if isinstance(first, list | dict) and isinstance(second, list | dict):
+        return first is second
+    first, second = primitive(first), primitive(second)
+    if isinstance(first, str) and isinstance(second, str):
+        return first == second
+    return number(first) == number(second)
+
+
+def unit(value: str, index: int) -> Any:
+    """One of the 16 bits that a text is made of for ECMAScript."""
+    if value.isascii():
+        return value[index] if 0 <= index < len(value) else UNDEFINED
+    found = value.encode("utf-16-be", "surrogatepass")[max(2 * index, 0) : 2 * index + 2]
+    return found.decode("utf-16-be", "surrogatepass") if found else UNDEFINED
+
+
+def units(value: str) -> int:
+    """How long ECMAScript takes a text for."""
+    return len(value) if value.isascii() else len(value.encode("utf-16-le", "surrogatepass")) // 2
+
+
+def order(value: str) -> str | bytes:
+    """What texts are compared by."""
+    return value.encode("utf-16-be", "surrogatepass")
+
+
+def well_formed(value: str) -> str:
+    """Text in which halves of letters are whole again, or replaced."""
+    if SURROGATE.search(value) is None:
+        return value
+    return value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
+    """A value as JSON (25.5.2); what it cannot have is left out, or null.
+
+    Raises:
+        ScriptError: something holds itself, as a scope does.
+    """
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, float) and not math.isfinite(value):
+        return "null"
+    if not isinstance(value, list | dict):
+        return "null" if value is UNDEFINED else text(value)
+    if id(value) in around or isinstance(value, Named):
+        raise ScriptError("TypeError: circular reference")
+    around = (*around, id(value))
+    if isinstance(value, list):
+        return f"[{','.join(stringify(one, around) for one in value)}]"
+    pairs = [
+        f"{json.dumps(key, ensure_ascii=False)}:{stringify(one, around)}"
+        for key, one in sorted(value.items(), key=_position)
+        if one is not UNDEFINED
+    ]
+    return f"{{{','.join(pairs)}}}"
+
+
+def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
+    """Names that are numbers stand before others, in their order (10.1.11.1)."""
+    index = pair[0].isdigit() and pair[0] == str(int(pair[0]))
+    return (not index, int(pair[0]) if index else 0)
+
+
+def inward(value: Json) -> Any:
+    """A value from outside as one of those here: a copy, in which numbers are ``float``."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if isinstance(value, list | tuple):
+        return [inward(one) for one in value]
+    if isinstance(value, Mapping):
+        return {str(key): inward(one) for key, one in value.items()}
+    return value
+
+
+def outward(value: Any) -> Json:
+    """A value as plain data; undefined becomes None.
+
+    Raises:
+        ScriptError: it is too long, or holds itself.
+    """
+    if value is UNDEFINED:
+        return None
+    if isinstance(value, str):
+        return bounded(well_formed(value))
+    if isinstance(value, list | dict):
+        return json.loads(bounded(well_formed(stringify(value))))
+    return plain_number(value)
+
+
+class PlainEngine:
+    """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
+
+    now = 0
+    """The time by the run's calendar: nothing here asks for it."""
+    spent = 0.0
+    """Seconds of evaluations: nothing here can take long."""
+
+    def __init__(self) -> None:
+        self._long: WeakValueDictionary[int, Scope] = WeakValueDictionary()
+        """Scopes in which a long text has been put, by their id()."""
+        self._added = 0
+
+    @staticmethod
+    def _call(code: str) -> Function:
+        found = compiled(code)
+        if found is None:
+            raise ScriptError(f"SyntaxError: {code} needs an engine")
+        return found.call
+
+    def scope(self, **values: Json) -> Scope:
+        """A new scope."""
+        return Scope({name: inward(value) for name, value in values.items()})
+
+    def named(self, name: str) -> Scope:
+        """A new scope that its expressions know as ``application``, ``document`` or ``dialog``."""
+        return Named()
+
+    def event(self, name: str, message: str, data: Json) -> Scope:
+        """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
+        given = inward(data) if data else {}
+        event = {"name": name, "message": message, "data": given}
+        return Scope(event=event, _event=name, _message=message)
+
+    def clock(self, scope: Scope, seconds: float) -> None:
+        """Tell a scope the time of the run, as ``session.time``."""
+        scope["session"] = {"time": float(seconds)}
+
+    def set(self, scope: Scope, name: str, value: Json) -> None:
+        """Give a variable of a scope a value from outside."""
+        scope[name] = inward(value)
+
+    def unset(self, scope: Scope, name: str) -> None:
+        """Make a variable of a scope undefined."""
+        scope[name] = UNDEFINED
+
+    def has(self, scope: Scope, name: str) -> bool:
+        """Whether a scope has a variable of that name."""
+        return name in scope
+
+    def defined(self, scope: Scope, name: str) -> bool:
+        """Whether a variable of a scope has a value other than undefined."""
+        return scope.get(name, UNDEFINED) is not UNDEFINED
+
+    def condition(self, code: str, scopes: Scopes) -> bool:
+        """Evaluate an expression as a condition."""
+        return truth(self._call(code)(scopes))
+
+    def text(self, code: str, scopes: Scopes) -> str:
+        """Evaluate an expression and give its value as text for speech or a log."""
+        value = self._call(code)(scopes)
+        if value is UNDEFINED:
+            return "null"
+        return bounded(
+            well_formed(stringify(value) if isinstance(value, list | dict) else text(value))
+        )
+
+    def value(self, code: str, scopes: Scopes) -> Json:
+        """Evaluate an expression and give its value as plain data."""
+        return outward(self._call(code)(scopes))
+
+    def get(self, scope: Scope, name: str) -> Json:
+        """A variable's value as plain data."""
+        return outward(scope.get(name, UNDEFINED))
+
+    def elements(self, code: str, scopes: Scopes, most: int) -> list[Any]:
+        """Evaluate an expression that gives an array; its elements as they are here.
+
+        Raises:
+            ScriptError: it is no array.
+        """
+        array = self._call(code)(scopes)
+        if not isinstance(array, list):
+            raise ScriptError(f"{code} is not an array")
+        if len(array) > most:
+            raise ScriptError(f"it has more than {most:,} elements")
+        return array
+
+    def assign(self, scope: Scope, name: str, code: str, scopes: Scopes) -> None:
+        """Evaluate an expression and give its value to a variable of a scope."""
+        self.put(scope, name, self._call(code)(scopes))
+
+    def assign_declared(self, name: str, code: str, scopes: Scopes) -> None:
+        """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
+
+        Raises:
+            ScriptError: no scope declares it, or the expression fails.
+        """
+        head, dot, last = name.rpartition(".")
+        for scope in (scopes[SCOPES.index(head)],) if dot else scopes[::-1]:
+            if last in scope:
+                self.put(scope, last, self._call(code)(scopes))
+                return
+        raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
+
+    def put(self, scope: Scope, name: str, value: Any) -> None:
+        """Give a variable one of the values that there are here.
+
+        Raises:
+            ScriptError: the variables would hold too much.
+        """
+        scope[name] = value
+        if isinstance(value, str) and len(value) > LONG:
+            self._hold(scope, len(value))
+
+    def _hold(self, scope: Scope, length: int) -> None:
+        """Bound what all variables hold together; it is counted anew only now and then."""
+        self._long[id(scope)] = scope
+        self._added += length
+        if self._added > MOST_HELD:
+            held = {
+                id(one): len(one)
+                for kept in self._long.values()
+                for one in kept.values()
+                if isinstance(one, str)
+            }
+            self._added = sum(held.values())
+            if self._added > MOST_HELD:
+                raise ScriptError("it used too much memory")
