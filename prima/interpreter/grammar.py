@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from functools import lru_cache
 
 from prima.deferred import dataclass, field
@@ -167,10 +167,32 @@ class Sequence:
 
 
 @dataclass(slots=True)
+class Index:
+    """Alternatives, by number, by what they begin with; see :mod:`prima.interpreter.leads`."""
+
+    by_lead: dict[str, list[int]]
+    """Without spaces; an alternative stands under each of its beginnings."""
+    lengths: list[int]
+    """How long these are, the shortest first."""
+    others: list[int]
+    """Those of which nothing is known."""
+
+    def likely(self, rest: str) -> list[int]:
+        """Those that may match what goes on with a text without spaces, in order."""
+        found = set(self.others)
+        for length in self.lengths:
+            if length > len(rest):
+                break
+            found.update(self.by_lead.get(rest[:length], ()))
+        return sorted(found)
+
+
+@dataclass(slots=True)
 class Choice:
-    """Alternatives."""
+    """Alternatives; where there are many, with an index of them."""
 
     parts: list[Part]
+    index: Index | None = None
 
 
 @dataclass(slots=True)
@@ -192,6 +214,8 @@ Part = Words | Sequence | Choice | Reference | Tag
 
 Ends = dict[int, str | None]
 """Where an expansion may end, with the value of the last tag on the way there."""
+Asking = Generator[tuple[Part, int], Ends, Ends]
+"""Finds where a part may end, and asks for that of others at some places."""
 
 
 @dataclass(slots=True)
@@ -204,14 +228,14 @@ class Grammar:
     def match(self, text: str) -> str | None:
         """The value of an utterance (the last tag met, else the utterance), or None."""
         said = fold(text)
-        ends = _Matching(self.rules, said).ends(Reference(self.root), 0)
+        ends = Matching(self.rules, said).ends(Reference(self.root), 0)
         if len(said) not in ends:
             return None
         tag = ends[len(said)]
         return text.strip() if tag is None else tag
 
 
-class _Matching:
+class Matching:
     """Matches one utterance; every part is matched at every place only once."""
 
     def __init__(self, rules: dict[str, Part], said: str) -> None:
@@ -222,15 +246,34 @@ class _Matching:
 
     def ends(self, part: Part, start: int) -> Ends:
         """Where a part that begins at ``start`` may end."""
+        begun: list[tuple[tuple[int, int], Asking]] = []  # no recursion: rules may go very deep
+        found: Ends | None = self._ask(begun, part, start)
+        while begun:
+            key, asking = begun[-1]
+            try:
+                asked = next(asking) if found is None else asking.send(found)
+                found = self._ask(begun, *asked)
+            except StopIteration as done:
+                begun.pop()
+                found = self.known[key] = done.value
+        assert found is not None
+        return found
+
+    def _ask(
+        self, begun: list[tuple[tuple[int, int], Asking]], part: Part, start: int
+    ) -> Ends | None:
+        """What is known of a part at a place; None where it has to be found, which is begun."""
         key = (id(part), start)
-        if key not in self.known:
+        found = self.known.get(key)
+        if found is None:
             self.known[key] = {}  # what refers to itself before saying anything leads nowhere
             self.left -= 1
-            if self.left > 0:
-                self.known[key] = self._ends(part, start)
-        return self.known[key]
+            if self.left <= 0:
+                return {}
+            begun.append((key, self._ends(part, start)))
+        return found
 
-    def _ends(self, part: Part, start: int) -> Ends:
+    def _ends(self, part: Part, start: int) -> Asking:
         match part:
             case Words(words):
                 end = _said(self.said, start, words)
@@ -238,22 +281,29 @@ class _Matching:
             case Tag(value):
                 return {start: value}
             case Reference(rule):
-                return self.ends(self.rules[rule], start)
-            case Choice(parts):
+                return (yield self.rules[rule], start)
+            case Choice():
                 found: Ends = {}
-                for choice in parts:
-                    for end, tag in self.ends(choice, start).items():
+                for choice in self._likely(part, start):
+                    for end, tag in (yield choice, start).items():
                         found.setdefault(end, tag)
                 return found
             case Sequence():
-                return self._times(part, start)
+                return (yield from self._times(part, start))
 
-    def _times(self, part: Sequence, start: int) -> Ends:
+    def _likely(self, part: Choice, start: int) -> list[Part]:
+        """The alternatives that may match at a place."""
+        if part.index is None:
+            return part.parts
+        rest = self.said[start:].replace(" ", "")
+        return [part.parts[number] for number in part.index.likely(rest)]
+
+    def _times(self, part: Sequence, start: int) -> Asking:
         """A sequence said between ``low`` and ``high`` times."""
         found: Ends = {start: None} if part.low == 0 else {}
         here: Ends = {start: None}
         for times in range(1, part.high + 1):
-            here = self._once(part.parts, here)
+            here = yield from self._once(part.parts, here)
             new = {end: tag for end, tag in here.items() if end not in found}
             if times >= part.low:
                 found |= new
@@ -261,11 +311,11 @@ class _Matching:
                 break
         return found
 
-    def _once(self, parts: list[Part], here: Ends) -> Ends:
+    def _once(self, parts: list[Part], here: Ends) -> Asking:
         for part in parts:
             after: Ends = {}
             for start, tag in here.items():
-                for end, later in self.ends(part, start).items():
+                for end, later in (yield part, start).items():
                     after.setdefault(end, tag if later is None else later)
             here = after
         return here

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from prima.errors import did_you_mean
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
+from prima.interpreter.leads import index_choices
 from prima.markup.tree import Node
 
 
@@ -42,6 +43,7 @@ def read_grammar(note: Note, node: Node) -> Grammar:
         note(node, "no-such-rule", f'There is no rule "{grammar.root}".', hint, "root")
         grammar.rules[grammar.root] = Choice([])
     _check_references(note, node, grammar)
+    index_choices(grammar)
     return grammar
 
 
