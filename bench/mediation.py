@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from time import perf_counter
+from time import process_time
 
 from bench.fresh import check
 
@@ -14,7 +14,7 @@ MOST = 100_000
 
 
 def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
-    """Decisions a second while one AB of each of so many applications waits.
+    """Decisions a second (of the processor's time) while ABs of so many applications wait.
 
     One more application's AB runs. Each decision is the end of what runs, told to the mediator,
     and a selection with its records and orders. All Commands are requested before; the clock
@@ -52,7 +52,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     lasted = 0.0
     while lasted < seconds and CHAIN * len(turns) < MOST:
         drained = []
-        began = perf_counter()
+        began = process_time()
         for _ in range(CHAIN):
             chronicle.now += 1
             mediator.ended(order.behavior, True, {})
@@ -60,7 +60,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
             mediator.select()
             (order,) = mediator.drain_orders()
             drained.append(chronicle.drain())
-        lasted += perf_counter() - began
+        lasted += process_time() - began
         winners = [
             record["app"]
             for records in drained

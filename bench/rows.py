@@ -110,8 +110,8 @@ def loads() -> list[Row]:
             needs="sismic",
         ),
         Row(
-            "Growth of load, 100 to 20,000 states",
-            "exponent",
+            "Growth of load, 100 to 20,000 states: the exponent",
+            "",
             Call(workloads.growth, (20_000,)),
             most=1.05,
             rounds=3,
@@ -205,7 +205,7 @@ def simulated() -> list[Row]:
         ),
         Row(
             "Instants computed in 100 quiet hours",
-            "instants",
+            "",
             Call(simulation.quiet, (100,)),
             most=0,
             rounds=1,

@@ -121,17 +121,18 @@ def told(value: float, row: Row) -> str:
 
 
 def spread(results: list[float], row: Row) -> str:
-    """Between what the middle half of the results lies."""
+    """Between what the middle half of the results lies; a unit that never changes is left out."""
     if len(results) < 3:
         return ""
     low, _, high = quantiles(results, n=4, method="inclusive")
-    return f" ({told(low, row)} to {told(high, row)})"
+    form = shown if row.unit == "s" and row.peer is None else lambda value, _: number(value)
+    return f" ({form(low, row.unit)} to {form(high, row.unit)})"
 
 
 def shown(value: float, unit: str) -> str:
     """A figure with its unit; seconds in one that fits."""
     if unit != "s":
-        return f"{number(value)} {unit}"
+        return f"{number(value)} {unit}".rstrip()
     if value >= 1:
         return f"{number(value)} s"
     if value >= 1e-3:

@@ -188,10 +188,11 @@ def test_the_ratio_is_that_of_the_pairs() -> None:
 
 def test_a_figure_without_a_peer_has_its_spread_and_its_note() -> None:
     alone = row(unit="events/s", least=2_000)
-    found = run.Measured(alone, [Figure(one, "some") for one in (1999.0, 2000.0, 2500.0)])
-    assert run.line(found) == (
-        "| this | 2,000 events/s (some) (2,000 to 2,250 events/s) |  |  | ≥ 2,000 events/s | met |"
-    ).replace("(2,000 to", "(2,000 events/s to")
+    found = run.Measured(alone, [Figure(one, "some") for one in (1999.5, 2000.0, 2500.0)])
+    text = "| this | 2,000 events/s (some) (2,000 to 2,250) |  |  | ≥ 2,000 events/s | met |"
+    assert run.line(found) == text
+    seconds = measured(row(), [0.9, 1.1, 1.3], [])
+    assert run.line(seconds) == "| this | 1.1 s (1 s to 1.2 s) |  |  |  |  |"
 
 
 @pytest.mark.parametrize(
@@ -202,7 +203,7 @@ def test_a_figure_without_a_peer_has_its_spread_and_its_note() -> None:
         (0.0000051, "s", "5.1 µs"),
         (0.0, "s", "0 µs"),
         (123456.7, "events/s", "123,457 events/s"),
-        (0.0, "instants", "0 instants"),
+        (0.0, "", "0"),
     ],
 )
 def test_figures_as_people_read_them(value: float, unit: str, text: str) -> None:

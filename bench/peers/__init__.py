@@ -41,7 +41,7 @@ PEERS = {
         ("node", "npm"),
         (("npm", "ci", "--ignore-scripts", "--silent", "--no-audit", "--no-fund"),),
         ("node", "ring.mjs"),
-        HERE / "node_modules" / "xstate" / "package.json",
+        HERE / "node_modules" / ".package-lock.json",
     ),
     "scxml": Peer(
         "Commons SCXML",
@@ -65,7 +65,8 @@ def installed(name: str) -> bool:
 def version(name: str) -> str:
     """Which version of a peer is installed."""
     if name == "xstate":
-        return str(json.loads(PEERS[name].proof.read_text(encoding="utf-8"))["version"])
+        lock = json.loads(PEERS[name].proof.read_text(encoding="utf-8"))
+        return str(lock["packages"]["node_modules/xstate"]["version"])
     jar = next((BUILD / "lib").glob("commons-scxml-*.jar"))
     return jar.stem.removeprefix("commons-scxml-")
 
@@ -111,7 +112,7 @@ def install(name: str) -> str:
     """Install a peer if its tools are there; gives a sentence on how that went."""
     peer = PEERS[name]
     missing = [tool for tool in peer.tools if shutil.which(tool) is None]
-    if installed(name):
+    if installed(name) and peer.proof.stat().st_mtime >= _changed():
         return f"{peer.title} {version(name)} is installed."
     if missing:
         return f"{peer.title} is left out: it needs {' and '.join(missing)}."
@@ -121,6 +122,12 @@ def install(name: str) -> str:
     except (WrongAnswer, subprocess.TimeoutExpired) as error:
         return f"{peer.title} is left out: it could not be installed. {error}"
     return f"{peer.title} {version(name)} is installed."
+
+
+def _changed() -> float:
+    """When what the peers are made of was changed last."""
+    made_of = (path for path in HERE.iterdir() if path.is_file() and path.suffix != ".py")
+    return max(path.stat().st_mtime for path in made_of)
 
 
 def main() -> None:
