@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -13,6 +15,7 @@ from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
 from prima.sim.scenario import Map, Profile
 from prima.sim.world import World
+from prima.transcript import criteria
 
 ROOT = Path(__file__).parent.parent
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{}" id="{}" xml:lang="{}">'
@@ -304,6 +307,57 @@ def test_a_world_that_offers_something_to_a_robot_that_is_not_there_comes_to_an_
     transcript = api.rehearse(path)
     assert [record["phase"] for record in transcript.records] == ["run", "over"]
     assert transcript.outcome == "quiet"
+
+
+COMES_BACK = """<person x="4.5" y="4"/>
+  <when at="1s"><event name="visit"/></when>
+  <when on="visit" times="1000" after="60s"><event name="visit"/></when>
+  <when on="visit" times="1000">
+    <walk x="1.2" y="0"/><wait for="5s"/><touch sensor="head"/></when>
+  <answer to="Shall I come">Yes.</answer>
+  <when on="enough" times="1000"><walk x="4.5" y="4"/></when>"""
+REACTS = """<watch name="near" when="sensor.human.distance &lt; 1.5"/>
+  <form id="wait"><on event="near"><log>There.</log></on>
+    <on event="touch"><goto next="#ask"/></on>
+    <on event="human.lost"><goto next="#home"/></on></form>
+  <form id="ask"><block><send to="office"/><send event="late" delay="30s"/></block>
+    <field name="wish" type="boolean"><prompt>Shall I come with you?</prompt>
+      <filled><goto next="#follow"/></filled></field></form>
+  <form id="follow"><block><send event="enough" delay="3s"/><tracking-human/></block>
+    <on event="enough"><goto next="#wait"/></on></form>
+  <form id="home"><block><set-position-and-direction x="0" y="0" heading="0"/>
+    <goto next="#wait"/></block></form>"""
+
+
+def test_nothing_is_kept_of_what_is_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A user comes back once a minute; records are written, not kept."""
+    monkeypatch.setattr(criteria, "MOST_EVENTS", 10)
+    (tmp_path / "app.xml").write_text(HEAD.format("fa", "app", "en") + REACTS + "</prima>")
+    path = tmp_path / "scenario.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="3000s"'
+        f' world="{ROOT}/documents/worlds/room.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<robot at="middle"/><application src="app.xml"/>'
+        f'<service name="office"><reply after="1s"/></service>{COMES_BACK}</scenario>'
+    )
+    counts: list[tuple[int, int]] = []
+    seen: Counter[str] = Counter()
+
+    def look(line: str) -> None:
+        for event in ("visit", "near", "touch.head", "reply.office", "human.lost"):
+            seen[event] += f'"event":"{event}"' in line
+        if '"event":"visit"' in line and seen["visit"] in (10, 50):
+            gc.collect()
+            objects = gc.get_objects()
+            counts.append((len(objects), sum(map(sys.getsizeof, objects))))
+
+    transcript = api.rehearse(path, sink=look, keep=False)
+    assert (transcript.outcome, transcript.failures) == ("until", [])
+    assert seen["visit"] == 50
+    assert min(seen.values()) >= 49, "each visit was seen and answered"
+    (objects, size), (later_objects, later_size) = counts
+    assert later_objects - objects < 40, "less than one for each visit"
+    assert later_size - size < 40 * 100
 
 
 def test_a_way_is_chosen_that_the_body_fits_through() -> None:

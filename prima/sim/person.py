@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from heapq import heapify, heappop, heappush
 
 from prima.interpreter.grammar import fold
@@ -28,8 +29,18 @@ from prima.sim.world import World, distance
 KEYS_THAT_END = "#*"
 """Keys pressed at the end of what is recorded: there is no silence to wait for."""
 
+PHASES = {
+    "asked": ("listening",),
+    "said": ("listening", "end"),
+    "doing": ("start",),
+    "done": ("end",),
+    "on": ("event",),
+}
+"""The records in which a user sees what he waits for, by their phase."""
 OVER = ("end", "cancel", "fail")
 """How a behaviour ends in the records."""
+_folded = lru_cache(maxsize=256)(fold)
+"""Words without what speech does not carry; the same are compared again and again."""
 
 
 @dataclass(slots=True, order=True)
@@ -58,10 +69,8 @@ class Person:
         self.robot = robot
         self.sensors: dict[str, Json] = {}
         self._speed = scenario.person_speed
-        self._whens = [
-            (index, when) for index, when in enumerate(scenario.whens) if when.trigger != "at"
-        ]
-        """What the user waits for, with its number in the scenario."""
+        self._awaited: dict[str, list[tuple[int, When]]] = {}
+        """What the user waits for in records of a phase, with its number in the scenario."""
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._scripts: list[Script] = []
@@ -69,14 +78,17 @@ class Person:
         self._playing: list[Script] = []
         """What is being done at this instant, and not in the heap meanwhile."""
         self._serial = 0
-        self._listens = any(when.trigger in ("asked", "said") for _, when in self._whens)
+        self._listens = False
         """Whether it matters to the user what is said."""
         self._texts: dict[str, str] = {}
         """What the behaviours that go on have said."""
         self._following: float | None = None
-        for when in scenario.whens:
+        for index, when in enumerate(scenario.whens):
             if when.trigger == "at":
                 self._begin(when.doings, int(when.what) + when.after, False)
+            for phase in PHASES.get(when.trigger, ()):
+                self._awaited.setdefault(phase, []).append((index, when))
+            self._listens = self._listens or when.trigger in ("asked", "said")
 
     def _begin(self, doings: list[Doing], time: int, triggered: bool) -> Script:
         self._serial += 1
@@ -106,10 +118,9 @@ class Person:
             phase = record["phase"]
             if phase == "start" and self._listens and record.get("text"):
                 self._texts[record["behavior"].partition(".")[0]] = record["text"]
-            if phase in ("start", "end", "listening", "event"):
-                for index, when in self._whens:
-                    if self._is(when, phase, record):
-                        self._trigger(index, when, now)
+            for index, when in self._awaited.get(phase, ()):
+                if self._is(when, phase, record):
+                    self._trigger(index, when, now)
             if self._texts and phase in OVER and record.get("outcome") != "again":
                 self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
 
@@ -121,25 +132,26 @@ class Person:
             self._begin(when.doings, now + max(when.after, 1), True)
 
     def _is(self, when: When, phase: str, record: Record) -> bool:
+        """Whether a record, of one of the trigger's phases, is what the user waits for."""
         behavior = record.get("behavior") or ""
         match when.trigger:
             case "asked":
-                return phase == "listening" and self._holds(when, behavior)
+                return self._holds(when, behavior)
             case "said":
-                ended = phase == "end" and record.get("outcome") == "done"
-                return (phase == "listening" or ended) and self._holds(when, behavior)
+                over = phase == "listening" or record.get("outcome") == "done"
+                return over and self._holds(when, behavior)
             case "doing":
                 first = behavior.partition(".")[2] in ("", "1")
-                return phase == "start" and first and record.get("command") == when.what
+                return first and record.get("command") == when.what
             case "done":
-                over = phase == "end" and record.get("outcome") != "again"
+                over = record.get("outcome") != "again"
                 return over and record.get("command") == when.what
             case _:
-                return phase == "event" and takes(when.what, record["event"])
+                return takes(when.what, record["event"])
 
     def _holds(self, when: When, behavior: str) -> bool:
         said = self._texts.get(behavior.partition(".")[0], "")
-        return bool(said) and fold(when.what) in fold(said)
+        return bool(said) and _folded(when.what) in _folded(said)
 
     # Doing ------------------------------------------------------------------------
 

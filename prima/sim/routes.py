@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import inf
 from typing import Any
 
 from prima.sim.scenario import Map, Point
@@ -14,6 +16,8 @@ class Routes:
     def __init__(self, plan: Map) -> None:
         self._map = plan
         self._graph: Any = None
+        self._lengths: dict[str, dict[str, float]] = {}
+        """How far it is from places to each place that has been asked for (m)."""
 
     def _built(self) -> Any:
         if self._graph is None:
@@ -33,15 +37,23 @@ class Routes:
         graph, here, places = self._built(), world.position, self._map.places
         if to not in places:
             return None
-        lengths = networkx.single_source_dijkstra_path_length(graph, to)
-        best: tuple[float, str] | None = None
-        reached = [name for name in sorted(lengths) if world.passable(here, places[name])]
-        for name in reached or sorted(lengths):
-            if reached or world.clear(here, places[name]):
-                whole = distance(here, places[name]) + lengths[name]
-                if best is None or whole < best[0] - 1e-9:
-                    best = (whole, name)
-        if best is None:
+        if to not in self._lengths:
+            self._lengths[to] = networkx.single_source_dijkstra_path_length(graph, to)
+        first = self._first(world.passable, here, to) or self._first(world.clear, here, to)
+        if first is None:
             return None
-        path = networkx.dijkstra_path(graph, best[1], to)
+        path = networkx.dijkstra_path(graph, first, to)
         return [places[name] for name in path]
+
+    def _first(self, free: Callable[[Point, Point], bool], here: Point, to: str) -> str | None:
+        """The place from which the way to another is shortest, of those that are free to go to.
+
+        Whether one is free takes longest to tell: it is asked only of those that are nearer.
+        """
+        found, shortest = None, inf
+        for name, length in sorted(self._lengths[to].items()):
+            place = self._map.places[name]
+            whole = distance(here, place) + length
+            if whole < shortest - 1e-9 and free(here, place):
+                found, shortest = name, whole
+        return found

@@ -8,8 +8,7 @@ measured alike. Times in seconds.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from statistics import fmean
+from dataclasses import dataclass, field, replace
 
 from prima.messages import Record
 
@@ -65,6 +64,15 @@ class _Tree:
     left_by: set[str] = field(default_factory=set)
     reacting: float = -1.0
     """When a reaction of it started last, if nobody has come in since; else less than 0."""
+    asks: bool = False
+    """Whether it has asked or will ask the user something."""
+    faced: bool | None = None
+    """Whether robot and user faced each other at its first word, if that has been said."""
+
+    @property
+    def unfaced(self) -> bool:
+        """Whether it is a conversation that was begun without the channel."""
+        return self.asks and self.faced is False
 
 
 @dataclass(slots=True)
@@ -78,25 +86,47 @@ class _Wait:
     """Whether another application came in, by no reaction."""
 
 
-class Observer:
-    """Goes through the records of one run, in order."""
+@dataclass(slots=True)
+class _Event:
+    """Something that applications may react to."""
 
-    def __init__(self) -> None:
+    name: str
+    time: float
+    answered: tuple[str, ...] = ()
+    """Applications that have reacted."""
+    waited: str = ""
+    """The application whose wait was broken and that this answers, until it is taken up."""
+
+
+PARTS = 1 << 80
+"""Parts of a second in which floats from a microsecond on are whole numbers."""
+MOST_EVENTS = 1000
+"""How many events later a reaction may still come."""
+
+
+class Observer:
+    """Goes through the records of one run, in order; it remembers what goes on, and no more.
+
+    Args:
+        delays: whether each reaction is kept in the result, beside their number and times.
+    """
+
+    def __init__(self, delays: bool = True) -> None:
         self.found = Criteria()
+        self._keeps_delays = delays
+        self._delayed = 0
+        """The seconds of all reactions, in parts so small that the sum is exact."""
         self._trees: dict[str, _Tree] = {}
         self._of: dict[str, _Tree] = {}
-        self._talks: set[str] = set()
-        """Streams that have asked or will ask the user something."""
-        self._first_word: dict[str, bool] = {}
+        """The streams of behaviors that have not ended."""
         self._seen = False
         self._cut: set[str] = set()
+        """Behaviors that go on and have lost a device."""
         self._now = 0.0
-        self._events: dict[int, tuple[str, float]] = {}
-        self._delays: dict[tuple[str, int], Delay] = {}
+        self._events: dict[int, _Event] = {}
+        """The latest events, by serial number."""
         self._waits: dict[tuple[str, str], _Wait] = {}
         """Applications that wait for a service's answer, by application and service."""
-        self._answered: dict[int, str] = {}
-        """Answers to waits that were broken, by their serial number, until they are taken up."""
 
     def add(self, record: Record, time: float | None = None) -> None:
         """Take in one record; ``time`` in seconds, where the record's own is not."""
@@ -109,7 +139,8 @@ class Observer:
             case "end" | "cancel" | "fail" if record.get("behavior"):
                 self._end(record)
             case "stream-end":
-                self._trees.pop(record["tree"], None)
+                tree = self._trees.pop(record["tree"], None)
+                self.found.unfaced += tree is not None and tree.unfaced
             case "event":
                 self._event(record)
             case "send":
@@ -123,17 +154,11 @@ class Observer:
                 self._end(record, again=True)
 
     def result(self) -> Criteria:
-        """What has been counted."""
+        """What has been counted so far."""
         found = self.found
-        found.delays = list(self._delays.values())
-        delays = [delay.seconds for delay in found.delays]
-        found.unfaced = sum(
-            not faced for tree, faced in self._first_word.items() if tree in self._talks
-        )
-        found.reactions = len(delays)
-        found.reaction_mean = round(fmean(delays), 3) if delays else 0.0
-        found.reaction_max = round(max(delays, default=0.0), 3)
-        return found
+        mean = self._delayed / PARTS / found.reactions if found.reactions else 0.0
+        unfaced = found.unfaced + sum(tree.unfaced for tree in self._trees.values())
+        return replace(found, reaction_mean=round(mean, 3), unfaced=unfaced)
 
     def _request(self, record: Record) -> None:
         tree = self._trees.get(record["tree"])
@@ -141,8 +166,7 @@ class Observer:
             tree = self._trees[record["tree"]] = _Tree(record["tree"], record["app"])
         tree.pending[record["behavior"]] = record
         self._of[record["behavior"]] = tree
-        if record["command"] == "q-and-a":
-            self._talks.add(tree.name)
+        tree.asks = tree.asks or record["command"] == "q-and-a"
 
     def _start(self, record: Record) -> None:
         name = record["behavior"].partition(".")[0]
@@ -151,20 +175,15 @@ class Observer:
             return
         request = tree.pending.get(name, record)
         if record.get("cause") in self._events:
-            app, event = record["app"], self._events[record["cause"]]
-            seconds = round(self._now - event[1], 3)
-            delay = Delay(event[0], record["cause"], app, seconds)
-            self._delays.setdefault((app, record["cause"]), delay)
-        if self._answered.get(record.get("cause") or 0) == record["app"]:
-            del self._answered[record["cause"]]
-            self.found.broken_waiting += 1
+            self._react(record["app"], record["cause"], self._events[record["cause"]])
         if record.get("reactive"):
             tree.reacting = self._now
         if record.get("text"):
             for (app, _), wait in self._waits.items():
                 wait.talked = wait.talked or app == tree.app
-        if record.get("text") and record["command"] != "active-sensing-human":
-            self._first_word.setdefault(tree.name, self._seen)
+        says = record.get("text") and record["command"] != "active-sensing-human"
+        if says and tree.faced is None:
+            tree.faced = self._seen
         again = not record.get("resumed") and record["behavior"].partition(".")[2] not in ("", "1")
         if not again:
             self._come_in(tree)
@@ -176,6 +195,21 @@ class Observer:
         tree.begun = True
         tree.running.add(name)
         tree.engaged = tree.engaged or bool(request.get("engages"))
+
+    def _react(self, app: str, serial: int, event: _Event) -> None:
+        """An application starts something because of an event: the first time counts."""
+        found = self.found
+        if app not in event.answered:
+            event.answered += (app,)
+            seconds = round(self._now - event.time, 3)
+            found.reactions += 1
+            found.reaction_max = max(found.reaction_max, seconds)
+            self._delayed += int(seconds * PARTS)
+            if self._keeps_delays:
+                found.delays.append(Delay(event.name, serial, app, seconds))
+        if event.waited == app:
+            event.waited = ""
+            found.broken_waiting += 1
 
     def _come_in(self, tree: _Tree) -> None:
         """Something of a stream begins: what others have not finished may be broken by it."""
@@ -212,18 +246,23 @@ class Observer:
         tree.running.discard(name)
         if not (again or record.get("outcome") in ("again", "halted")):
             tree.pending.pop(name, None)
+            del self._of[name]
+            self._cut.discard(name)
 
     def _event(self, record: Record) -> None:
         name = record["event"]
         if name in ("human.found", "human.lost"):
             self._seen = name == "human.found"
+        event = _Event(name, self._now)
         if record.get("serial"):
-            self._events[record["serial"]] = (record["event"], self._now)
+            self._events[record["serial"]] = event
+            if len(self._events) > MOST_EVENTS:
+                del self._events[next(iter(self._events))]
         for kind in ("reply.", "error.service."):
             service = name.removeprefix(kind)
             wait = self._waits.pop((record.get("app") or "", service), None)
             if name.startswith(kind) and wait is not None and wait.broken:
-                self._answered[record["serial"]] = record["app"]
+                event.waited = record["app"]
 
     def _collide(self, record: Record) -> None:
         name = record["behavior"].partition(".")[0]

@@ -30,7 +30,7 @@ class Measure:
         self.records = 0
         self._last = 0.0
         self._collisions = 0
-        self._observer = Observer()
+        self._observer = Observer(delays=False)
 
     def add(self, record: Record, time: float) -> None:
         """Take a record in; ``time`` in seconds."""
