@@ -78,12 +78,25 @@ class Transcript:
 
         return self.measure.summary() if self.measure else summarize(self.records)
 
+    @property
+    def early(self) -> str:
+        """Says that the records end before their run did; empty where they do not."""
+        if self.cut or not self.records or self.records[0]["phase"] != "run":
+            return ""
+        last = self.records[-1]
+        return "" if last["phase"] == "over" else ends_early(self.name, last["time"])
+
     def dumps(self) -> str:
         """The transcript as JSON lines."""
         from prima.transcript.lines import line
 
         made = ({**record, "time": record["time"] * 1000} for record in self.records)
         return "".join(line(record) for record in made)
+
+
+def ends_early(name: str, seconds: float) -> str:
+    """What is said of a transcript whose last record is not that its run is over."""
+    return f"{name}: the transcript ends at {seconds:.3f} s, before its run did."
 
 
 Sink = Callable[[str], object]
@@ -244,7 +257,8 @@ def export(
                 write(to, made, records([]), tags, VERSION, stream)
         except OSError as error:
             raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
-    return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut))
+    early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
+    return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 
 
 def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
@@ -310,9 +324,11 @@ def explain_row(transcript: Transcript, number: int) -> str:
 
     rows = transcript.rows()
     if not rows:
-        raise UsageError(f"{transcript.name}: the transcript has no rows.")
+        message = f"{transcript.name}: the transcript has no rows."
+        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
     if not 0 <= number < len(rows):
-        raise UsageError(f"There is no row {number}; the rows are 0 to {len(rows) - 1}.")
+        message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
+        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
     row = rows[number]
     lines = [f"Row {number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
     if row.source:

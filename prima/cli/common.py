@@ -78,6 +78,19 @@ def tell(text: str) -> None:
     click.echo(clean(text), err=True)
 
 
+def tell_cut(*transcripts: Transcript) -> None:
+    """Say of transcripts that they end before their runs did; what is there has been shown.
+
+    Raises:
+        click.exceptions.Exit: with 2: one ends at a line that cannot be read.
+    """
+    for transcript in transcripts:
+        if message := transcript.cut or transcript.early:
+            tell(f"prima: {message}")
+    if any(transcript.cut for transcript in transcripts):
+        raise click.exceptions.Exit(2)
+
+
 def print_json(data: Any) -> None:
     """Data as JSON, to stdout."""
     import json

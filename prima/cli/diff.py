@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import POLICIES, Choice, check_output, coloured, print_json, start_watchdog
+from prima.cli.common import (
+    POLICIES,
+    Choice,
+    check_output,
+    coloured,
+    print_json,
+    start_watchdog,
+    tell_cut,
+)
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -63,6 +71,7 @@ def diff(
         print_json(difference_data(difference))
     else:
         click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
+    tell_cut(old, new)
     if difference.differs:
         raise Exit(1)
 
@@ -94,7 +103,7 @@ def _transcript(path: str, policy: str | None) -> Transcript:
     from prima.errors import RunError
 
     if policy is None and not _is_markup(path):
-        return api.read(path)
+        return api.read(path, partial=True)
     start_watchdog()
     made = api.rehearse(path, policy)
     made.name = f"{path} ({policy})" if policy else path

@@ -7,7 +7,7 @@ from textwrap import shorten
 
 import click
 
-from prima.cli.common import format_option, print_json, put
+from prima.cli.common import format_option, print_json, put, tell_cut
 from prima.errors import UsageError
 
 LINE = 100
@@ -42,11 +42,13 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     else:
         from prima import api
 
-        text = api.explain_row(api.read(what), row)
+        transcript = api.read(what, partial=True)
+        text = api.explain_row(transcript, row)
         if form == "json":
             print_json({"row": row, "lines": text.split("\n")})
         else:
             put(text)
+        tell_cut(transcript)
 
 
 def _list(form: str) -> None:

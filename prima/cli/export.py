@@ -56,6 +56,8 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
         tell(f"{output}: {amount} of {made.seconds:.1f} s")
     else:
         sys.stdout.buffer.flush()
+    if made.early:
+        tell(f"prima: {made.early}")
     if made.cut:
         tell(f"prima: {made.cut}")
         raise Exit(2)

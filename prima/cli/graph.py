@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from click.exceptions import Exit
 
-from prima.cli.common import Choice, check_output, tell
+from prima.cli.common import Choice, check_output, tell, tell_cut
 from prima.errors import UsageError
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
 
 FORMATS = ["svg", "dot", "mermaid", "json"]
 
@@ -46,16 +49,13 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
         raise UsageError("say where the picture goes: -o FILE.svg, or --to dot or mermaid.")
     if output is not None:
         check_output(output, "picture", file)
-    cut: list[str] = []
-    made = picture(file, form or "svg", what or "", row, cut)
+    read: list[Transcript] = []
+    made = picture(file, form or "svg", what or "", row, read)
     if output is None:
         click.echo(made.encode(), nl=False)
     else:
         write(made, output)
-    for message in cut:
-        tell(f"prima: {message}")
-    if cut:
-        raise Exit(2)
+    tell_cut(*read)
 
 
 def write(made: str, output: str) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 
 import click
-from click.exceptions import Exit
 
-from prima.cli.common import check_output, start_watchdog, tell
+from prima.cli.common import check_output, start_watchdog, tell, tell_cut
 from prima.errors import UsageError
 
 
@@ -46,11 +45,7 @@ def report(transcripts: tuple[str, ...], output: str | None, scenarios: tuple[st
     loaded = [api.load_scenario(path) for path in scenarios]
     read = [api.read(path, partial=True) for path in transcripts]
     write_page(make(read, loaded), output)
-    cut = [transcript.cut for transcript in read if transcript.cut]
-    for message in cut:
-        tell(f"prima: {message}")
-    if cut:
-        raise Exit(2)
+    tell_cut(*read)
 
 
 def write_page(page: str, output: str | None) -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import click
-from click.exceptions import Exit
 
-from prima.cli.common import put, tell, why_option
+from prima.cli.common import put, tell_cut, why_option
 
 
 @click.command()
@@ -21,6 +20,4 @@ def show(transcript: str, why: bool) -> None:
 
     made = api.read(transcript, partial=True)
     put(made.table(why))
-    if made.cut:
-        tell(f"prima: {made.cut}")
-        raise Exit(2)
+    tell_cut(made)

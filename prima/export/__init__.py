@@ -36,6 +36,8 @@ class Exported:
     seconds: float
     cut: str = ""
     """What is wrong with the line at which the transcript breaks off, if it does."""
+    early: str = ""
+    """That the transcript ends before its run did, between two lines."""
 
 
 def installed(library: str) -> bool:

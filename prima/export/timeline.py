@@ -137,6 +137,8 @@ class Timeline:
     """What the run's first record tells; empty if the transcript does not begin with it."""
     name: str = ""
     """The transcript's, for messages."""
+    over: bool = False
+    """Whether the transcript tells how the run ended."""
     _parts: list[Part] | None = None
 
     @property
@@ -251,6 +253,7 @@ class Builder:
         self._tiers: dict[tuple[str, str], Tier] = {}
         self._now = 0
         self._head: dict[str, Json] = {}
+        self._over = False
         self._marks = self._letters = 0
         self._asked: dict[str, Record] = {}
         self._runs: dict[str, _Run] = {}
@@ -281,6 +284,7 @@ class Builder:
             "note": self._note,
             "load": self._loaded,
             "unload": self._loaded,
+            "over": self._end_of_run,
             "fetched": self._told,
             "transferred": self._told,
             "emergency": self._told,
@@ -310,7 +314,7 @@ class Builder:
         for tier in tiers:
             tier.name = unused(tier.name, names)
             tier.marks.sort(key=lambda mark: mark.start)
-        return Timeline(tiers, self._now, self._head, self._name)
+        return Timeline(tiers, self._now, self._head, self._name, self._over)
 
     # Tiers ----------------------------------------------------------------------------------
 
@@ -345,6 +349,9 @@ class Builder:
 
     def _run(self, record: Record) -> None:
         self._head = self._head or record["data"]
+
+    def _end_of_run(self, _: Record) -> None:
+        self._over = True
 
     def _request(self, record: Record) -> None:
         self._asked[record["behavior"]] = {

@@ -30,7 +30,7 @@ def picture(
     to: str = "svg",
     what: str = "",
     row: int | None = None,
-    cut: list[str] | None = None,
+    read: list[Transcript] | None = None,
 ) -> str:
     """Draw an application or a transcript; which of them it is its content tells.
 
@@ -41,8 +41,8 @@ def picture(
             default the states, or the tree.
         row: of a tree, the row of the transcript's table at whose time it is shown; by
             default all of the run.
-        cut: is told what is wrong with the line at which a transcript breaks off; it is
-            drawn as far as it goes.
+        read: is given the transcript that was read; one that was cut off is drawn as far
+            as it goes.
 
     Raises:
         UsageError: the file cannot be read or has nothing of that kind, or no such format.
@@ -61,8 +61,8 @@ def picture(
         from prima import api
 
         transcript = api.read(path, partial=True)
-        if cut is not None and transcript.cut:
-            cut.append(transcript.cut)
+        if read is not None:
+            read.append(transcript)
         return streams(transcript, to) if what == "streams" else tree(transcript, row, to)
     if what in ("tree", "streams") or row is not None:
         asked = f"--what {what}" if what in ("tree", "streams") else "--row"

@@ -86,7 +86,7 @@ def _view(transcript: Transcript, rows: list[Row], loaded: Loaded | None, walk: 
         walk,
         f"{scenario}, policy {_short(head.get('policy')) or 'not told'}",
         [(_short(name), _short(digest)) for name, digest in list(files.items())[:200]],
-        transcript.cut,
+        transcript.cut or transcript.early,
     )
     for row in rows:
         row.what = shown(row.what)
