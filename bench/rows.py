@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Any
 
 from bench import mediation, peers, processes, simulation, workloads
@@ -16,6 +17,8 @@ class Call:
 
     function: Callable[..., float]
     args: tuple[Any, ...] = ()
+    quick: tuple[Any, ...] = ()
+    """Arguments of a small size, where smaller numbers alone will not do."""
 
 
 @dataclass(frozen=True)
@@ -255,6 +258,61 @@ def starts() -> list[Row]:
     ]
 
 
+def batches() -> list[Row]:
+    """Many runs by one command."""
+    if find_spec("bench.batch") is None:
+        return []
+    from bench import batch
+
+    return [
+        Row(
+            "A batch on two workers",
+            "× two processes",
+            Call(batch.ratio, (1,)),
+            least=0.95,
+            rounds=2,
+        )
+    ]
+
+
+def matches() -> list[Row]:
+    """Answers among very many, and transcripts of very many rows."""
+    if find_spec("bench.matching") is None:
+        return []
+    from bench import matching
+
+    rows = [
+        Row(
+            f"An answer among 10,000, {title}",
+            "ms",
+            Call(function, (how, 10_000)),
+            most=10,
+            rounds=1,
+        )
+        for title, function, how in (
+            ("as options", matching.answer, "options"),
+            ("in a grammar", matching.answer, "one-of"),
+            ("in a rule that is repeated", matching.answer, "repeat"),
+            ("in an SRGS grammar", matching.spoken, "one-of"),
+            ("in an SRGS rule that is repeated", matching.spoken, "repeat"),
+            ("after any words", matching.spoken, "garbage"),
+        )
+    ]
+    few = Call(matching.difference_memory, ("few", 100_000), ("few", 800))
+    half = Call(matching.difference_memory, ("few", 50_000), ("few", 400))
+    return [
+        *rows,
+        Row(
+            "`prima diff` of two transcripts of 100,000 rows",
+            "s",
+            Call(matching.difference, ("few", 100_000), ("few", 400)),
+            most=10,
+            rounds=1,
+        ),
+        Row("Its memory", "MB", few, "50,000 rows", half, most=2, rounds=1),
+    ]
+
+
 def editor() -> list[Row]:
     """The language server."""
     from bench import editor as lsp
@@ -278,5 +336,7 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Mediator": mediator,
     "Simulation": simulated,
     "Start": starts,
+    "Batch": batches,
+    "Grammars and diff": matches,
     "Editor": editor,
 }

@@ -19,7 +19,7 @@ from statistics import median, quantiles
 from time import perf_counter
 
 from bench import peers
-from bench.fresh import ROOT, Figure, fresh
+from bench.fresh import ROOT, Figure, WrongAnswer, fresh
 from bench.rows import SECTIONS, Call, Row
 
 PAGE = ROOT / "docs" / "performance.md"
@@ -36,6 +36,8 @@ class Measured:
     row: Row
     ours: list[Figure] = field(default_factory=list)
     peers: list[Figure] = field(default_factory=list)
+    wrong: str = ""
+    """Why there is no figure: what was measured did not do its work."""
 
     @property
     def results(self) -> list[float]:
@@ -45,20 +47,25 @@ class Measured:
         return [a.value / b.value for a, b in zip(self.ours, self.peers, strict=True)]
 
     def take(self, quick: bool) -> None:
-        """Measure one pair, in either order."""
+        """Measure one pair, in either order; no more of them after a wrong answer."""
+        if self.wrong:
+            return
         sides = [(self.row.ours, self.ours)]
         if self.row.peer is not None:
             sides.append((self.row.peer, self.peers))
         random.shuffle(sides)
-        for call, figures in sides:
-            figures.append(measure(call, quick))
+        try:
+            for call, figures in sides:
+                figures.append(measure(call, quick))
+        except WrongAnswer as error:
+            self.wrong = str(error)
 
 
 def measure(call: Call, quick: bool = False) -> Figure:
     """Take a figure; quickly, of a small size, which shows only that the work is done."""
     args = call.args
     if quick:
-        args = tuple(_small(arg) for arg in args)
+        args = call.quick or tuple(_small(arg) for arg in args)
     return fresh(call.function, *args)
 
 
@@ -91,7 +98,10 @@ def collect(rows: list[Row], rounds: int, quick: bool) -> dict[Row, Measured]:
 
 def line(one: Measured) -> str:
     """A row of the table."""
-    row, result = one.row, median(one.results)
+    row = one.row
+    if one.wrong:
+        return f"| {row.what} | **wrong answer** | {row.beside} |  |  | **not met** |"
+    result = median(one.results)
     bounds = [("≥", row.least), ("≤", row.most)]
     target = next((f"{sign} {told(bound, row)}" for sign, bound in bounds if bound is not None), "")
     met = (row.least is None or result >= row.least) and (row.most is None or result <= row.most)
@@ -176,10 +186,8 @@ def chosen(only: str) -> dict[str, list[Row]]:
     return {section: rows for section, rows in found.items() if rows}
 
 
-def tables(sections: dict[str, list[Row]], rounds: int, quick: bool) -> str:
+def tables(sections: dict[str, list[Row]], found: dict[Row, Measured]) -> str:
     """Everything measured, as Markdown."""
-    able = [row for rows in sections.values() for row in rows if available(row.needs)]
-    found = collect(able, rounds, quick)
     parts = []
     for section, rows in sections.items():
         lines = [line(found[row]) for row in rows if row in found]
@@ -200,10 +208,16 @@ def main(given: list[str] | None = None) -> None:
     parser.add_argument("--quick", action="store_true", help="tiny sizes; writes nothing")
     options = parser.parse_args(given)
     began = perf_counter()
-    measured = tables(chosen(options.only), options.rounds, options.quick)
+    sections = chosen(options.only)
+    able = [row for rows in sections.values() for row in rows if available(row.needs)]
+    found = collect(able, options.rounds, options.quick)
     minutes = (perf_counter() - began) / 60
-    text = f"{machine(options.rounds)} All of it took {minutes:.1f} minutes.\n\n{measured}"
+    head = f"{machine(options.rounds)} All of it took {minutes:.1f} minutes."
+    text = f"{head}\n\n{tables(sections, found)}"
     print("Tiny sizes: the work is done, the figures say nothing.\n" if options.quick else "", text)
+    wrong = [f"{one.row.what}: {one.wrong}" for one in found.values() if one.wrong]
+    if wrong:
+        raise SystemExit("\n".join(["Wrong answers; nothing is written.", *wrong]))
     if not options.quick and not options.only:
         page = PAGE.read_text(encoding="utf-8")
         before, _, rest = page.partition(BEGIN)

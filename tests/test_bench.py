@@ -237,3 +237,17 @@ def test_what_is_not_installed_is_left_out(
     assert text.startswith(f"before\n{run.BEGIN}\n") and text.endswith(f"\n{run.END}\nafter\n")
     assert "| this |" in text and "| more |" not in text and "old" not in text
     assert "Left out, because it is not installed here: no-such-peer." in text
+
+
+def test_a_wrong_answer_stands_in_the_table_and_writes_nothing(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    wrong = row(ours=Call(processes.floor, ("nothing",)))
+    right = row(what="more", ours=Call(processes.floor, ("bare",)))
+    monkeypatch.setattr(run, "PAGE", tmp_path / "page.md")
+    monkeypatch.setattr(run, "SECTIONS", {"Some": lambda: [wrong, right]})
+    with pytest.raises(SystemExit, match=r"(?s)this: .*KeyError: 'nothing'"):
+        run.main(["--rounds", "2"])
+    out = capsys.readouterr().out
+    assert "| this | **wrong answer** |" in out and "| more |" in out
+    assert not run.PAGE.exists()
