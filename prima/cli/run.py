@@ -26,14 +26,28 @@ from prima.errors import RunError, UsageError
 if TYPE_CHECKING:
     from prima.api import Transcript
 
+MOST_WORKERS = 512
+"""More processes than this are a slip of the finger."""
+ENDS_OF_FOLDERS = ("/", os.sep)
+
 
 @click.command()
-@click.argument("scenario", type=click.Path(), required=False)
+@click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1, type=click.Path())
 @click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
 @click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
 @click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
-@click.option("-o", "--output", type=click.Path(), help="Write the transcript here as JSON lines.")
-@click.option("--policy", help=f"The mediator's policy: {POLICIES}.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    help="Write the transcript here as JSON lines; those of several runs into this folder.",
+)
+@click.option(
+    "--policy",
+    "policies",
+    multiple=True,
+    help=f"The mediator's policy: {POLICIES}. Several: a run under each.",
+)
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
@@ -45,9 +59,87 @@ if TYPE_CHECKING:
     multiple=True,
     help="Let VoiceXML documents fetch from this host; without, no network is used.",
 )
+@click.option(
+    "--from",
+    "lists",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(),
+    help="Run the scenarios that this file names, one in a line; - is standard input.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(1, MOST_WORKERS),
+    help="Make so many runs at once; by default as many as there are cores.",
+)
+@click.option("--resume", is_flag=True, help="Leave out runs whose transcripts are up to date.")
 @limit_option
 @format_option
 def run(
+    scenarios: tuple[str, ...],
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    says: tuple[str, ...],
+    output: str | None,
+    policies: tuple[str, ...],
+    bound: int | None,
+    why: bool,
+    hosts: tuple[str, ...],
+    lists: tuple[str, ...],
+    workers: int | None,
+    resume: bool,
+    limits: tuple[str, ...],
+    form: str,
+) -> None:
+    """Run scenarios in simulation and print the mediated transcript, or a row for each run.
+
+    Without SCENARIO, the applications named by --fa and --ea run in an empty room,
+    and the user says what --say tells, one after the other, to the questions.
+
+    With -o the transcript is written as JSON lines while the run goes on, and
+    only a summary is printed. Exit code 3 if the run ended by an error or a limit.
+
+    Several scenarios, a folder of them or several policies are a batch: all runs are
+    made on all cores, whatever becomes of one of them, each with a row, and with a
+    transcript in the folder after -o. The exit code is the highest of them.
+
+    \b
+    prima run documents/scenarios/follow-during-navigation.xml -o mediated.jsonl
+    prima run --ea documents/ea/library.xml --say "The C Primer"
+    prima run documents/scenarios --policy prima --policy fifo -o runs/
+    prima run documents/scenarios --policy prima --policy fifo -o runs/ --resume
+    """
+    raise_limits(limits)
+    applications = bool(fas or eas)
+    if bool(scenarios or lists) == applications:
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if not applications and says:
+        raise UsageError(
+            "A scenario says itself what the user says; --say goes with --fa and --ea."
+        )
+    several = len(scenarios) > 1 or len(policies) > 1 or any(map(os.path.isdir, scenarios))
+    if lists or workers or resume or several or (output and output.endswith(ENDS_OF_FOLDERS)):
+        if applications:
+            raise UsageError(
+                "Applications named by --fa and --ea are one run: for several, write scenarios."
+            )
+        if why:
+            raise UsageError("--why goes with one run: prima show TRANSCRIPT --why.")
+        if resume and output is None:
+            raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
+        if output == "":
+            raise UsageError("-o: name the folder that the transcripts go into.")
+        from prima.batch import Options
+        from prima.cli.batch import listed, run_all
+
+        paths = [*scenarios, *(path for name in lists for path in listed(name))]
+        run_all(paths, policies, output or "", Options(bound, hosts, resume), workers or 0, form)
+        return
+    policy = policies[0] if policies else None
+    _run_one(next(iter(scenarios), None), fas, eas, says, output, policy, bound, why, hosts, form)
+
+
+def _run_one(
     scenario: str | None,
     fas: tuple[str, ...],
     eas: tuple[str, ...],
@@ -57,32 +149,16 @@ def run(
     bound: int | None,
     why: bool,
     hosts: tuple[str, ...],
-    limits: tuple[str, ...],
     form: str,
 ) -> None:
-    """Run a scenario in simulation and print the mediated transcript.
-
-    Without SCENARIO, the applications named by --fa and --ea run in an empty room,
-    and the user says what --say tells, one after the other, to the questions.
-
-    With -o the transcript is written as JSON lines while the run goes on, and
-    only a summary is printed. Exit code 3 if the run ended by an error or a limit.
-
-    \b
-    prima run documents/scenarios/follow-during-navigation.xml -o mediated.jsonl
-    prima run --ea documents/ea/library.xml --say "The C Primer"
-    """
+    """Run one scenario, or applications without one."""
     from prima import api
 
-    raise_limits(limits)
-    if (scenario is None) == (not fas and not eas):
-        raise UsageError("Name a scenario, or applications with --fa and --ea.")
-    if scenario is not None and says:
-        raise UsageError(
-            "A scenario says itself what the user says; --say goes with --fa and --ea."
-        )
     loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas, says)
     if output is not None:
+        if os.path.isdir(output):
+            hint = f"For a transcript in it, write {output}/."
+            raise UsageError(f"{output}: cannot be written: Is a directory. {hint}")
         folder = os.path.dirname(scenario or "")
         check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
     for problem in loaded.problems:
@@ -99,20 +175,15 @@ def run(
     else:
         transcript = api.rehearse(loaded, policy, bound, hosts=hosts)
         put(transcript.table(why))
-    for failure in transcript.failures:
-        tell(f"prima: {failure.rstrip(': ')}{_handling(failure)}")
+    if transcript.failures:
+        from prima.batch import told_failure
+
+        for failure in transcript.failures:
+            tell(f"prima: {told_failure(failure)}")
     if transcript.outcome == "limit":
         raise RunError("the run made more records than a run may.")
     if transcript.failures:
         raise Exit(3)
-
-
-def _handling(failure: str) -> str:
-    """How an application may take what it has thrown itself; errors say what is wrong."""
-    event = failure.split(": ")[1]
-    if ":" in event or event.startswith("error."):
-        return ""
-    return f'. Nothing handles it: write <on event="{event}">.'
 
 
 def _outline(transcript: Transcript) -> str:

@@ -1,0 +1,266 @@
+"""Work spread over processes: results come in order, and one that dies takes only its own along."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from prima.errors import RunError
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+AHEAD = 4096
+"""Results that are kept at most until one before them is there."""
+DYING_SECONDS = 5.0
+"""How long a process that has closed its pipe may take to end."""
+PRELOADED = ["prima.api", "prima.sim.rehearsal", "prima.transcript.measures"]
+"""What most work needs: imported once, by the process that the others are forked from."""
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, slots=True)
+class Died:
+    """What comes in the place of a result when the process ended in the middle of the work."""
+
+    code: int
+    """The exit code, or the negative number of the signal that ended it."""
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def warm_up() -> None:
+    """Let what all processes need be imported already, while the caller does something else."""
+    context = _context()
+    if context.get_start_method() == "forkserver":
+        from multiprocessing.forkserver import ensure_running
+
+        with _starting():
+            ensure_running()
+
+
+def spread(
+    function: Callable[[Item], Made],
+    items: Iterable[Item],
+    workers: int,
+    begin: Callable[[], object] | None = None,
+    leave: Callable[[], object] | None = None,
+) -> Generator[tuple[Item, Made | Died], None, None]:
+    """Apply a function to items in other processes; the results come in the order of the items.
+
+    Items are taken one by one as processes become free, and at most ``AHEAD`` before the one
+    whose result is next, so that neither is kept in memory. Closing the iterator, or an
+    exception such as an interrupt while it waits, ends the processes at once. They end by
+    themselves when this process is gone.
+
+    Args:
+        function: a function of a module, or a partial of one; it should not raise.
+        items: what it is applied to.
+        workers: how many processes.
+        begin: what each of these does first.
+        leave: what one does last whose parent is gone.
+
+    Raises:
+        RunError: no process can be started.
+    """
+    crew = _Crew(function, begin, leave, workers)
+    try:
+        yield from crew.results(items)
+    finally:
+        crew.end()
+
+
+@dataclass(slots=True, eq=False)
+class _Worker:
+    """A process, the pipe to it, and the number of the item that it works on."""
+
+    process: Any
+    pipe: Connection
+    number: int = -1
+    ready: bool = False
+    """Whether it has begun: one that has not cannot be blamed on its item."""
+
+
+class _Crew(Generic[Item, Made]):
+    """The processes of one :func:`spread`."""
+
+    def __init__(
+        self,
+        function: Callable[[Item], Made],
+        begin: Callable[[], object] | None,
+        leave: Callable[[], object] | None,
+        most: int,
+    ) -> None:
+        self.context = _context()
+        self.task = (function, begin, leave)
+        self.most = most
+        self.idle: list[_Worker] = []
+        self.busy: dict[Connection, _Worker] = {}
+
+    def results(self, items: Iterable[Item]) -> Iterator[tuple[Item, Made | Died]]:
+        """See :func:`spread`."""
+        from multiprocessing.connection import wait
+
+        source = enumerate(items)
+        held: dict[int, Item] = {}
+        done: dict[int, Made | Died] = {}
+        due, more = 0, True
+        while more or held:
+            while more and len(self.busy) < self.most and len(held) < AHEAD:
+                taken = next(source, None)
+                if taken is None:
+                    more = False
+                else:
+                    held[taken[0]] = taken[1]
+                    self._give(*taken)
+            for pipe in wait(list(self.busy)) if self.busy else ():
+                worker = self.busy[pipe]  # type: ignore[index]
+                for made in self._take(worker):
+                    done[worker.number] = made
+            while due in done:
+                yield held.pop(due), done.pop(due)
+                due += 1
+
+    def _give(self, number: int, item: Item) -> None:
+        """Let a process work on an item."""
+        while True:
+            worker = self.idle.pop() if self.idle else self._start()
+            worker.number = number
+            try:
+                worker.pipe.send(item)
+            except OSError:  # it has died while it had nothing to do
+                worker.pipe.close()
+                if not worker.ready:
+                    raise _no_start(worker) from None
+            else:
+                self.busy[worker.pipe] = worker
+                return
+
+    def _take(self, worker: _Worker) -> list[Made | Died]:
+        """A process's result, or how it ended; nothing where it has only begun."""
+        try:
+            made: Made = worker.pipe.recv()
+        except (EOFError, OSError):
+            del self.busy[worker.pipe]
+            worker.pipe.close()
+            if not worker.ready:
+                raise _no_start(worker) from None
+            return [Died(_code(worker))]
+        if not worker.ready:
+            worker.ready = True
+            return []
+        del self.busy[worker.pipe]
+        self.idle.append(worker)
+        return [made]
+
+    def _start(self) -> _Worker:
+        here, there = self.context.Pipe()
+        process = self.context.Process(target=_work, args=(*self.task, there), daemon=True)
+        try:
+            with _starting():
+                process.start()
+        except OSError as error:
+            raise RunError(f"no process can be started: {error.strerror}.") from None
+        there.close()
+        return _Worker(process, here)
+
+    def end(self) -> None:
+        """End all processes, whatever they are doing."""
+        workers = [*self.idle, *self.busy.values()]
+        for worker in workers:
+            worker.process.kill()
+        for worker in workers:
+            worker.process.join(DYING_SECONDS)
+            worker.pipe.close()
+
+
+def _code(worker: _Worker) -> int:
+    worker.process.join(DYING_SECONDS)
+    code = worker.process.exitcode
+    return 0 if code is None else int(code)
+
+
+def _no_start(worker: _Worker) -> RunError:
+    return RunError(f"a process ended before it began to work, with code {_code(worker)}.")
+
+
+def _context() -> Any:
+    """How processes are made: forked from one that has nothing but imports, or new ones.
+
+    Never by forking this process, in which threads and engines may be at work.
+    """
+    from multiprocessing import get_all_start_methods, get_context
+
+    if "forkserver" not in get_all_start_methods():
+        return get_context("spawn")
+    context = get_context("forkserver")
+    context.set_forkserver_preload(PRELOADED)
+    return context
+
+
+@contextmanager
+def _starting() -> Iterator[None]:
+    """Let processes begin that do not heed Ctrl-C, nor modules in the folder they begin in.
+
+    An interrupt is for this process alone, which ends the others; one that comes meanwhile waits.
+    """
+    name = "PYTHONSAFEPATH"
+    safe = os.environ.get(name)
+    os.environ[name] = "1"
+    before = _mask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        del os.environ[name]
+        if safe is not None:
+            os.environ[name] = safe
+        _mask(signal.SIG_SETMASK, before)
+
+
+def _mask(how: int, signals: Iterable[int]) -> Iterable[int]:
+    """Change which signals wait, where the system can; gives those that waited before."""
+    return signal.pthread_sigmask(how, signals) if hasattr(signal, "pthread_sigmask") else ()
+
+
+def _work(
+    function: Callable[[Any], Any],
+    begin: Callable[[], object] | None,
+    leave: Callable[[], object] | None,
+    pipe: Connection,
+) -> None:
+    """Work on items as they come, in a process of its own."""
+    import threading
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow, args=(leave,), daemon=True).start()
+    if begin is not None:
+        begin()
+    try:
+        pipe.send(None)
+        while True:
+            pipe.send(function(pipe.recv()))
+    except (EOFError, OSError):
+        return  # nobody waits any more
+
+
+def _follow(leave: Callable[[], object] | None) -> None:
+    """End with the parent, however that ended: nobody would read what is computed."""
+    from multiprocessing import parent_process
+
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        if leave is not None:
+            leave()
+        os._exit(1)
