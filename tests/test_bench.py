@@ -5,6 +5,7 @@ Nothing here looks at how long anything takes.
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -15,7 +16,7 @@ import pytest
 
 pytest.importorskip("resource")
 
-from bench import fresh, mediation, peers, processes, run, simulation, workloads
+from bench import fresh, long, mediation, peers, processes, run, simulation, workloads
 from bench.fresh import Figure, WrongAnswer
 from bench.machines import Prima
 from bench.rows import SECTIONS, Call, Row
@@ -40,6 +41,22 @@ def test_the_other_workloads_check_their_results() -> None:
     assert simulation.situation(1, SECONDS) > 0
     assert simulation.visits_memory(2, 3) < 1_000
     assert simulation.quiet(2) == 0
+
+
+def test_a_long_run_counts_only_where_the_user_came_and_was_answered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tenth, end, visits = long.memory(0.2)
+    assert tenth > 0 and end > 0
+    assert visits == 4
+    monkeypatch.setattr(long, "SCENARIO", long.SCENARIO.replace('{every}s"', '400s"'))
+    with pytest.raises(WrongAnswer, match="the user came only 2 times"):
+        long.memory(0.2)
+    monkeypatch.undo()
+    silent = re.sub("<reply.*</reply>", "", long.SCENARIO)
+    monkeypatch.setattr(long, "SCENARIO", silent)
+    with pytest.raises(WrongAnswer, match="was told to the office 0"):
+        long.memory(0.2)
 
 
 @pytest.mark.parametrize("system", ["sismic", "transitions"])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
 from heapq import heapify, heappop, heappush
 
 from prima.interpreter.grammar import fold
@@ -39,8 +38,6 @@ PHASES = {
 """The records in which a user sees what he waits for, by their phase."""
 OVER = ("end", "cancel", "fail")
 """How a behaviour ends in the records."""
-_folded = lru_cache(maxsize=256)(fold)
-"""Words without what speech does not carry; the same are compared again and again."""
 
 
 @dataclass(slots=True, order=True)
@@ -151,7 +148,7 @@ class Person:
 
     def _holds(self, when: When, behavior: str) -> bool:
         said = self._texts.get(behavior.partition(".")[0], "")
-        return bool(said) and _folded(when.what) in _folded(said)
+        return bool(said) and fold(when.what) in fold(said)
 
     # Doing ------------------------------------------------------------------------
 

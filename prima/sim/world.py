@@ -75,27 +75,19 @@ class World:
         self._goal: Point | None = None
         self._walking = 1.0
         self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
-        self._searched = self._at
+        self._searched = self.position
         """Where the robot was when it was last looked for corners near to it."""
 
     def _settle(self) -> None:
         """Read where physics has left the body: it moves nowhere else, and reading is slow."""
         place = self._body.position
-        self._at: Point = (place.x, place.y)
+        self.position: Point = (place.x, place.y)
+        """Where the robot is (m)."""
         self._angle = self._body.angle
-        self._heading = math.degrees(self._angle) % 360.0
+        self.heading = math.degrees(self._angle) % 360.0
+        """Where the robot's front points (degrees)."""
 
     # The robot -----------------------------------------------------------------
-
-    @property
-    def position(self) -> Point:
-        """Where the robot is (m)."""
-        return self._at
-
-    @property
-    def heading(self) -> float:
-        """Where the robot's front points (degrees)."""
-        return self._heading
 
     def pose(self) -> dict[str, float]:
         """The robot's pose, rounded to mm and tenths of a degree."""
@@ -132,13 +124,13 @@ class World:
 
         It is computed anew only where one of them has moved or turned.
         """
-        looks = (self._at, self._heading, self.pan, self.person)
+        looks = (self.position, self.heading, self.pan, self.person)
         if looks != self._looked:
             self._looked, self._visible = looks, self._look()
         return self._visible
 
     def _look(self) -> bool:
-        person, position = self.person, self._at
+        person, position = self.person, self.position
         if person is None or distance(position, person) > self.profile.camera_range:
             return False
         off = difference(bearing(position, person), self.heading + self.pan)
@@ -180,18 +172,18 @@ class World:
         if not self._wall_within(reach + thick):
             return False
         angle = self._angle if forward > 0 else self._angle + math.pi
-        x, y = self._at
+        x, y = self.position
         ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
         return self._space.segment_query_first((x, y), ahead, thick, WALLS) is not None
 
     def _wall_within(self, reach: float) -> bool:
         """Whether a wall may be as near as that (m): measured only where it may have changed."""
         at, free = self._free
-        if distance(at, self._at) + reach < free:
+        if distance(at, self.position) + reach < free:
             return False
-        nearest = self._space.point_query_nearest(self._at, FAR, WALLS)
+        nearest = self._space.point_query_nearest(self.position, FAR, WALLS)
         free = FAR if nearest is None else nearest.distance
-        self._free = (self._at, free - EPSILON)
+        self._free = (self.position, free - EPSILON)
         return reach >= free - EPSILON
 
     def _step_person(self, goal: Point, seconds: float) -> None:
@@ -206,9 +198,9 @@ class World:
 
     def corners(self) -> list[Corner]:
         """Corners that the robot has come near to since the last time."""
-        if self._at is self._searched:
+        if self.position is self._searched:
             return []
-        self._searched = self._at
+        self._searched = self.position
         reached = []
         for corner in self.map.corners:
             if not self._near(corner):
