@@ -373,7 +373,7 @@ class Notice:
     """The event that a refused request was to react to: what is asked for instead does (C5)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Event:
     """Something that happened, as applications see it."""
 

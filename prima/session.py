@@ -88,6 +88,10 @@ class Session:
         """Applications that ended by an error, as ``NAME: what``."""
         self._serial = 0
         self._loaded: set[str] = set()
+        self._alive: list[App] | None = []
+        """Applications that are loaded and not over, in declared order; None if to be looked up."""
+        self._due: dict[str, int] = {}
+        """When applications want to be called, by name."""
         self._sensors: dict[str, Json] = {}
         self._sends: list[Order] = []
 
@@ -101,19 +105,25 @@ class Session:
         """
         Session.instants += 1
         self.chronicle.now = now
-        for value in sorted(inbound, key=self._class):
+        values = list(inbound)
+        if len(values) > 1:
+            values.sort(key=self._class)
+        for value in values:
             self._take(value)
         self._time_out(now)
         self._settle()
         self.mediator.select()
-        sends, self._sends = self._sends, []
-        return [*self.mediator.drain_orders(), *sends]
+        orders = self.mediator.drain_orders()
+        if self._sends:
+            orders += self._sends
+            self._sends = []
+        return orders
 
     def deadline(self) -> int | None:
         """The next instant at which :meth:`step` has to be called, if anything is due."""
-        due = [app.deadline for name, app in self.apps.items() if name in self._loaded]
-        due.append(self.mediator.deadline())
-        return min((time for time in due if time is not None), default=None)
+        due = min(self._due.values(), default=None)
+        late = self.mediator.deadline()
+        return late if due is None else due if late is None else min(due, late)
 
     @property
     def written(self) -> int:
@@ -127,7 +137,7 @@ class Session:
     @property
     def over(self) -> bool:
         """Whether every application that was loaded has ended."""
-        return bool(self._loaded) and all(self.apps[name].over for name in self._loaded)
+        return bool(self._loaded) and not self._living()
 
     @property
     def idle(self) -> bool:
@@ -146,16 +156,28 @@ class Session:
 
     def _in_order(self) -> list[App]:
         """V3: the applications in declared order, the one whose stream is active first."""
-        return [
-            self.apps[name]
-            for name in sorted(self._loaded, key=self._rank)
-            if not self.apps[name].over
-        ]
+        living = self._living()
+        active = self.mediator.memory.active
+        if active is None or len(living) < 2:
+            return living
+        first = self.apps[active.name]
+        if first.over or first is living[0]:
+            return living
+        return [first, *(app for app in living if app is not first)]
+
+    def _living(self) -> list[App]:
+        if self._alive is None:
+            self._alive = [
+                app for name, app in self.apps.items() if name in self._loaded and not app.over
+            ]
+        return self._alive
 
     # Inbound ------------------------------------------------------------------
 
     def _take(self, value: Inbound) -> None:
         match value:
+            case Occurred():
+                self._occurred(value)
             case Ended():
                 self.mediator.ended(value.behavior, value.goal, value.data)
                 self._settle()
@@ -170,8 +192,6 @@ class Session:
                 self._settle()
             case Heard():
                 self._heard(value)
-            case Occurred():
-                self._occurred(value)
             case Fetched():
                 told = {key: one for key, one in asdict(value).items() if one and key != "app"}
                 self._record("fetched", "environment", app=value.app, data=told)
@@ -216,6 +236,7 @@ class Session:
                 return
             app = self.apps[name] = interpreter_of(app.document, app.arguments, self._began)
         self._loaded.add(name)
+        self._alive = None
         app.sensors.update(self._sensors)
         if not isinstance(app, Interpreter):
             app.connection = value.connection
@@ -225,21 +246,25 @@ class Session:
         self._settle()
 
     def _occurred(self, value: Occurred) -> None:
-        apps = self._in_order()
-        if value.app is not None:
-            apps = [app for app in apps if app.name == value.app]
-        serial = self._serial + 1
-        self._record(
+        apps = self._in_order() if value.app is None else self._alone(value.app)
+        data = dict(value.data)
+        self.chronicle.add(
             "event",
             value.actor,
+            inbound=True,
             app=value.app,
             event=value.name,
-            data=dict(value.data) or None,
-            serial=serial,
+            data=data or None,
+            serial=self._serial + 1,
         )
         if value.name in ("human.found", "human.lost"):
             self.mediator.sees_user(value.name == "human.found")
-        self._raise(value.name, dict(value.data), apps)
+        self._raise(value.name, data, apps)
+
+    def _alone(self, name: str) -> list[App]:
+        """The application of a name, if it is there."""
+        app = self.apps.get(name)
+        return [app] if app is not None and name in self._loaded and not app.over else []
 
     def _raise(
         self, name: str, data: dict[str, Json], apps: list[App], reactive: bool = True
@@ -338,8 +363,10 @@ class Session:
 
     def _time_out(self, now: int) -> None:
         """V3: timeouts come last."""
-        self.mediator.expire()
-        self._settle()
+        if self.mediator.expire():
+            self._settle()
+        if not self._due or min(self._due.values()) > now:
+            return
         for app in self._in_order():
             for name, data in app.expire(now):
                 self._own_event(app, name, dict(data), reactive=False)
@@ -365,7 +392,16 @@ class Session:
         self.mediator.close_window(told)
 
     def _act(self, app: App) -> None:
-        """Carry out what an application wants."""
+        """Carry out what an application wants, and note when it wants to be called."""
+        if app.actions:
+            self._carry_out(app)
+        due = app.deadline
+        if due is not None:
+            self._due[app.name] = due
+        elif self._due:
+            self._due.pop(app.name, None)
+
+    def _carry_out(self, app: App) -> None:
         while app.actions:
             actions, app.actions = app.actions, []
             for action in actions:
@@ -406,6 +442,7 @@ class Session:
         )
 
     def _quit(self, app: App, action: Quit) -> None:
+        self._alive = None
         if action.failed:
             self.failures.append(f"{app.name}: {action.reason}")
         self.mediator.unload(app.name, action.reason)

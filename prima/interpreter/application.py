@@ -89,6 +89,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self._sends = count(1)
         self._timers: list[tuple[int, int, str, Data, int]] = []
         """Delayed events: when, serial number, name, data, and the state they belong to."""
+        self.deadline: int | None = None
+        """When :meth:`expire` wants to be called, if ever."""
         self._timer_serial = count(1)
         self.armed: dict[int, bool] = {}
         self.sensors: dict[str, Json] = {}
@@ -106,7 +108,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def event(self, now: int, event: Event) -> None:
         """Something happened that every application is told of, or this one alone."""
-        self._tick(now)
+        if now != self._instant:
+            self._tick(now)
         self.serial = event.serial
         if self.frame is not None:
             self._guard(self.handling.dispatch, event, self.frame)
@@ -178,17 +181,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         item = fiber.frame.item if fiber is not None else None
         return item.answers if isinstance(item, Field) else None
 
-    @property
-    def deadline(self) -> int | None:
-        """When :meth:`expire` wants to be called, if ever."""
-        return None if self.over else min((timer[0] for timer in self._timers), default=None)
-
     def expire(self, now: int) -> list[tuple[str, Data]]:
         """Give the application's own delayed events that are due."""
         if not self._timers:
             return []
         due = sorted((t for t in self._timers if t[0] <= now), key=lambda t: t[:2])
-        self._timers = [timer for timer in self._timers if timer[0] > now]
+        self._keep_timers([timer for timer in self._timers if timer[0] > now])
         return [(name, data) for _, _, name, data, _ in due]
 
     def stop(self) -> None:
@@ -237,7 +235,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if len(self._timers) >= MAX_TIMERS:
             raise Thrown(self.internal("error.semantic", f"more than {MAX_TIMERS} delayed events"))
         due = self.now + max(milliseconds, 1)
-        self._timers.append((due, next(self._timer_serial), name, data, fiber.frame.state))
+        timer = (due, next(self._timer_serial), name, data, fiber.frame.state)
+        self._keep_timers([*self._timers, timer])
+
+    def _keep_timers(self, timers: list[tuple[int, int, str, Data, int]]) -> None:
+        self._timers = timers
+        self.deadline = min((timer[0] for timer in timers), default=None)
 
     def _tick(self, now: int) -> None:
         if now != self._instant:
@@ -286,7 +289,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         while self.frame is not None:
             self.leave(self.frame)
             self.frame = self.frame.caller
-        self._timers.clear()
+        self._keep_timers([])
         self.actions.append(Quit(reason, failed, place))
 
     def _resume(self, fiber: Fiber, notice: Notice) -> None:
@@ -330,8 +333,9 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             self.transfer(*pending)
 
     def _drop(self, fiber: Fiber) -> None:
-        if fiber in fiber.frame.fibers:
-            fiber.frame.fibers.remove(fiber)
+        frame = fiber.frame
+        if frame.fibers:
+            frame.fibers = tuple(one for one in frame.fibers if one is not fiber)
 
     def transfer(self, frame: Frame, transfer: Transfer) -> None:
         """Leave a state for another; goto chains go round here, not deeper."""
@@ -341,15 +345,15 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         pending: tuple[Frame, Transfer] | None = (frame, transfer)
         while pending is not None:
             frame, transfer = pending
-            if isinstance(transfer, GoOut):
-                raise transfer
-            if isinstance(transfer, GoItem):
-                pending = self.go_item(frame, transfer)
-            elif isinstance(transfer, GoForm):
+            if isinstance(transfer, GoForm):
                 self.leave(frame)
                 form = self.document.forms[transfer.form]
                 self.count_step(form.node)
                 pending = self.begin(self.frame_for(form, frame))
+            elif isinstance(transfer, GoOut):
+                raise transfer
+            elif isinstance(transfer, GoItem):
+                pending = self.go_item(frame, transfer)
             else:
                 assert isinstance(transfer, GoBack)
                 pending = self._go_back(frame, transfer)
@@ -400,11 +404,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def leave(self, frame: Frame) -> None:
         """O3: the state's content ends, its units are concluded, its Commands are given up."""
-        for fiber in list(frame.fibers):
+        for fiber in frame.fibers:
             self.forget(fiber)
-        self.close_units(frame)
+        if frame.units:
+            self.close_units(frame)
         if self._timers:
-            self._timers = [timer for timer in self._timers if timer[4] != frame.state]
+            self._keep_timers([timer for timer in self._timers if timer[4] != frame.state])
         if frame.asked:  # else the mediator knows nothing of the state
             self.actions.append(LeaveState(frame.state))
 
@@ -412,7 +417,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         """U5: conclude every unit that the state is in."""
         for number, _ in reversed(frame.units):
             self.actions.append(CloseUnit(number))
-        frame.units.clear()
+        frame.units = ()
 
     def _enter(self, form: Form) -> None:
         pending = self.begin(self.frame_for(form, None))
@@ -449,12 +454,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
-        if frame.form.bare and not frame.fresh and frame.called_by is None:
+        if not (frame.fresh or frame.called_by) and frame.form.bare:
             return None
         frame.stalled = False
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
-        frame.fibers.append(fiber)
+        frame.fibers += (fiber,)
         try:
             next(fiber.content)
         except (Thrown, ScriptError):

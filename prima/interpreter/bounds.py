@@ -38,13 +38,14 @@ class Bounds(Generic[Evaluator]):
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
-        self.engine.now = self.began + now
         self._steps = self._output = 0
-        self.engine.spent = 0.0
+        engine = self.engine
+        engine.now = self.began + now
+        engine.spent = 0.0
 
-    def count_step(self, node: Node) -> None:
+    def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""
-        self._steps += 1
+        self._steps += steps
         if self._steps > MAX_STEPS:
             self.give_up(node, "it loops without ever waiting")
         if self.engine.spent > MAX_SCRIPT_SECONDS:

@@ -216,6 +216,8 @@ class Builder:
             expressions=self.expressions,
             scripted=self.scripted,
             counting=self.counting,
+            curious=self.scripted
+            or any("event" in one.code or "_message" in one.code for one in self.expressions),
         )
 
     def form(self, node: Node) -> Form:

@@ -65,8 +65,10 @@ class Executor:
 
     def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
         """The scopes that content sees, outermost first."""
-        frame = fiber.frame
-        return (self.owner.application, frame.document, frame.dialog, self.local(fiber))
+        frame, local = fiber.frame, fiber.local
+        if local is None:  # nothing has been declared in it
+            local = self.engine.nothing
+        return (self.owner.application, frame.document, frame.dialog, local)
 
     def local(self, fiber: Fiber) -> Scope:
         """The innermost scope of a piece of content."""
@@ -159,8 +161,9 @@ class Executor:
 
     def run_at_once(self, content: list[Act], fiber: Fiber) -> Transfer | None:
         """Run content in which no Command stands; gives the transfer of control that ends it."""
+        if content:
+            self.owner.count_step(content[0].node, len(content))
         for act in content:
-            self.owner.count_step(act.node)
             simple = SIMPLE.get(type(act))
             transfer = None
             if simple is not None:
@@ -238,7 +241,7 @@ class Executor:
                 raise Thrown(self.owner.internal("error.semantic", message), source(act.node))
             self.engine.unset(scope, name)
             if name in items:
-                frame.prompts.pop(name, None)
+                frame.prompts = {key: n for key, n in frame.prompts.items() if key != name}
                 frame.counters = {
                     key: count for key, count in frame.counters.items() if key[0] != name
                 }

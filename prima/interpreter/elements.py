@@ -350,6 +350,8 @@ class Document:
     """Whether there is a script, or something is assigned to a part of a variable."""
     counting: bool = False
     """Whether any handler looks at how often its event has occurred."""
+    curious: bool = False
+    """Whether any code may look at the event that is being handled."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
     def contents(self) -> list[Content]:

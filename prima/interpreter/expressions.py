@@ -103,6 +103,8 @@ class Engine:
         context.eval(PRELUDE)
         self._tick()
         context.eval("Object.preventExtensions(globalThis)")
+        self.nothing = self.scope()
+        """A scope in which nothing is declared."""
 
     def _call(self, function: Any, *args: Any) -> Any:
         Engine.evaluations += 1

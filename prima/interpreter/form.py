@@ -110,7 +110,8 @@ class Algorithm:
         settings = {**self.owner.document.properties, **frame.form.properties, **field.properties}
         said: list[str] = []
         if frame.reprompt:
-            seen = frame.prompts[field.name] = frame.prompts.get(field.name, 0) + 1
+            seen = frame.prompts.get(field.name, 0) + 1
+            frame.prompts = {**frame.prompts, field.name: seen}
             fitting = [
                 prompt
                 for prompt in field.prompts
@@ -229,7 +230,7 @@ class Algorithm:
             )
         )
         frame.connected = frame.asked = True
-        frame.units.append((number, unit))
+        frame.units = (*frame.units, (number, unit))
         outer, fiber.unit = fiber.unit, number
         self.owner.engine.set(frame.dialog, unit.name, True)
         try:
@@ -239,7 +240,7 @@ class Algorithm:
             for other in [one for one in frame.fibers if one.unit == number and one is not fiber]:
                 self.owner.forget(other)
             if (number, unit) in frame.units:
-                frame.units.remove((number, unit))
+                frame.units = tuple(one for one in frame.units if one[0] != number)
                 self.owner.actions.append(CloseUnit(number))
 
     def _visit_unit(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:

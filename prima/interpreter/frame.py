@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from types import MappingProxyType
 
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
 from prima.interpreter.evaluation import Scope
@@ -36,16 +37,19 @@ class Frame:
     asked = False
     """Whether the mediator has heard of the state: of a Command, or a unit."""
 
+    counters: Mapping[tuple[str, str], int] = MappingProxyType({})
+    """Occurrences of an event's names while an item ("" for the form) was visited."""
+    prompts: Mapping[str, int] = MappingProxyType({})
+    """How often an item has asked."""
+    units: tuple[tuple[int, Unit], ...] = ()
+    """The units that the state is in, outermost first, each with its number."""
+    fibers: tuple[Fiber, ...] = ()
+
     def __init__(self, form: Form, state: int, document: Scope, dialog: Scope) -> None:
         self.form = form
         self.state = state
         self.document = document
         self.dialog = dialog
-        self.counters: dict[tuple[str, str], int] = {}
-        """Occurrences of an event's names while an item ("" for the form) was visited."""
-        self.prompts: dict[str, int] = {}
-        self.units: list[tuple[int, Unit]] = []
-        self.fibers: list[Fiber] = []
 
 
 class Fiber:

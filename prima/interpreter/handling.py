@@ -89,7 +89,7 @@ class Handling:
     def _go_along(self, fiber: Fiber, content: Content) -> None:
         """Let content run beside what the state is doing."""
         fiber.content = content
-        fiber.frame.fibers.append(fiber)
+        fiber.frame.fibers += (fiber,)
         self.owner.drive(fiber, None)
 
     def _run_at_once(self, fiber: Fiber, handler: Handler) -> None:
@@ -165,9 +165,9 @@ class Handling:
         if not self.owner.document.counting:
             return
         where = item.name if item is not None else ""
-        for prefix in prefixes(name):
-            key = (where, prefix)
-            frame.counters[key] = frame.counters.get(key, 0) + 1
+        keys = [(where, prefix) for prefix in prefixes(name)]
+        counted = {key: frame.counters.get(key, 0) + 1 for key in keys}
+        frame.counters = {**frame.counters, **counted}
 
     def _in_scope(self, frame: Frame, item: Item | None) -> list[Handler]:
         """Handlers of the item, its unit, the form and the document, in this order."""
@@ -198,6 +198,9 @@ class Handling:
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking
     ) -> Handler | None:
+        first = candidates[0][0] if candidates else None
+        if first is None or (len(candidates) == 1 and first.count <= 1 and first.cond is None):
+            return first
         where = item.name if item is not None else ""
 
         def holds(cond: Expression) -> bool:

@@ -697,12 +697,14 @@ def outward(value: Any) -> Json:
 class PlainEngine:
     """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
 
-    now = 0
-    """The time by the run's calendar: nothing here asks for it."""
-    spent = 0.0
-    """Seconds of evaluations: nothing here can take long."""
+    nothing = Scope()
+    """A scope in which nothing is declared."""
 
     def __init__(self) -> None:
+        self.now = 0
+        """The time by the run's calendar: nothing here asks for it."""
+        self.spent = 0.0
+        """Seconds of evaluations: nothing here can take long."""
         self._long: WeakValueDictionary[int, Scope] = WeakValueDictionary()
         """Scopes in which a long text has been put, by their id()."""
         self._added = 0
@@ -712,7 +714,7 @@ class PlainEngine:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        return found.call
+        return found[0]
 
     def scope(self, **values: Json) -> Scope:
         """A new scope."""
@@ -792,11 +794,16 @@ class PlainEngine:
         Raises:
             ScriptError: no scope declares it, or the expression fails.
         """
-        head, dot, last = name.rpartition(".")
-        for scope in (scopes[SCOPES.index(head)],) if dot else scopes[::-1]:
-            if last in scope:
-                self.put(scope, last, self._call(code)(scopes))
+        if "." in name:
+            head, _, name = name.rpartition(".")
+            known: tuple[Scope, ...] = (scopes[SCOPES.index(head)],)
+        else:
+            head, known = "", scopes[::-1]
+        for scope in known:
+            if name in scope:
+                self.put(scope, name, self._call(code)(scopes))
                 return
+        name = f"{head}.{name}" if head else name
         raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
 
     def put(self, scope: Scope, name: str, value: Any) -> None:

@@ -41,6 +41,8 @@ class Endings:
         self._rolling: Behavior | None = None
         self._touched: dict[str, Stream] = {}
         self.halted = False
+        self.changed = False
+        """Whether anything has happened since the latest selection that it may depend on."""
 
     @property
     def orders(self) -> list[Order]:
@@ -132,12 +134,13 @@ class Endings:
         """A question has been said. One whose state was left ends at once (O3)."""
         ab = self.running(behavior)
         if ab is not None:
-            ab.listening = True
+            self.changed = ab.listening = True
             if ab.left:
                 self._delete(ab, "O3")
 
     def interrupted(self, behavior: str, data: Data) -> None:
         """X2: the device tells how much it had done of an AB that was interrupted."""
+        self.changed = True
         name = behavior.partition(".")[0]
         ab = self.memory.behaviors.get(name)
         unit = self._selector.halting.pop(name, None)
@@ -166,6 +169,7 @@ class Endings:
         ab = self.running(behavior)
         if ab is None:
             return False
+        self.changed = True
         ending = goal or ab.last_loop or not ab.feedback
         self.chronicle.behavior(
             "end",

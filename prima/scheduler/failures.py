@@ -21,6 +21,7 @@ class Failures(Endings):
         """E1: a device fails; the AB ends as failed and the rest of its tree goes."""
         ab = self.running(behavior)
         if ab is not None:
+            self.changed = True
             self._fail(ab, f"error.device.{device}", reason, inbound=True)
 
     def _fail(self, ab: Behavior, event: str, reason: str, inbound: bool = False) -> None:
@@ -60,13 +61,17 @@ class Failures(Endings):
         """The next instant at which a unit, a device or an event waited for is too late."""
         return min((*self._deadlines.values(), *self._holds.values()), default=None)
 
-    def expire(self) -> None:
-        """U5, E1: end what has run longer than it may."""
-        for name in [name for name, due in self._holds.items() if due <= self._now()]:
+    def expire(self) -> bool:
+        """U5, E1: end what has run longer than it may; tells whether there was any such."""
+        if not self._deadlines and not self._holds:
+            return False
+        now = self._now()
+        if min((*self._deadlines.values(), *self._holds.values())) > now:
+            return False
+        self.changed = True
+        for name in [name for name, due in self._holds.items() if due <= now]:
             self._let_go(self.memory.streams[name], "over")
-        if not self._deadlines:
-            return
-        late = [name for name, due in self._deadlines.items() if due <= self._now()]
+        late = [name for name, due in self._deadlines.items() if due <= now]
         for name in late:
             self._deadlines.pop(name, None)
             ab = self.memory.running.get(name)
@@ -76,6 +81,7 @@ class Failures(Endings):
                 self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
                 device = min(ab.devices, default="none")
                 self._fail(ab, f"error.device.{device}", "The device did not end in time.")
+        return True
 
     def _let_go(self, stream: Stream, outcome: str) -> None:
         """X3: the stream is held no longer."""
@@ -109,6 +115,7 @@ class Failures(Endings):
 
     def emergency(self, pressed: bool, resume: bool) -> None:
         """E5: every AB ends at once and nothing starts until the stop is released."""
+        self.changed = True
         self.chronicle.add("emergency", "mediator", rule="E5", outcome="pressed" if pressed else "released", inbound=True, data=None if pressed else {"resume": resume})  # fmt: skip
         if pressed:
             self.halted = True

@@ -32,7 +32,7 @@ class Mediator(Failures):
         app = self.memory.apps[name]
         if app.gone:
             return
-        app.gone = True
+        self.changed = app.gone = True
         self._withdraw(list(self.memory.of_app(app)), "E2")
         self._drop_hints(app, None)
         for number in list(app.units):
@@ -45,6 +45,7 @@ class Mediator(Failures):
 
     def request(self, name: str, asked: Request) -> None:
         """Take Commands in as one tree (U3), or refuse them all (E3)."""
+        self.changed = True
         app = self.memory.apps[name]
         if self._selector.policy.has("x6"):
             for command, lacking in substitute(asked.steps, self._maker.table):
@@ -83,6 +84,7 @@ class Mediator(Failures):
 
     def open_unit(self, name: str, asked: OpenUnit) -> None:
         """U5: a unit that spans questions is requested like an AB of its own."""
+        self.changed = True
         app = self.memory.apps[name]
         stream, parent = self._place(app, asked.cause, None)
         if stream.held_until is not None:
@@ -109,10 +111,12 @@ class Mediator(Failures):
 
     def close_unit(self, name: str, asked: CloseUnit) -> None:
         """U5: the unit is left; what runs in it finishes, the rest is deleted."""
+        self.changed = True
         self._close_unit(self.memory.apps[name], asked.unit)
 
     def leave_state(self, name: str, asked: LeaveState) -> None:
         """O3: the state's Commands that have not started are deleted, its loops end."""
+        self.changed = True
         app = self.memory.apps[name]
         self._drop_hints(app, asked.state)
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
@@ -204,6 +208,7 @@ class Mediator(Failures):
 
     def open_window(self, told: Told) -> None:
         """C3: while an application handles the end of its Command, its stream stays open."""
+        self.changed = True
         stream = told.stream
         self.memory.apps[told.app].window = stream
         if stream is not None:
@@ -212,6 +217,7 @@ class Mediator(Failures):
 
     def close_window(self, told: Told) -> None:
         """The application has gone to wait for something else."""
+        self.changed = True
         stream = told.stream
         self.memory.apps[told.app].window = None
         if stream is not None:
@@ -221,6 +227,9 @@ class Mediator(Failures):
 
     def select(self) -> None:
         """Start everything that may start, then stop what rolls on for nobody (F5)."""
+        if not self.changed:
+            return
+        self.changed = False
         self._close_streams()
         if not self.halted:
             self._selector.select(self._now())
