@@ -79,6 +79,12 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f'Did you mean "{nearest[0]}"?' if nearest else ""
 
 
+def parted(text: str) -> tuple[str, str]:
+    """A sentence that says what is wrong, and the rest, which says what to write instead."""
+    wrong, stop, remedy = text.partition(". ")
+    return (f"{wrong}.", remedy) if stop else (text, "")
+
+
 def one_of(words: Iterable[str]) -> str:
     """Join words for a message: ``a, b or c``."""
     *head, last = sorted(words) or [""]

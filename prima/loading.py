@@ -18,7 +18,15 @@ from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, urlsplit
 
 from prima.deferred import dataclass, field
-from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean, one_of
+from prima.errors import (
+    DocumentError,
+    Place,
+    Problem,
+    UsageError,
+    did_you_mean,
+    one_of,
+    parted,
+)
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
@@ -475,7 +483,8 @@ class _Reading:
         document = self.application(name, place)
         if document is not None and document.kind != "ea":
             message = f'"{area.src}" is an FA; a place offers EAs.'
-            self.problems.append(Problem(place, "error", "bad-value", message))
+            remedy = "A scenario names FAs in its <application>."
+            self.problems.append(Problem(place, "error", "bad-value", message, remedy))
         return document
 
     def check_commands(self, robot: Profile) -> None:
@@ -492,7 +501,8 @@ class _Reading:
         try:
             policy_named(scenario.policy)
         except UsageError as error:
-            self.problems.append(Problem(place, "error", "bad-value", f"{error} {FAVOURITE}"))
+            wrong, remedy = parted(f"{error} {FAVOURITE}")
+            self.problems.append(Problem(place, "error", "bad-value", wrong, remedy))
         if problem := favourite_problem(scenario.policy, self.documents):
             self.problems.append(Problem(place, "error", "no-such-name", *problem))
 

@@ -56,7 +56,7 @@ def _duration(text: str) -> int:
         raise ValueError('is not a time. Write a number with its unit: "500ms" or "2.5s".')
     value = float(match[1]) * (1000 if match[2] == "s" else 1)
     if value > LONGEST_MS:
-        raise ValueError("is longer than a day.")
+        raise ValueError('is longer than a day. Write at most "86400s".')
     return round(value)
 
 
@@ -74,7 +74,7 @@ def _integer(text: str) -> int:
 
 def _boolean(text: str) -> bool:
     if text not in ("true", "false"):
-        raise ValueError('is neither "true" nor "false".')
+        raise ValueError('is neither "true" nor "false". Write one of them.')
     return text == "true"
 
 
@@ -96,23 +96,28 @@ def _target(text: str) -> str:
 
 def _event_list(text: str) -> str:
     if not text:
-        raise ValueError("names no event.")
+        raise ValueError('names no event. Write one such as "touch.head".')
     for name in re.split(f"[{XML_SPACE}]+", text):
         if "," in name:
             raise ValueError("holds a comma. Separate the names by spaces.")
         if not _fits(EVENT, name):
-            raise ValueError(f'holds "{name}", which is not an event name such as "touch.head".')
+            raise ValueError(
+                f'holds "{name}", which is not an event name. Write one such as "touch.head".'
+            )
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
 def _name_list(text: str) -> str:
     if not text:
-        raise ValueError("names no variable.")
+        raise ValueError("names no variable. Write its name.")
     for name in re.split(f"[{XML_SPACE}]+", text):
         if "," in name:
             raise ValueError("holds a comma. Separate the names by spaces.")
         if not _fits(VARIABLE, name):
-            raise ValueError(f'holds "{name}", which is not a variable name.')
+            raise ValueError(
+                f'holds "{name}", which is not a variable name.'
+                " Use letters, digits and _, not first a digit."
+            )
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
@@ -124,7 +129,7 @@ def _date(text: str) -> str:
     try:
         return datetime.fromisoformat(text).isoformat()
     except ValueError:
-        raise ValueError("is a date that no calendar has.") from None
+        raise ValueError("is a date that no calendar has. Check its month, day and hour.") from None
 
 
 def moment(date: str) -> int:
@@ -141,7 +146,7 @@ def moment(date: str) -> int:
 
 def _filled(text: str) -> str:
     if not text.strip(XML_SPACE):
-        raise ValueError("is empty.")
+        raise ValueError("is empty. Write what it shall be.")
     return text
 
 
@@ -189,7 +194,7 @@ KINDS: dict[str, Kind] = {
         "names of variables, separated by spaces",
     ),
     "event": Kind(
-        _pattern(EVENT, 'an event name such as "touch.head".'),
+        _pattern(EVENT, 'an event name. Write one such as "touch.head".'),
         "xs:string",
         _XSD_EVENT,
         "an event name: words joined by dots",
@@ -210,7 +215,7 @@ KINDS: dict[str, Kind] = {
     ),
     "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
     "language": Kind(
-        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", 'a language tag such as "en" or "ja".'),
+        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", 'a language tag. Write one such as "en".'),
         "xs:string",
         r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
         "a language tag, as in en or ja",
@@ -260,16 +265,26 @@ def shown(value: object) -> str:
 def outside(kind: str, low: float | None, high: float | None) -> str:
     """Say that a number is beyond its bounds, these in the unit that an author writes."""
 
-    def bound(value: float) -> str:
-        if kind != "duration":
-            return f"{value:g}"
-        return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
-
     if low is not None and high is not None:
-        return f"is out of range: from {bound(low)} to {bound(high)}."
+        return f"is out of range: from {_written(kind, low)} to {_written(kind, high)}."
     if low is not None:
-        return f"is out of range: at least {bound(low)}."
-    return f"is out of range: at most {bound(high)}." if high is not None else "is out of range."
+        return f"is out of range: at least {_written(kind, low)}."
+    return (
+        "is out of range." if high is None else f"is out of range: at most {_written(kind, high)}."
+    )
+
+
+def nearest(kind: str, value: float, low: float | None, high: float | None) -> str:
+    """Tell the allowed number that is nearest to one beyond its bounds, as an author writes it."""
+    bound = low if low is not None and value < low else high
+    return "" if bound is None else f'The nearest is "{_written(kind, bound)}".'
+
+
+def _written(kind: str, value: float) -> str:
+    """A number, or a time in ms with its unit."""
+    if kind != "duration":
+        return f"{value:g}"
+    return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
 
 
 def within(value: float, low: float | None, high: float | None) -> bool:

@@ -651,6 +651,8 @@ FIXED = {
     "hint": (BEGIN + '<form id="a"><block><say>x</say><exit/></block></form></prima>', "<speak>x</speak>"),
     "attribute": (BEGIN + '<form id="a"><on evnt="touch"><exit/></on></form></prima>', '<on event="touch">'),
     "value": (BEGIN + '<form id="a"><block><speak order="nwo">x</speak><exit/></block></form></prima>', 'order="now"'),
+    "time": (BEGIN + '<form id="a"><block><send event="x" delay="5"/></block><on event="x"><exit/></on></form></prima>', 'delay="5s"'),
+    "range": (BEGIN + '<form id="a"><block><turn angle="450"/><exit/></block></form></prima>', 'angle="360"'),
     "form": (BEGIN + '<form id="main"><block><goto next="#mian"/></block></form></prima>', 'next="#main"'),
     "target": (BEGIN + '<form id="main"><block><goto next="main"/></block></form></prima>', 'next="#main"'),
     "variable": (BEGIN + '<form id="a"><var name="count"/><block cond="cuont"><exit/></block></form></prima>', 'cond="count"'),

@@ -50,7 +50,14 @@ def test_a_mistake_is_told_once_in_its_place_with_a_remedy(name: str) -> None:
     line = Path(place.file).read_text(encoding="utf-8").split("\n")[place.line - 1]
     token = TOKEN.match(line, place.column - 1)
     assert (token[0] if token else "") == expected["under"]
-    assert expected["says"] in (remedy or message)
+    assert remedy and expected["says"] in f"{message} {remedy}"
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_the_problem_of_an_example_has_a_remedy_of_its_own(code: str) -> None:
+    for path in (FOLDER / code).glob("wrong.*"):
+        for problem in problems_of(path):
+            assert problem.remedy and problem.remedy not in problem.message, problem
 
 
 def test_every_mistake_is_expected() -> None:

@@ -190,7 +190,7 @@ class _Reader:
     def MODENAME(self, token: Token) -> None:
         if token.value not in MODES:
             message = f'A grammar\'s mode is voice or dtmf, not "{token[:40]}".'
-            self.note(token, "bad-value", message)
+            self.note(token, "bad-value", message, "Write mode voice; or mode dtmf;.")
         self.document.mode = "dtmf" if token.value == "dtmf" else "voice"
         self._once("mode", token)
 
@@ -233,7 +233,7 @@ class _Reader:
         uri, told, _ = token.partition("~")
         if not uri[1:-1].strip() or (told and not media):
             message = f'"{token[:60]}" is no URI in angle brackets.'
-            self.note(token, "bad-value", message)
+            self.note(token, "bad-value", message, "Write one such as <names.gram>.")
         return uri[1:-1].strip()
 
     def _language(self, text: str, token: Token) -> None:
@@ -249,7 +249,7 @@ class _Reader:
     def NAME(self, token: Token) -> str:
         name = token[1:]
         if problem := name_problem(name):
-            self.note(token, "bad-value", problem)
+            self.note(token, "bad-value", problem, "Choose another name.")
         elif name in self.document.rules:
             self.note(token, "duplicate-id", f'There are two rules "{name}".')
         return name
@@ -271,7 +271,7 @@ class _Reader:
         try:
             return decimal(token[1:-1].strip(), "weight")
         except ValueError as error:
-            self.note(token, "bad-value", str(error))
+            self.note(token, "bad-value", str(error), "Write one such as /2.5/.")
             return None
 
     def alternative(self, found: list[Any]) -> Alternatives:
@@ -328,7 +328,7 @@ class _Reader:
             chance = probability(match[2].strip())
             return low, high, cost(chance), cost(1 - chance)
         except ValueError as error:
-            self.note(token, "bad-value", str(error))
+            self.note(token, "bad-value", str(error), "Write one such as <0-1>.")
             return None
 
     def LPAR(self, token: Token) -> None:
@@ -380,7 +380,7 @@ class _Reader:
         if name in RESERVED:
             return Special(name)
         if problem := name_problem(name):
-            self.note(token, "bad-value", problem)
+            self.note(token, "bad-value", problem, "Choose another name.")
         return self._reference(f"#{name}", token)
 
     def LINK(self, token: Token) -> Part:

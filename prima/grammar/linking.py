@@ -78,7 +78,8 @@ class Library:
             data = self._fetch(uri)
         except FAILURES as error:
             message = f'The grammar "{uri[:200]}" cannot be had: {error}.'
-            self.problems.note(where, "no-such-file", message)
+            remedy = "Its name is read relative to the grammar that refers to it."
+            self.problems.note(where, "no-such-file", message, remedy)
             return None
         self._bytes += len(data)
         if self._bytes > MOST_BYTES:
@@ -149,7 +150,7 @@ class Library:
         note = self.problems.note
         if found.mode != document.mode:
             message = f"A grammar for {document.mode} refers to one for {found.mode}."
-            note(reference.where, "mode", message)
+            note(reference.where, "mode", message, f"Refer to one for {document.mode}.")
             return None
         name, named = name or found.root, bool(name)
         rule = found.rules.get(name)

@@ -105,7 +105,7 @@ class _Reader:
         mode = node.get("mode", self.document.mode or "voice")
         if mode not in MODES:
             message = f'A grammar\'s mode is voice or dtmf, not "{mode}".'
-            self.note(node, "bad-value", message, "", "mode")
+            self.note(node, "bad-value", message, 'Write mode="voice" or mode="dtmf".', "mode")
         self.document.mode = "dtmf" if mode == "dtmf" else "voice"
 
     def _language(self, node: Node) -> None:
@@ -161,13 +161,13 @@ class _Reader:
         if not name:
             self.note(node, "missing-attribute", "A rule needs an id.")
         elif problem := name_problem(name):
-            self.note(node, "bad-value", problem, "", "id")
+            self.note(node, "bad-value", problem, "Choose another name.", "id")
         elif name in self.document.rules:
             self.note(node, "duplicate-id", f'There are two rules "{name}".', "", "id")
         scope = node.get("scope", "private")
         if scope not in ("public", "private"):
             message = f'The scope of a rule is public or private, not "{scope}".'
-            self.note(node, "bad-value", message, "", "scope")
+            self.note(node, "bad-value", message, 'Write scope="public", or remove it.', "scope")
         told = len(self.problems.found)
         parts = self._parts(node, 1)
         if not parts and len(self.problems.found) == told:
@@ -263,7 +263,10 @@ class _Reader:
         if "special" in node.attributes:
             if special not in RESERVED:
                 message = f'"{special}" is no special rule: NULL, VOID and GARBAGE are.'
-                self.note(node, "bad-value", message, "", "special")
+                remedy = (
+                    did_you_mean(special, RESERVED) or 'Write uri="#name" for a rule of your own.'
+                )
+            self.note(node, "bad-value", message, remedy, "special")
             return [Special(special)]
         found = Reference(uri, _where(node, "uri"), node.get("type"))
         self.document.references.append(found)
@@ -295,7 +298,7 @@ class _Reader:
         try:
             low, high = repeat(node.get("repeat"))
         except ValueError as error:
-            self.note(node, "bad-value", str(error), "", "repeat")
+            self.note(node, "bad-value", str(error), 'Write one such as "0-1".', "repeat")
             return inside
         if chance is None:
             return Repeat(inside, low, high)
@@ -309,7 +312,7 @@ class _Reader:
         try:
             return probability(text) if name == "repeat-prob" else decimal(text, name)
         except ValueError as error:
-            self.note(node, "bad-value", str(error), "", name)
+            self.note(node, "bad-value", str(error), 'Write one such as "0.5".', name)
             return None
 
     # What any element must keep to

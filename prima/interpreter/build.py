@@ -9,7 +9,7 @@ from prima.commands import (
     excluding_arguments,
     missing_argument,
 )
-from prima.errors import Problem
+from prima.errors import Problem, parted
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -57,7 +57,7 @@ from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.values import XML_SPACE, outside, read_value, within
+from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 LONGEST_MS = 60_000
 HOLD_MS = 15_000
@@ -97,7 +97,8 @@ class Builder:
             number = item.name == name and isinstance(value, int | float)
             if number and not within(float(value), item.low, item.high):
                 message = f'{name} "{text}" {outside(kind, item.low, item.high)}'
-                self.problem(node, "out-of-range", message, attribute=name)
+                remedy = nearest(kind, float(value), item.low, item.high)
+                self.problem(node, "out-of-range", message, remedy, name)
         return value
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
@@ -279,12 +280,9 @@ class Builder:
                 try:
                     found[name] = read_value(PROPERTIES[name], child.get("value"))
                 except ValueError as error:
-                    self.problem(
-                        child,
-                        "bad-value",
-                        f'{name} "{child.get("value")}" {error}',
-                        attribute="value",
-                    )
+                    wrong, remedy = parted(str(error))
+                    message = f'{name} "{child.get("value")}" {wrong}'
+                    self.problem(child, "bad-value", message, remedy, "value")
         return found
 
     def handlers(self, node: Node) -> list[Handler]:
@@ -315,7 +313,12 @@ class Builder:
             self.one_of_two(child, "next", "event")
             grammars = [read_grammar(self.problem, item) for item in child.all("grammar")]
             if len(grammars) != 1:
-                self.problem(child, "missing-element", "<link> needs one <grammar>.")
+                self.problem(
+                    child,
+                    "missing-element",
+                    "<link> needs one <grammar>.",
+                    "Write what the user says into one.",
+                )
             for grammar in grammars[:1]:
                 to = self.target(child, "next")
                 found.append(Link(to, child.get("event"), grammar, child))
@@ -385,7 +388,12 @@ class Builder:
         for child in node.all("option"):
             said = child.text
             if not fold(said):
-                self.problem(child, "empty-answer", "This option has nothing to say.")
+                self.problem(
+                    child,
+                    "empty-answer",
+                    "This option has nothing to say.",
+                    "Write the words of the answer into it.",
+                )
             elif fold(said) in answers.options:
                 self.problem(
                     child,
@@ -530,7 +538,9 @@ class Builder:
         for command in run_commands(steps):
             self.in_unit(command)
         if not steps:
-            self.problem(node, "empty", "This <iu> holds no Command.")
+            self.problem(
+                node, "empty", "This <iu> holds no Command.", "Write what must not be cut into it."
+            )
         longest = self.value(node, "longest", "duration", LONGEST_MS)
         return GroupTemplate(steps, longest, node, node.get("restartable") == "true")
 
@@ -580,7 +590,9 @@ class Builder:
                 args[bare] = text  # the mediator reads it, as it reads what an expression gives
             except ValueError as error:
                 if "out of range" in str(error):
-                    self.problem(node, "out-of-range", str(error), attribute=key)
+                    value = float(read_value(argument.kind, text))
+                    remedy = nearest(argument.kind, value, argument.low, argument.high)
+                    self.problem(node, "out-of-range", str(error), remedy, key)
         return args
 
     def check_complete(
@@ -590,7 +602,9 @@ class Builder:
         required = {name for name, item in row.arguments.items() if item.required}
         missing = missing_argument(row, args) if required <= args.keys() else ""
         if missing and not self.strange(node):
-            self.problem(node, "missing-attribute", missing)
+            choices = sorted(key for key, item in row.arguments.items() if item.choice)
+            remedy = f'Write {choices[0]}="...", for one.' if " one of " in missing else ""
+            self.problem(node, "missing-attribute", missing, remedy)
         if excluding := excluding_arguments(row, args):
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]
             choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]

@@ -14,6 +14,7 @@ from prima.markup.vocabulary import Attribute
 
 MEANT = re.compile(r'Did you mean "([^"<>&]+)"\?')
 WRITE_TARGET = re.compile(r'Write "(#[^"<>&]+)"')
+WRITE_VALUE = re.compile(r'(?:Write|The nearest is) "([^"<>&#]+)"\.')
 WRITE_TAG = re.compile(r"^Write <([\w.-]+)((?: [\w-]+=\"\.\.\.\")*)/?>\.$")
 DECLARE = re.compile(r'Declare it: (<var name="([^"<>&]+)"/>)\.')
 NAMED = re.compile(r'"([^"]+)"')
@@ -56,6 +57,9 @@ def _found(page: Page, spot: Spot) -> Iterator[Fix]:
             yield Fix(f'Change to "{meant[1]}"', problem, changes)
     if target := WRITE_TARGET.search(whole):
         yield Fix(f"Change to {target[1]}", problem, (Change(spot.start, spot.end, target[1]),))
+    if problem.code in ("bad-value", "out-of-range") and (value := WRITE_VALUE.fullmatch(remedy)):
+        change = Change(spot.start, spot.end, value[1])
+        yield Fix(f'Change to "{value[1]}"', problem, (change,))
     if (write := WRITE_TAG.match(remedy)) and problem.code in ("unknown-element",):
         changes = _renamed(page, spot.start, write[1])
         if changes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of
+from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of, parted
 from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
@@ -136,7 +136,9 @@ def _check_attributes(
         message = _value_problem(*entry, text)
         if message:
             place = node.attribute_place(name)
-            problems.append(Problem(place, "error", "bad-value", f'{name} "{text}" {message}'))
+            wrong, remedy = parted(message)
+            wrong = f'{name} "{text}" {wrong}'
+            problems.append(Problem(place, "error", "bad-value", wrong, remedy))
     missing: list[Attribute] = []
     for item in element.attributes:
         if not item.required or item.name in node.attributes:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from prima.commands import DEVICES, TABLE_4_2, Argument, CommandType
-from prima.errors import DocumentError, Problem, Severity, did_you_mean
+from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
 from prima.markup.reader import read_tree
 from prima.markup.tree import Node
@@ -16,7 +16,7 @@ from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
 from prima.prelude import START
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-from prima.values import outside, read_value, within
+from prima.values import nearest, outside, read_value, within
 
 Point = tuple[float, float]
 MAX_AREAS = 256
@@ -50,7 +50,8 @@ class Reader:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and not within(float(value), item.low, item.high):
             message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
-            self.problem(node, "out-of-range", message, name)
+            remedy = nearest(item.kind, float(value), item.low, item.high)
+            self.problem(node, "out-of-range", message, name, remedy)
         return value
 
     def problem(
@@ -315,7 +316,8 @@ def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profil
         message = f'{other.name} has no argument "{unknown[0]}", as {lacking.name} has.'
         reader.problem(node, "no-such-argument", message, "by", "Add it to the Command.")
     if lacking.text == "required" and other.text == "none":
-        reader.problem(node, "bad-value", f"{other.name} cannot say anything.", "by")
+        remedy = f"Name a Command that speaks, as {lacking.name} does."
+        reader.problem(node, "bad-value", f"{other.name} cannot say anything.", "by", remedy)
     profile.commands[lacking.name] = replace(lacking, substitute=other.name)
 
 
@@ -512,7 +514,9 @@ def read_scenario(file: str, data: bytes) -> Scenario:
     robots, people = root.all("robot"), root.all("person")
     connections = root.all("connection")
     for extra in (*robots[1:], *people[1:], *connections[1:]):
-        reader.problem(extra, "duplicate-element", f"There is a second <{extra.tag}>.")
+        reader.problem(
+            extra, "duplicate-element", f"There is a second <{extra.tag}>.", "", "Keep one."
+        )
     applications = [
         (node.get("src"), reader.get(node, "start") or 0, node) for node in root.all("application")
     ]
@@ -617,7 +621,8 @@ def _check_where(reader: Reader, node: Node, name: str, what: str, needed: bool 
         reader.problem(node, "exclusive", message, numbers[0], "Keep one of them.")
     elif len(numbers) == 1 or (needed and not numbers and name not in node.attributes):
         message = f"<{node.tag}> needs {what}, or x and y."
-        reader.problem(node, "missing-attribute", message)
+        lacks = "y" if numbers == ["x"] else "x" if numbers else name
+        reader.problem(node, "missing-attribute", message, "", f'Write {lacks}="...".')
 
 
 def _answer(reader: Reader, node: Node) -> When:
@@ -805,5 +810,7 @@ def _opening(reader: Reader, node: Node, given: list[str]) -> Any:
     try:
         return read_value("duration", text)
     except ValueError as error:
-        reader.problem(node, "bad-value", f'at "{text}" {error}', "at", 'Or write "end".')
+        wrong, remedy = parted(str(error))
+        remedy = f'{remedy} Or write "end".'.lstrip()
+        reader.problem(node, "bad-value", f'at "{text}" {wrong}', "at", remedy)
         return 0
