@@ -117,7 +117,7 @@ class _Crew(Generic[Item, Made]):
         done: dict[int, Made | Died] = {}
         due, more = 0, True
         while more or held:
-            while more and len(self.busy) < self.most and len(held) < AHEAD:
+            while more and len(held) < AHEAD and self._free():
                 taken = next(source, None)
                 if taken is None:
                     more = False
@@ -132,10 +132,26 @@ class _Crew(Generic[Item, Made]):
                 yield held.pop(due), done.pop(due)
                 due += 1
 
+    def _free(self) -> bool:
+        """Whether a process has nothing to do; another begins if there may be more.
+
+        Raises:
+            RunError: there is none, and none can be started.
+        """
+        if not self.idle and len(self.busy) < self.most:
+            try:
+                self.idle.append(self._start())
+            except (EOFError, OSError) as error:
+                if not self.busy:
+                    why = getattr(error, "strerror", None) or "there are too many"
+                    raise RunError(f"no process can be started: {why}.") from None
+                self.most = len(self.busy)  # with fewer than there should be
+        return bool(self.idle)
+
     def _give(self, number: int, item: Item) -> None:
         """Let a process work on an item."""
-        while True:
-            worker = self.idle.pop() if self.idle else self._start()
+        while self._free():
+            worker = self.idle.pop()
             worker.number = number
             try:
                 worker.pipe.send(item)
@@ -146,6 +162,7 @@ class _Crew(Generic[Item, Made]):
             else:
                 self.busy[worker.pipe] = worker
                 return
+        raise RunError("a process has died, and no other can be started.")
 
     def _take(self, worker: _Worker) -> list[Made | Died]:
         """A process's result, or how it ended; nothing where it has only begun."""
@@ -166,13 +183,15 @@ class _Crew(Generic[Item, Made]):
 
     def _start(self) -> _Worker:
         here, there = self.context.Pipe()
-        process = self.context.Process(target=_work, args=(*self.task, there), daemon=True)
         try:
+            process = self.context.Process(target=_work, args=(*self.task, there), daemon=True)
             with _starting():
                 process.start()
-        except OSError as error:
-            raise RunError(f"no process can be started: {error.strerror}.") from None
-        there.close()
+        except (EOFError, OSError):
+            here.close()
+            raise
+        finally:
+            there.close()
         return _Worker(process, here)
 
     def end(self) -> None:

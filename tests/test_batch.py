@@ -352,6 +352,17 @@ def test_processes_that_cannot_begin_are_told() -> None:
         list(spread(square, range(3), 2, broken))
 
 
+@pytest.mark.parametrize("most", [40, 60])
+def test_a_system_that_has_no_more_processes(stage: Path, most: int) -> None:
+    """Fewer files may be open than so many processes need: those that begin do the work."""
+    command = f"ulimit -n {most}; {' '.join(MODULE)} a b --policy prima --policy fifo --workers 12"
+    few = subprocess.run(
+        ["bash", "-c", command], capture_output=True, text=True, timeout=SECONDS, check=False
+    )
+    assert few.stdout == prima("a", "b", *POLICIES).stdout, few.stderr
+    assert few.returncode == 3
+
+
 def test_a_module_beside_the_scenarios_is_not_taken_for_one_of_python(stage: Path) -> None:
     for name in ("json", "random", "signal", "selectors"):
         write(f"{name}.py", "raise SystemExit('not this one')\n")

@@ -26,7 +26,7 @@ from prima.errors import RunError, UsageError
 if TYPE_CHECKING:
     from prima.api import Transcript
 
-MOST_WORKERS = 512
+MOST_WORKERS = 256
 """More processes than this are a slip of the finger."""
 ENDS_OF_FOLDERS = ("/", os.sep)
 
@@ -68,6 +68,7 @@ ENDS_OF_FOLDERS = ("/", os.sep)
     help="Run the scenarios that this file names, one in a line; - is standard input.",
 )
 @click.option(
+    "-j",
     "--workers",
     type=click.IntRange(1, MOST_WORKERS),
     help="Make so many runs at once; by default as many as there are cores.",
