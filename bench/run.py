@@ -158,9 +158,9 @@ def number(value: float) -> str:
 def machine(rounds: int) -> str:
     """The machine, the versions, and how it was measured."""
     names = [f"{name} {version(name)}" for name in VERSIONS if _has(name)]
-    names += [
-        f"{one.title} {peers.version(key)}" for key, one in peers.PEERS.items() if available(key)
-    ]
+    for key, one in peers.PEERS.items():
+        if available(key):
+            names.append(f"{one.title} {peers.version(key)} ({peers.runtime(key)})")
     return (
         f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores,"
         f" {platform.python_implementation()} {platform.python_version()}; {', '.join(names)};"

@@ -62,6 +62,12 @@ def installed(name: str) -> bool:
     return peer.proof.exists() and shutil.which(peer.command[0]) is not None
 
 
+def runtime(name: str) -> str:
+    """What runs a peer, with its version."""
+    told = _run((PEERS[name].command[0], "--version")).splitlines()[0]
+    return f"node {told}" if name == "xstate" else told
+
+
 def version(name: str) -> str:
     """Which version of a peer is installed."""
     if name == "xstate":
