@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -230,21 +231,25 @@ def _context() -> Any:
 
 @contextmanager
 def _starting() -> Iterator[None]:
-    """Let processes begin that do not heed Ctrl-C, nor modules in the folder they begin in.
+    """Let processes begin that import what this one does, and do not heed Ctrl-C.
 
-    An interrupt is for this process alone, which ends the others; one that comes meanwhile waits.
+    They look for modules where this one does, and not in the folder that one works in. An
+    interrupt is for this process alone, which ends the others; one that comes meanwhile waits.
     """
-    name = "PYTHONSAFEPATH"
-    safe = os.environ.get(name)
-    os.environ[name] = "1"
-    before = _mask(signal.SIG_BLOCK, {signal.SIGINT})
+    paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)
+    settings = {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
+    before = {name: os.environ.get(name) for name in settings}
+    os.environ.update(settings)
+    waiting = _mask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        del os.environ[name]
-        if safe is not None:
-            os.environ[name] = safe
-        _mask(signal.SIG_SETMASK, before)
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+        _mask(signal.SIG_SETMASK, waiting)
 
 
 def _mask(how: int, signals: Iterable[int]) -> Iterable[int]:

@@ -352,6 +352,15 @@ def test_processes_that_cannot_begin_are_told() -> None:
         list(spread(square, range(3), 2, broken))
 
 
+def test_the_processes_are_of_the_version_that_starts_them(stage: Path) -> None:
+    """A checkout that one works in counts, and not a version that is installed beside it."""
+    shutil.copytree(ROOT / "prima", "prima", ignore=shutil.ignore_patterns("__pycache__"))
+    here = Path("prima/__init__.py")
+    here.write_text(re.sub('__version__ = ".*"', '__version__ = "9.9"', here.read_text()))
+    assert prima("b", "-o", "runs").returncode == 0
+    assert json.loads(Path("runs/b/one.run.json").read_text())["key"]["prima"] == "9.9"
+
+
 @pytest.mark.parametrize("most", [40, 60])
 def test_a_system_that_has_no_more_processes(stage: Path, most: int) -> None:
     """Fewer files may be open than so many processes need: those that begin do the work."""
