@@ -202,7 +202,7 @@ def simulated() -> list[Row]:
         Row(
             "Memory, from hour 10 to hour 100, twenty visits an hour",
             "MB more",
-            Call(simulation.visits_memory, (100, 20)),
+            Call(simulation.visits_memory, (100,), (2,)),
             most=1,
             rounds=1,
         ),

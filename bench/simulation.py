@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import tempfile
 from collections import Counter
@@ -10,8 +9,8 @@ from pathlib import Path
 from time import process_time
 from typing import TYPE_CHECKING
 
+from bench import long
 from bench.fresh import check
-from bench.workloads import memory
 
 if TYPE_CHECKING:
     from prima.messages import Record
@@ -56,8 +55,8 @@ def situation(number: int, seconds: float) -> float:
     return runs * simulated / lasted
 
 
-class Long:
-    """A robot whose user comes, touches it, and goes away, again and again."""
+class Quiet:
+    """A robot whose user comes, touches it, and goes away; otherwise nothing changes."""
 
     def __init__(self) -> None:
         from prima import api
@@ -109,24 +108,15 @@ def told(record: Record) -> str:
     return f"{record['phase']} {record.get('text')}"
 
 
-def visits_memory(hours: int, an_hour: int) -> float:
-    """Megabytes that memory grows from a tenth of the hours to their end, with so many visits."""
-    run = Long()
-    before = 0.0
-    for visit in range(hours * an_hour):
-        if visit == hours * an_hour // 10:
-            gc.collect()
-            before = memory()
-        run.come(visit * HOUR // an_hour + 1)
-        run.until((visit + 1) * HOUR // an_hour)
-    run.check(hours * an_hour)
-    gc.collect()
-    return memory() - before
+def visits_memory(hours: float) -> float:
+    """Megabytes that memory grows from a tenth of the hours to their end, with many visits."""
+    tenth, end, _ = long.memory(hours)
+    return end - tenth
 
 
 def quiet(hours: int) -> float:
     """Instants computed in hours in which nothing changes; a user comes before and after them."""
-    run = Long()
+    run = Quiet()
     run.come(1)
     check(run.until(HOUR) > 10, "nothing was computed while the user was there")
     instants = run.until((hours + 1) * HOUR)
