@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Any
 
-from bench import mediation, peers, processes, simulation, workloads
+from bench import batch, mediation, peers, processes, simulation, workloads
 
 
 @dataclass(frozen=True)
@@ -260,10 +260,6 @@ def starts() -> list[Row]:
 
 def batches() -> list[Row]:
     """Many runs by one command."""
-    if find_spec("bench.batch") is None:
-        return []
-    from bench import batch
-
     return [
         Row(
             "A batch on two workers",
