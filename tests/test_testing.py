@@ -17,7 +17,7 @@ import pytest
 
 from prima import api, session
 from prima.errors import DocumentError, RunError, UsageError
-from prima.sim.person import Person
+from prima.sim.person import PHASES, Person
 from prima.sim.scenario import When, read_scenario
 from prima.testing.checking import check, make_run, triggers
 from prima.testing.coverage import Coverage, merge, total
@@ -293,7 +293,7 @@ def test_triggers_are_those_of_when(path: Path) -> None:
         for one in records:
             if one["phase"] == "start" and one.get("text"):
                 person._texts[one["behavior"].partition(".")[0]] = one["text"]
-            seen = one["phase"] in ("start", "end", "listening", "event")
+            seen = one["phase"] in PHASES[name]
             if seen and person._is(when, one["phase"], one):
                 theirs.append(round(one["time"] * 1000))
         assert [fact.time for fact in run.facts if triggers(name, what, fact)] == theirs, name
