@@ -57,14 +57,12 @@ class Transcript:
     measure: Measure | None = None
     """What was counted while the run went on."""
 
+    made: list[Row] | None = None
+    """The rows, where the records were not kept."""
+
     def rows(self) -> list[Row]:
         """The rows of the table."""
-        from prima.transcript.table import make_rows
-
-        try:
-            return make_rows(self.records)
-        except (KeyError, TypeError, ValueError, AttributeError):
-            raise UsageError(f"{self.name}: a record lacks what its phase has.") from None
+        return _made_of(self.name, self.records) if self.made is None else self.made
 
     def table(self, why: bool = False) -> str:
         """The table as text; with ``why``, each row with the rule that put it there."""
@@ -92,6 +90,20 @@ class Transcript:
 
         made = ({**record, "time": record["time"] * 1000} for record in self.records)
         return "".join(line(record) for record in made)
+
+
+def _made_of(name: str, records: Iterable[Record]) -> list[Row]:
+    """The rows of a transcript.
+
+    Raises:
+        UsageError: a record lacks what its phase has.
+    """
+    from prima.transcript.table import make_rows
+
+    try:
+        return make_rows(records)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise UsageError(f"{name}: a record lacks what its phase has.") from None
 
 
 def ends_early(name: str, seconds: float) -> str:
@@ -190,6 +202,31 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     cut: list[str] | None = [] if partial else None
     records = list(_records(path, cut))
     return Transcript(records, str(path), cut=" ".join(cut or ()))
+
+
+def skim(path: str | Path) -> Transcript:
+    """Read a transcript as far as it goes, and keep its rows and what is counted in it.
+
+    Of its records the first and the last are kept: a long one takes a small part of the memory
+    that :func:`read` needs.
+
+    Raises:
+        UsageError: it cannot be read, or is none; the line is named.
+    """
+    from prima.transcript.measures import Measure
+
+    cut: list[str] = []
+    kept: list[Record] = []
+    measure = Measure()
+
+    def records() -> Iterator[Record]:
+        for record in _records(path, cut):
+            kept[1:] = [record]
+            measure.add(record, record["time"])
+            yield record
+
+    rows = _made_of(str(path), records())
+    return Transcript(kept, str(path), cut=" ".join(cut), measure=measure, made=rows)
 
 
 def _records(path: str | Path, cut: list[str] | None) -> Iterator[Record]:

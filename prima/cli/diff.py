@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 import click
@@ -12,7 +13,6 @@ from prima.cli.common import (
     Choice,
     check_output,
     coloured,
-    print_json,
     start_watchdog,
     tell_cut,
 )
@@ -53,14 +53,15 @@ def diff(
     prima diff visit.xml --policy fifo --policy prima
     """
     from prima import api
-    from prima.transcript.diff import difference_data, format_difference
+    from prima.transcript.diff import difference_json, format_difference
 
     if output is not None and form != "html":
         raise UsageError("-o goes with --format html; other formats go to stdout.")
     (one, first), (other, second) = _runs(before, after, policies)
     if output is not None:
         check_output(output, "page", one, other)
-    old, new = _transcript(one, first), _transcript(other, second)
+    whole = form == "html"
+    old, new = _transcript(one, first, whole), _transcript(other, second, whole)
     difference = api.diff(old, new)
     if form == "html":
         from prima.cli.report import write_page
@@ -68,7 +69,7 @@ def diff(
 
         write_page(make([old, new]), output)
     elif form == "json":
-        print_json(difference_data(difference))
+        sys.stdout.writelines(difference_json(difference))
     else:
         click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
     tell_cut(old, new)
@@ -93,8 +94,8 @@ def _runs(
     return [(before, None), (after, None)]
 
 
-def _transcript(path: str, policy: str | None) -> Transcript:
-    """A transcript, or that of a scenario's run.
+def _transcript(path: str, policy: str | None, whole: bool) -> Transcript:
+    """A transcript, or that of a scenario's run; if not the whole, what is compared of it.
 
     Raises:
         RunError: the run ended by a limit.
@@ -103,7 +104,7 @@ def _transcript(path: str, policy: str | None) -> Transcript:
     from prima.errors import RunError
 
     if policy is None and not _is_markup(path):
-        return api.read(path, partial=True)
+        return api.read(path, partial=True) if whole else api.skim(path)
     start_watchdog()
     made = api.rehearse(path, policy)
     made.name = f"{path} ({policy})" if policy else path

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field, fields
 from typing import Literal
 
-from prima.messages import Json
 from prima.transcript.measures import Summary
 from prima.transcript.table import Row, printable
 
@@ -225,21 +225,36 @@ def remark(change: Change) -> str:
     return ""
 
 
-def difference_data(difference: Difference) -> dict[str, Json]:
-    """The diff as plain data."""
-    return {
+def difference_json(difference: Difference) -> Iterator[str]:
+    """The diff as lines of JSON for people and programs, piece by piece."""
+    figures = {
         "differs": difference.differs,
         "counts": difference.counts,
         "before": asdict(difference.before) if difference.before else None,
         "after": asdict(difference.after) if difference.after else None,
-        "changes": [
-            {
-                "kind": change.kind,
-                "before": asdict(change.before) if change.before else None,
-                "after": asdict(change.after) if change.after else None,
-                "delay": change.delay,
-            }
-            for change in difference.changes
-            if change.kind != "same"
-        ],
     }
+    yield json.dumps(figures, ensure_ascii=False, indent=2).removesuffix("\n}")
+    yield ',\n  "changes": ['
+    before = "\n    "
+    for change in difference.changes:
+        if change.kind != "same":
+            yield (
+                f'{before}{{\n      "kind": "{change.kind}",\n'
+                f'      "before": {_row_json(change.before)},\n'
+                f'      "after": {_row_json(change.after)},\n'
+                f'      "delay": {json.dumps(change.delay)}\n    }}'
+            )
+            before = ",\n    "
+    yield "]\n}\n" if before == "\n    " else "\n  ]\n}\n"
+
+
+_ROW = tuple(one.name for one in fields(Row))
+_encode = json.JSONEncoder(ensure_ascii=False, separators=(",\n        ", ": ")).encode
+
+
+def _row_json(row: Row | None) -> str:
+    """A row in lines of JSON that stand as deep as those of a change."""
+    if row is None:
+        return "null"
+    held = {name: getattr(row, name) for name in _ROW}
+    return f"{{\n        {_encode(held)[1:-1]}\n      }}"

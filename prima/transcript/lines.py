@@ -138,8 +138,9 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
     """
     from pydantic import ValidationError
 
-    from prima.transcript.record import Record as Model
+    from prima.transcript.record import quick_reader
 
+    quick = quick_reader()
     count = 0
     for number, text in enumerate(lines, 1):
         if not text.strip():
@@ -147,10 +148,11 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         if len(text) > MAX_LINE:
             raise UsageError(f"{name}:{number}: this line is too long for a transcript's.")
         try:
-            record = json.loads(text, parse_constant=_no_number)
-            Model.model_validate(record)
-            if "\\ud" in text.lower():
-                json.dumps(record, ensure_ascii=False).encode()  # half a letter is none
+            try:
+                odd = "NaN" in text or "Infinity" in text
+                record = _closely(text) if odd else quick(text)
+            except ValidationError:
+                record = _closely(text)
             missing = [name for name in NEEDED.get(record["phase"], ()) if name not in record]
             if missing:
                 raise ValueError(f'{record["phase"]} needs "{missing[0]}"')
@@ -164,6 +166,22 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         yield record
     if count == 0:
         raise UsageError(f"{name}: this is no transcript: it has no records.")
+
+
+def _closely(text: str) -> Record:
+    """The record of a line that is not plainly one.
+
+    Raises:
+        ValueError: it is none.
+        RecursionError: it holds values inside values without end.
+    """
+    from prima.transcript.record import Record as Model
+
+    record: Record = json.loads(text, parse_constant=_no_number)
+    Model.model_validate(record)
+    if "\\ud" in text.lower():
+        json.dumps(record, ensure_ascii=False).encode()  # half a letter is none
+    return record
 
 
 def _no_number(word: str) -> None:

@@ -16,6 +16,11 @@ SMALL = frozenset({"a", "an", "and", "at", "by", "for", "of", "on", "the", "to",
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
+UNSEEN = frozenset({"decision", "floor", "window", "stream-end", "suspend", "resume", "listening"})
+"""Phases of many records, which have no rows."""
+ASKED = ("command", "text", "args", "extra", "inserted", "source")
+"""What a row tells of the request of its behavior."""
+
 CALLS = {
     "answered": "answers",
     "busy": "is busy",
@@ -56,10 +61,26 @@ class Row:
 
 
 def make_rows(records: Iterable[Record]) -> list[Row]:
-    """The rows of a transcript, numbered."""
-    held = list(records)
-    handled = {record["cause"] for record in held if record.get("cause")}
-    asked = {record["behavior"]: record for record in held if record["phase"] == "request"}
+    """The rows of a transcript, numbered; of its records only those are kept that may have one."""
+    held: list[Record] = []
+    handled: set[int] = set()
+    asked: dict[str, Record] = {}
+    ends: dict[str, float] = {}
+    for record in records:
+        phase = record["phase"]
+        if record.get("cause"):
+            handled.add(record["cause"])
+        if phase == "request":
+            asked[record["behavior"]] = {
+                name: record[name] for name in ASKED if record.get(name) is not None
+            }
+        elif phase == "end":
+            if record["command"] == "iu":
+                ends[record["behavior"]] = record["time"]
+            if record.get("goal"):
+                held.append(record)
+        elif phase not in UNSEEN:
+            held.append(record)
     rows: list[Row] = []
     collided: set[tuple[str, str]] = set()
     for record in held:
@@ -71,7 +92,6 @@ def make_rows(records: Iterable[Record]) -> list[Row]:
         if row is not None:
             row.number = len(rows)
             rows.append(row)
-    ends = {r["behavior"]: r["time"] for r in held if r["phase"] == "end" and r["command"] == "iu"}
     _bracket(rows, ends)
     return rows
 
@@ -350,12 +370,23 @@ def _bracket(rows: list[Row], ends: dict[str, float]) -> None:
         answer = rows[after] if after < len(rows) and final.kind == "q-and-a" else None
         if answer and answer.kind == "speech" and answer.time <= ends.get(unit, -1.0):
             indices.append(after)
+    left = list(range(len(rows) + 1))  # from each row on, about where one without a mark comes
+    for indices in reversed(spans.values()):  # later units go over earlier ones
         first, last = indices[0], indices[-1]
-        for index in range(first, last + 1):
-            rows[index].bracket = "|"
-        rows[first].bracket = "+" if first != last else "["
-        if first != last:
-            rows[last].bracket = "+"
+        index = _next(left, first)
+        while index <= last:
+            inside = first < index < last
+            rows[index].bracket = "|" if inside else "+" if first != last else "["
+            left[index] = index + 1
+            index = _next(left, index)
+
+
+def _next(left: list[int], index: int) -> int:
+    """The first row from one on that has no mark; the way there is shorter the next time."""
+    while left[index] != index:
+        left[index] = left[left[index]]
+        index = left[index]
+    return index
 
 
 def width(text: str) -> int:
@@ -376,6 +407,8 @@ def _pad(text: str, columns: int) -> str:
 
 def printable(text: str) -> str:
     """Text without control characters, which a terminal would obey."""
+    if text.isprintable():
+        return text
     return "".join(" " if unicodedata.category(letter) == "Cc" else letter for letter in text)
 
 
