@@ -252,6 +252,7 @@ USAGES = [
     (["--from", "/dev/zero"], "/dev/zero: this is no list of scenarios"),
     (["a", "-o", "nothing"], "nothing: this is a file; the transcripts of several runs go into"),
     (["a", "-o", "nothing/runs"], "nothing/runs: cannot be written: Not a directory."),
+    (["a", "-o", "runs.jsonl"], "runs.jsonl: several transcripts go into a folder: -o runs/."),
     (["a", "-o", ""], "-o: name the folder that the transcripts go into."),
     (["a/one.xml", "-o", "empty"], "Is a directory. For a transcript in it, write empty/."),
     (["a", "-o", "/proc/runs"], "/proc/runs: cannot be written: No such file or directory."),
@@ -615,9 +616,12 @@ def test_progress_is_told_to_a_terminal_alone(stage: Path) -> None:
         write(f"b/{name}.xml", scenario(name, "../a/endless.xml", "300s"))
     words = ["b", "a/three.xml"]
     said, out = terminal(words, out_too=False)
-    assert re.search(rb"\r[1-6] of 7 runs(, 1 not fine)?; about \d+ s left ", said)
+    assert re.search(rb"\r[1-6] of 7 runs", said)
     assert out.decode() == prima(*words).stdout
     assert b"\x1b" not in out
+    both, _ = terminal(words, out_too=True, NO_COLOR="")
+    assert re.search(rb"\r2 of 7 runs(, 1 not fine)?; about \d+ s left ", both)
+    assert re.search(rb" \rb/q.xml +prima +0  until", both)  # a row begins at the margin
     assert prima("b").stderr == ""
 
 

@@ -83,7 +83,8 @@ def run_all(
             for row in rows:
                 exits[row.exit] += 1
                 earlier += row.earlier
-                progress.clear()
+                if row.messages or progress.among_rows:
+                    progress.clear()
                 table.put(row)
                 progress.show(sum(exits.values()), exits.total() - exits[0])
         except KeyboardInterrupt:
@@ -132,30 +133,33 @@ class _Progress:
 
     def __init__(self, total: int) -> None:
         self.total = total
-        self.shown = ""
-        self.told = self.began = time.monotonic()
         self.terminal = sys.stderr.isatty()
+        self.among_rows = sys.stdout.isatty()
+        self.shown = ""
+        self.told = self.began = 0.0
+        """When it was told last, and when the first run was done."""
 
     def show(self, done: int, bad: int) -> None:
         """Tell that so many runs are done, and so many of them were not fine."""
         now = time.monotonic()
-        if not self.terminal or now - self.told < PROGRESS_SECONDS:
-            self._write(self.shown if self.terminal else "")
+        self.began = self.began or now
+        seldom = not self.among_rows and now - self.told < PROGRESS_SECONDS
+        if not self.terminal or seldom:
             return
         self.told = now
-        left = (now - self.began) / done * (self.total - done)
         wrong = f", {bad} not fine" if bad else ""
-        self._write(f"{done} of {self.total} runs{wrong}; about {left:.0f} s left ")
+        text = f"{done} of {self.total} runs{wrong}"
+        if done > 1:
+            left = (now - self.began) / (done - 1) * (self.total - done)
+            text += f"; about {left:.0f} s left"
+        click.echo(f"\r{text.ljust(len(self.shown))} ", err=True, nl=False)
+        self.shown = text
 
     def clear(self) -> None:
         """Take it off the screen, so that something else can be written there."""
         if self.shown:
-            click.echo(f"\r{' ' * len(self.shown)}\r", err=True, nl=False)
-
-    def _write(self, text: str) -> None:
-        self.shown = text
-        if text:
-            click.echo(f"\r{text}", err=True, nl=False)
+            click.echo(f"\r{' ' * len(self.shown)} \r", err=True, nl=False)
+        self.shown = ""
 
 
 @contextmanager
