@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 
+from bench import batch as bench
 from prima import cli, pool
 from prima.batch import Inputs, Job, Options, Plan, Row, format_row, run_batch, run_job, stem_of
 from prima.errors import RunError, UsageError
@@ -682,3 +683,16 @@ def test_from_python(stage: Path) -> None:
 
 def test_a_partial_of_a_function_may_be_spread() -> None:
     assert [made for _, made in spread(partial(pow, 2), range(4), 2)] == [1, 2, 4, 8]
+
+
+def test_the_measurement_compares_what_it_measures(
+    stage: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Path("documents").mkdir()
+    shutil.copytree("b", "documents/scenarios")
+    shutil.copytree("a", "documents/a", ignore=shutil.ignore_patterns("[oft]*.xml"))
+    monkeypatch.setattr(bench, "ROOT", stage)
+    assert bench.ratio(rounds=1) > 0
+    write("documents/scenarios/one.xml", scenario("one", "gone.xml"))
+    with pytest.raises(AssertionError):
+        bench.ratio(rounds=1)
