@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import Any
 
-from bench import batch, mediation, peers, processes, simulation, workloads
+from bench import batch, matching, mediation, peers, processes, simulation, workloads
 
 
 @dataclass(frozen=True)
@@ -273,10 +272,6 @@ def batches() -> list[Row]:
 
 def matches() -> list[Row]:
     """Answers among very many, and transcripts of very many rows."""
-    if find_spec("bench.matching") is None:
-        return []
-    from bench import matching
-
     rows = [
         Row(
             f"An answer among 10,000, {title}",
