@@ -337,7 +337,7 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
-        UsageError: two of the applications have one id.
+        UsageError: two of the applications have one id, or one is of the other kind.
     """
     from html import escape
 
@@ -355,13 +355,18 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
         f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
     )
     try:
-        return _load(Path("stage.xml"), text.encode())
+        loaded = _load(Path("stage.xml"), text.encode())
     except DocumentError as error:
         if any(
             one.code == "duplicate-id" and one.place.file == "stage.xml" for one in error.problems
         ):
             _refuse_same_id(given)
         raise
+    for (kind, path), document in zip(given, loaded.cast.documents, strict=True):
+        if document.kind != kind:
+            what = "the robot's own (FA)" if document.kind == "fa" else "a place's (EA)"
+            raise UsageError(f"--{kind} {path}: this is {what}; write --{document.kind} {path}.")
+    return loaded
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:

@@ -326,3 +326,18 @@ def test_prima_alone_shows_its_help_once() -> None:
 def test_a_code_has_no_rows() -> None:
     done = prima("explain", "unknown-element", "3")
     assert done.returncode == 2 and "unknown-element is a code" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["run", "talk"])
+def test_an_application_given_as_of_the_other_kind_is_told(command: str) -> None:
+    ea, fa = ROOT / "documents" / "ea" / "library.xml", ROOT / "documents" / "fa" / "follow.xml"
+    done = prima(command, "--fa", ea)
+    assert done.returncode == 2 and f"write --ea {ea}." in done.stderr and not done.stdout
+    done = prima(command, "--ea", fa, "--fa", fa)
+    assert done.returncode == 2 and not done.stdout
+
+
+def test_a_voicexml_document_may_be_of_either_kind() -> None:
+    pizza = ROOT / "documents" / "ea" / "pizza.vxml"
+    for option in ("--fa", "--ea"):
+        assert prima("run", option, pizza, "--say", "yes").returncode == 0

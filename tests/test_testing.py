@@ -755,3 +755,51 @@ def test_a_scenario_that_cannot_be_read_is_a_failing_test(tmp_path: Path) -> Non
 def test_validation_errors_are_document_errors(tmp_path: Path) -> None:
     with pytest.raises(DocumentError):
         api.load_scenario(write(tmp_path, "<expect/>"))
+
+
+# What is left out ----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def workshop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with three scenarios, two of them in folders of their own."""
+    for name in ("own.xml", "drafts/a.xml", "more/wrong-b.xml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text('<scenario xmlns="urn:prima:scenario:1"/>')
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def ignoring(workshop: Path, settings: str) -> None:
+    (workshop / "pyproject.toml").write_text(f"[tool.prima]\n{settings}\n")
+
+
+def test_a_project_says_what_is_no_test(workshop: Path) -> None:
+    assert find(["."]) == ["own.xml", "drafts/a.xml", "more/wrong-b.xml"]
+    ignoring(workshop, 'ignore = ["drafts/", "*/wrong-*.xml"]')
+    assert find(["."]) == ["own.xml"]
+    assert find([str(workshop)]) == [str(workshop / "own.xml")]
+    assert find(["drafts", "more/wrong-b.xml"]) == ["drafts/a.xml", "more/wrong-b.xml"]
+    with pytest.raises(UsageError, match=r"more: holds no scenarios.*pyproject\.toml leaves some"):
+        find(["more"])
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ('ingore = ["a"]', r'has no "ingore"\. Did you mean "ignore"\?'),
+        ('ignore = "drafts"', r'write ignore = \["drafts"\]'),
+        ("ignore = [1]", r"is a list of paths"),
+        ("ignore = [", r"pyproject\.toml: cannot be read"),
+    ],
+)
+def test_wrong_settings_of_a_project_are_told(workshop: Path, settings: str, told: str) -> None:
+    ignoring(workshop, settings)
+    with pytest.raises(UsageError, match=told):
+        find(["."])
+
+
+def test_the_nearest_settings_count(workshop: Path) -> None:
+    ignoring(workshop, 'ignore = ["*"]')
+    ignoring(workshop / "drafts", "")
+    assert find(["drafts"]) == ["drafts/a.xml"]

@@ -38,7 +38,7 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
     \b
     prima export mediated.jsonl --to eaf -o mediated.eaf
     prima export mediated.jsonl --to csv
-    prima export mediated.jsonl -o mediated.TextGrid --lang en --lang guide=ja
+    prima export mediated.jsonl -o mediated.eaf --lang en --lang guide=ja
     """
     from prima import api
 
@@ -64,6 +64,15 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
 
 
 def _languages(langs: Iterable[str]) -> dict[str, str]:
-    """``APP=TAG`` and ``TAG`` as the interface wants them."""
-    pairs = (lang.rpartition("=") for lang in langs)
-    return {app: tag for app, _, tag in pairs}
+    """``APP=TAG`` and ``TAG`` as the interface wants them.
+
+    Raises:
+        UsageError: one application, or all, are given two.
+    """
+    found: dict[str, str] = {}
+    for lang in langs:
+        app, _, tag = lang.rpartition("=")
+        if found.setdefault(app, tag) != tag:
+            whose = f"of {app}" if app else "of all"
+            raise UsageError(f"--lang tells two languages {whose}: {found[app]} and {tag}.")
+    return found

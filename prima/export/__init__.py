@@ -52,13 +52,16 @@ def checked(name: str, languages: Mapping[str, str]) -> dict[str, str]:
     """The languages, if they and the format are right; see :func:`prima.api.export`.
 
     Raises:
-        UsageError: there is no such format, its library is missing, or a tag is none.
+        UsageError: there is no such format, its library is missing, it names no languages,
+            or a tag is none.
     """
     if name not in FORMATS:
         hint = did_you_mean(name, FORMATS) or f"Name {one_of(FORMATS)}."
         raise UsageError(f'There is no format "{name}". {hint}')
     if name == "mcap" and not installed("mcap"):
         raise UsageError("mcap needs one more library: pip install 'prima[export]'.")
+    if languages and name != "eaf":
+        raise UsageError(f"Languages go with eaf; {name} does not name them: leave them out.")
     for tag in languages.values():
         if not TAG.fullmatch(tag):
             raise UsageError(f'"{tag}" is no language tag: write one as en or pt-BR.')

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+import tomllib
 from collections.abc import Iterable, Iterator
+from fnmatch import fnmatchcase
 from pathlib import Path
 
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, UsageError, did_you_mean
 from prima.loading import VOICEXML_ROOT, read_file
 from prima.markup.reader import parse
 from prima.testing.golden import golden_of
@@ -47,23 +49,88 @@ def find(paths: Iterable[str]) -> list[str]:
         if not os.path.isdir(path):
             found[path] = None
             continue
-        inside = list(_inside(path))
+        ignored = Ignored.of(path)
+        inside = list(_inside(path, ignored))
         if not inside:
+            but = f" {ignored.file} leaves some out." if ignored.used else ""
             raise UsageError(
-                f"{path}: holds no scenarios: XML files whose root element is <scenario>."
+                f"{path}: holds no scenarios: XML files whose root element is <scenario>.{but}"
             )
         found.update(dict.fromkeys(inside))
     return list({os.path.realpath(path): path for path in reversed(found)}.values())[::-1]
 
 
-def _inside(folder: str) -> Iterator[str]:
+class Ignored:
+    """What a project leaves out of its tests: patterns of paths, in its pyproject.toml.
+
+    ``file`` is that file, and ``used`` tells whether anything has been left out.
+    """
+
+    def __init__(self, file: str = "", patterns: Iterable[str] = ()) -> None:
+        self.file = file
+        self.used = False
+        self._root = os.path.realpath(os.path.dirname(file) or ".")
+        self._patterns = [pattern.rstrip("/") for pattern in patterns]
+
+    @classmethod
+    def of(cls, folder: str) -> Ignored:
+        """That of the nearest pyproject.toml, in a folder or above it.
+
+        Raises:
+            UsageError: the file cannot be read, or its [tool.prima] is wrong.
+        """
+        here = Path(os.path.realpath(folder))
+        for place in (here, *here.parents):
+            file = place / "pyproject.toml"
+            if file.is_file():
+                return cls(os.path.relpath(file), _patterns(file))
+        return cls()
+
+    def __call__(self, path: str) -> bool:
+        """Whether a file or folder is left out."""
+        if not self._patterns:
+            return False
+        inside = os.path.relpath(os.path.realpath(path), self._root).replace(os.sep, "/")
+        left = any(fnmatchcase(inside, pattern) for pattern in self._patterns)
+        self.used = self.used or left
+        return left
+
+
+def _patterns(file: Path) -> list[str]:
+    """``ignore`` of [tool.prima].
+
+    Raises:
+        UsageError: it cannot be read, or is no list of texts.
+    """
+    shown = os.path.relpath(file)
+    try:
+        settings = tomllib.loads(read_file(file).decode()).get("tool", {}).get("prima", {})
+    except (ValueError, AttributeError) as error:
+        raise UsageError(f"{shown}: cannot be read: {error}.") from None
+    if not isinstance(settings, dict):
+        raise UsageError(f"{shown}: prima is a table: write [tool.prima].")
+    for name in settings:
+        if name != "ignore":
+            hint = did_you_mean(name, ["ignore"]) or "It may have ignore."
+            raise UsageError(f'{shown}: [tool.prima] has no "{name}". {hint}')
+    patterns = settings.get("ignore", [])
+    if not isinstance(patterns, list) or not all(isinstance(one, str) for one in patterns):
+        raise UsageError(f'{shown}: ignore is a list of paths: write ignore = ["drafts"].')
+    return patterns
+
+
+def _inside(folder: str, ignored: Ignored) -> Iterator[str]:
     for place, folders, files in os.walk(folder):
         folders[:] = sorted(
-            name for name in folders if not name.startswith(".") and name not in PASSED_BY
+            name
+            for name in folders
+            if not name.startswith(".")
+            and name not in PASSED_BY
+            and not ignored(os.path.join(place, name))
         )
         for name in sorted(files):
             path = os.path.normpath(os.path.join(place, name))
-            if name.endswith(".xml") and is_scenario(path):
+            if name.endswith(".xml") and is_scenario(path) and not ignored(path):
                 yield path
 
 
