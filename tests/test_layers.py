@@ -37,6 +37,7 @@ INSIDE = {
     "scheduler": [
         {"effects"},
         {"behavior"},
+        {"waiting"},
         {"chronicle", "memory", "intake"},
         {"selection"},
         {"selector"},

@@ -15,6 +15,8 @@ from prima.commands import CommandType
 from prima.messages import Command, Data, Group
 from prima.scheduler.effects import Effects
 
+Rank = tuple[tuple[int, ...], ...]
+"""Where a waiting AB stands by the parts of a policy's rule, S2a to S2f: the smallest first."""
 HIGH = 1
 NO_DEVICES: frozenset[str] = frozenset()
 
@@ -77,6 +79,8 @@ class Application:
     continuing: tuple[Stream, int] | None = None
     """The stream that O2 or O3 cancelled, and the instant for which it stays open."""
     units: dict[int, Behavior] = field(default_factory=dict)
+    members: dict[str, Behavior] = field(default_factory=dict)
+    """Its ABs in working memory, in the order of their requests."""
     streams: int = 0
     behaviors: int = 0
     last_turn: int = -1

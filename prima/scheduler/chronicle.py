@@ -77,16 +77,16 @@ class Chronicle:
         """Record what becomes of a stream."""
         self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
 
-    def decision(self, winner: Behavior, rule: str, losers: list[Behavior]) -> None:
-        """Record a selection: the rule, who won, and who lost."""
+    def decision(self, winner: Behavior, rule: str, losers: list[Behavior], count: int) -> None:
+        """Record a selection: the rule, who won, who lost, and how many did."""
         self.add(
             "decision",
             "mediator",
             app=winner.app.name,
             winner=winner.id,
             rule=rule,
-            losers=[ab.id for ab in losers[:LOSERS_NAMED]],
-            losers_count=len(losers),
+            losers=[ab.id for ab in losers],
+            losers_count=count,
         )
 
 

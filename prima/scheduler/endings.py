@@ -39,6 +39,8 @@ class Endings:
         self._holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
         self._rolling: Behavior | None = None
+        self._continuing: list[Application] = []
+        """Applications one of whose streams stays open for this instant (O2, O3)."""
         self._touched: dict[str, Stream] = {}
         self.halted = False
         self.changed = False

@@ -122,8 +122,13 @@ class Mediator(Failures):
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
             return
-        app.continuing = (state[-1].stream, self._now())
+        self._continue(app, state[-1].stream)
         self._withdraw(state, "O3")
+
+    def _continue(self, app: Application, stream: Stream) -> None:
+        """O2, O3: what the application asks for in this instant goes on with a stream."""
+        app.continuing = (stream, self._now())
+        self._continuing.append(app)
 
     def _hint(self, stream: Stream, asked: Request) -> None:
         """X3: the latest request of a stream says whether it is held afterwards."""
@@ -134,11 +139,13 @@ class Mediator(Failures):
 
     def _drop_hints(self, app: Application, state: int | None) -> None:
         """X3: a state that is left, or an application that ends, holds nothing any more."""
+        if not self._selector.policy.has("x3"):
+            return
         for stream in self.memory.streams.values():
             if stream.app is app and stream.hold and state in (None, stream.hold_state):
                 stream.hold = None
                 if stream.held_until is not None:
-                    app.continuing = (stream, self._now())
+                    self._continue(app, stream)
                     self._let_go(stream, "left")
 
     def _refuse(self, app: Application, asked: Request, refused: Refused) -> None:
@@ -177,7 +184,7 @@ class Mediator(Failures):
         else:
             stream = self._maker.stream(app)
         if stream.name not in self.memory.streams:
-            self.memory.streams[stream.name] = stream
+            self.memory.open(stream)
         self._touched[stream.name] = stream
         return stream, None
 
@@ -203,7 +210,7 @@ class Mediator(Failures):
             if ab.devices & devices and ab.unit is None
         }
         for stream in streams.values():
-            app.continuing = (stream, self._now())
+            self._continue(app, stream)
             self._cancel(list(stream.members.values()), devices)
 
     def open_window(self, told: Told) -> None:
@@ -239,8 +246,9 @@ class Mediator(Failures):
             self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
             self.chronicle.behavior("stop", ab, rule="F5")
         self._rolling = None
-        for app in self.memory.apps.values():
+        for app in self._continuing:
             app.continuing = None
+        self._continuing.clear()
 
     def _close_streams(self) -> None:
         """C1, F3: streams that nothing keeps open end, and hold no floor then."""
@@ -252,7 +260,7 @@ class Mediator(Failures):
             if stream.hold and not stream.app.gone:
                 kept.append(stream)  # after those that end have given the floor back
                 continue
-            del self.memory.streams[stream.name]
+            self.memory.end(stream)
             self.chronicle.stream("stream-end", stream, "C1")
             floor = self.memory.floor
             if stream in floor:

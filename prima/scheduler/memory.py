@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from prima.scheduler.behavior import Application, Behavior, State, Stream
+from prima.scheduler.waiting import Waiting
 
 
 class Memory:
@@ -13,10 +14,12 @@ class Memory:
     def __init__(self) -> None:
         self.apps: dict[str, Application] = {}
         self.behaviors: dict[str, Behavior] = {}
-        self.waiting: dict[str, Behavior] = {}
+        self.waiting = Waiting()
         self.running: dict[str, Behavior] = {}
         self.occupied: dict[str, Behavior] = {}
         self.streams: dict[str, Stream] = {}
+        self.engaged: dict[str, Stream] = {}
+        """Those of the streams in which an AB has engaged the user (K1)."""
         self.floor: list[Stream] = []
         self._active: Application | None = None
 
@@ -36,6 +39,7 @@ class Memory:
     def add(self, ab: Behavior) -> None:
         """Take a requested AB in: waiting where nothing is before it, else linked."""
         self.behaviors[ab.name] = ab
+        ab.app.members[ab.name] = ab
         ab.stream.members[ab.name] = ab
         if ab.waits_for:
             ab.state = State.LINKED
@@ -46,11 +50,11 @@ class Memory:
         """Let the AB compete. Commands inside a unit compete within it only."""
         ab.state = State.WAITING
         if ab.unit is None:
-            self.waiting[ab.name] = ab
+            self.waiting.add(ab)
 
     def start(self, ab: Behavior, now: int) -> None:
         """Move a waiting AB to the running ones; its devices are occupied from here on."""
-        self.waiting.pop(ab.name, None)
+        self.waiting.remove(ab)
         ab.state = State.RUNNING
         ab.started = now
         self.running[ab.name] = ab
@@ -83,8 +87,9 @@ class Memory:
     def remove(self, ab: Behavior) -> None:
         """Take an AB out of working memory, whatever its state."""
         self.release(ab)
-        self.waiting.pop(ab.name, None)
+        self.waiting.remove(ab)
         self.behaviors.pop(ab.name, None)
+        ab.app.members.pop(ab.name, None)
         ab.stream.members.pop(ab.name, None)
         if ab.unit is not None:
             ab.unit.inner.pop(ab.name, None)
@@ -92,7 +97,28 @@ class Memory:
 
     def of_app(self, app: Application) -> Iterator[Behavior]:
         """The application's ABs, in the order of their requests."""
-        return iter([ab for ab in self.behaviors.values() if ab.app is app])
+        return iter(list(app.members.values()))
+
+    def open(self, stream: Stream) -> None:
+        """A stream begins, or goes on after all."""
+        self.streams[stream.name] = stream
+        if stream.engaged:
+            self.engaged[stream.name] = stream
+
+    def end(self, stream: Stream) -> None:
+        """C1: a stream is over."""
+        del self.streams[stream.name]
+        self.engaged.pop(stream.name, None)
+
+    def engage(self, stream: Stream) -> None:
+        """K1: an AB of a stream engages the user."""
+        stream.engaged = True
+        self.engaged[stream.name] = stream
+
+    def rank_anew(self, stream: Stream) -> None:
+        """C2: a stream has been suspended, or resumed: its waiting ABs rank otherwise (S2d)."""
+        for ab in stream.members.values():
+            self.waiting.moved(ab)
 
     def conflicts(self, ab: Behavior) -> list[Behavior]:
         """All running ABs that occupy one of the devices, in the order of their serial numbers."""
@@ -105,7 +131,7 @@ class Memory:
 
     def unwait(self, ab: Behavior) -> None:
         """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
-        self.waiting.pop(ab.name, None)
+        self.waiting.remove(ab)
         ab.state = State.LINKED
 
     def conflict(self, ab: Behavior) -> Behavior | None:

@@ -11,10 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.scheduler.behavior import Behavior, State, Stream
+from prima.scheduler.behavior import Behavior, Rank, State, Stream
 from prima.scheduler.memory import Memory
 
-Rank = tuple[tuple[int, ...], ...]
 Refusal = tuple[str, str]
 """The rule that keeps an AB from starting, and what it is kept back by."""
 
@@ -52,10 +51,10 @@ def rank_declared(ab: Behavior) -> tuple[int, ...]:
     return (ab.app.order, ab.serial)
 
 
-def outranks(ab: Behavior, stream: Stream) -> bool:
-    """F2: whether an AB has a higher priority than all that the floor's stream has."""
+def outranks(priority: int, stream: Stream) -> bool:
+    """F2: whether a priority is higher than that of all that the floor's stream has."""
     contending = stream.contending()
-    return bool(contending) and all(ab.priority > other.priority for other in contending)
+    return bool(contending) and all(priority > other.priority for other in contending)
 
 
 def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
@@ -65,7 +64,7 @@ def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
         return None
     if ab.reaction is not None and ab.reaction not in holder.causes:
         return None
-    return None if outranks(ab, holder) else ("F2", holder.name)
+    return None if outranks(ab.priority, holder) else ("F2", holder.name)
 
 
 def composes_with_floor(ab: Behavior, memory: Memory) -> bool:
@@ -83,7 +82,7 @@ def refused_by_channel(ab: Behavior, memory: Memory) -> Refusal | None:
     """K1: an AB that leaves the user waits while another application engages the user."""
     if not ab.leaves:
         return None
-    for stream in memory.streams.values():
+    for stream in memory.engaged.values():
         if stream.app is not ab.app and stream.engages_user():
             return ("K1", stream.name)
     return None
@@ -128,6 +127,11 @@ class Policy:
         """S3: whether a waiting AB keeps its devices from those it outranks."""
         return ab.reaction is not None
 
+    @property
+    def lined(self) -> bool:
+        """Whether ABs of one line start in its order, so that most need no look (S1-S4, F, K)."""
+        return not self.extensions
+
 
 @dataclass(frozen=True, slots=True)
 class Fifo(Policy):
@@ -148,6 +152,11 @@ class Fifo(Policy):
     def holds_back(self, ab: Behavior) -> bool:
         """Every waiting AB holds its devices back from later ones."""
         return True
+
+    @property
+    def lined(self) -> bool:
+        """Other orders than the lines'."""
+        return False
 
 
 @dataclass(frozen=True, slots=True)

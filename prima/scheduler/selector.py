@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import islice
+from operator import itemgetter
+
 from prima.messages import Command, Group, Order
-from prima.scheduler.behavior import Behavior, State, Stream
-from prima.scheduler.chronicle import Chronicle
+from prima.scheduler.behavior import Application, Behavior, Rank, State, Stream
+from prima.scheduler.chronicle import LOSERS_NAMED, Chronicle
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
-from prima.scheduler.selection import Policy, Rank, Refusal, composes_with_floor
+from prima.scheduler.selection import Policy, Refusal, composes_with_floor, outranks
+from prima.scheduler.waiting import LEAST, Line, key_of, rank_of
 
 STARVING_LOOPS = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
+FEW = 8
+"""So many waiting ABs are all looked at; each that may not start is recorded with the reason."""
+EVERYBODY, NOBODY = "everybody", "nobody"
 COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
+
+
+Losers = tuple[list[tuple[Rank, Behavior]], int]
+"""The first of those whom a winner keeps waiting, by rank, and how many there are."""
 
 
 class Selector:
@@ -26,6 +38,7 @@ class Selector:
         self.policy = policy
         self.chronicle = chronicle
         self.bound = bound
+        self.few = FEW
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
@@ -54,9 +67,9 @@ class Selector:
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true when the floor changed on the way."""
         memory = self.memory
-        ranked = sorted((self.policy.rank(ab, memory, now), ab) for ab in memory.waiting.values())
         held: dict[str, Behavior] = {}
-        for index, (rank, ab) in enumerate(ranked):
+        candidates = self._candidates(now)
+        for index, (rank, ab) in enumerate(candidates):
             refusal = self.policy.refusal(ab, memory)
             if refusal is None:
                 if self._prepare(ab, now):
@@ -67,9 +80,67 @@ class Selector:
                         held.setdefault(device, ab)
             if refusal is not None:
                 self._hold(ab, refusal)
-            elif self._start(ab, rank, ranked[index + 1 :], now):
+            elif self._start(ab, rank, candidates[index + 1 :], now):
                 return True
         return False
+
+    def _candidates(self, now: int) -> list[tuple[Rank, Behavior]]:
+        """The waiting ABs in the order of S2; of many only those that may be the next (S1-S3, F, K).
+
+        In a line all need the same devices: whoever comes after the first that F2 and K1
+        let start has to wait for that one's.
+        """
+        waiting = self.memory.waiting
+        if not self._lined():
+            return self._ranked(waiting, now)
+        found = [*waiting.reactions.values(), *waiting.fresh(now)]
+        for line in waiting.lines.values():
+            let = self._let(line)
+            if isinstance(let, Application):
+                found += waiting.of(let)
+            elif let is EVERYBODY:
+                found += [ab for _, ab in line.entries[: 1 if line.devices else None]]
+        return self._ranked(dict.fromkeys(found), now)
+
+    def _lined(self) -> bool:
+        """Whether so many wait that not each of them is looked at."""
+        return len(self.memory.waiting) > self.few and self.policy.lined
+
+    def _ranked(self, found: Iterable[Behavior], now: int) -> list[tuple[Rank, Behavior]]:
+        ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
+        return sorted(ranked, key=itemgetter(0))
+
+    def _let(self, line: Line) -> Application | str:
+        """Whose ABs of a line F2 and K1 let start: everybody's, one application's, nobody's."""
+        holder = self.memory.holder
+        allowed: Application | str = EVERYBODY
+        if holder is not None and not outranks(line.priority, holder):
+            allowed = holder.app
+        if line.leaves:
+            for stream in self.memory.engaged.values():
+                if stream.engages_user():
+                    if allowed not in (EVERYBODY, stream.app):
+                        return NOBODY
+                    allowed = stream.app
+        return allowed
+
+    def _behind(self, line: Line, winner: Behavior, rank: Rank, now: int) -> Losers:
+        """Those of a line who rank below a winner that is gone from it, and must wait."""
+        waiting = self.memory.waiting
+        together = ((-line.priority,), (1,), (1,))
+        free = line.devices.isdisjoint(winner.devices)
+        let = self._let(line) if free else NOBODY
+        if together < rank[:3] or let is EVERYBODY:
+            return [], 0
+        key = key_of(rank) if together == rank[:3] else LEAST
+        start = line.below(key)
+        apart = {ab.name for ab in waiting.fresh(now)}  # ranked one by one
+        if isinstance(let, Application):
+            apart |= {ab.name for ab in waiting.of(let)}
+        count = len(line.entries) - start - sum(waiting.stands(name, line, key) for name in apart)
+        named = (entry for entry in islice(line.entries, start, None) if entry[1].name not in apart)
+        firsts = [((*together, *rank_of(key)), ab) for key, ab in islice(named, LOSERS_NAMED)]
+        return firsts, count
 
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
@@ -215,40 +286,57 @@ class Selector:
         self, ab: Behavior, rank: Rank, lower: list[tuple[Rank, Behavior]], now: int
     ) -> bool:
         """Start an AB and record why; true when its stream took the floor."""
-        holder = self.memory.holder
-        composed = self.policy.has("x5") and composes_with_floor(ab, self.memory)
+        memory, policy = self.memory, self.policy
+        holder = memory.holder
+        composed = policy.has("x5") and composes_with_floor(ab, memory)
         by_floor_rule = holder is not None and holder.app is not ab.app and not composed
-        others = bool(self.memory.running)
+        others = bool(memory.running)
+        # Where the floor changes, all others are suspended: then each is looked at anyway.
+        waiting, many = memory.waiting, self._lined()
+        lined = many and ab.reaction is None and not by_floor_rule
+        if many:
+            apart = [*waiting.reactions.values(), *waiting.fresh(now)] if lined else waiting
+            lower = [entry for entry in self._ranked(apart, now) if entry[0] > rank]
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
-        self._run(ab, now)
+        resumed = self._run(ab, now)
         changed = self._take_floor(ab, reaction, by_floor_rule)
         losers = [
             (other_rank, other)
             for other_rank, other in lower
-            if other.devices & ab.devices or self.policy.refusal(other, self.memory)
+            if other.devices & ab.devices or policy.refusal(other, memory)
         ]
         # Of several reactions that the floor would let in, it is their rank that decided.
-        rivals = [other for _, other in losers if reaction is not None and other.reaction]
-        if not self.policy.exclusive:
+        rivals = reaction is not None and any(other.reaction for _, other in losers)
+        count = len(losers)
+        if lined:
+            for line in waiting.lines.values():
+                firsts, more = self._behind(line, ab, rank, now)
+                losers += firsts
+                count += more
+            losers.sort(key=itemgetter(0))
+        if resumed:
+            memory.rank_anew(ab.stream)
+        if not policy.exclusive:
             rule = "none"
         elif composed:
             rule = "X5"
-        elif by_floor_rule and self.policy.floor and not rivals:
+        elif by_floor_rule and policy.floor and not rivals:
             rule = "F2"
         elif losers:
-            pairs = zip(self.policy.rules, rank, losers[0][0], strict=True)
+            pairs = zip(policy.rules, rank, losers[0][0], strict=True)
             rule = next((name for name, mine, other in pairs if mine != other), "S2f")
         else:
             rule = "S4" if others else "S1"
-        self.chronicle.decision(ab, rule, [other for _, other in losers])
+        self.chronicle.decision(ab, rule, [other for _, other in losers[:LOSERS_NAMED]], count)
         self._record_start(ab, rule, reaction)
         self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
             self._count_starving(ab)
         return changed
 
-    def _run(self, ab: Behavior, now: int) -> None:
+    def _run(self, ab: Behavior, now: int) -> bool:
+        """Let an AB run; true if its stream has resumed, so that its other ABs rank otherwise."""
         if not self.policy.exclusive:
             self._collide(ab)
         self._turns += 1
@@ -267,8 +355,10 @@ class Selector:
         ab.restarting = False
         self.memory.start(ab, now)
         stream = ab.stream
-        stream.engaged = stream.engaged or ab.engages
-        if stream.suspended is not None and ab.unit is None:
+        if ab.engages:
+            self.memory.engage(stream)
+        resumed = stream.suspended is not None and ab.unit is None
+        if resumed:
             stream.suspended = None
             self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
         if ab.command is not None:
@@ -279,6 +369,7 @@ class Selector:
             self.orders.append(order)
         elif first and not ab.spans:
             self._open_group(ab, now)
+        return resumed
 
     def _record_start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         self.chronicle.behavior(
@@ -329,11 +420,12 @@ class Selector:
             if other.app is not stream.app and other.open and other.suspended is None:
                 self._suspensions += 1
                 other.suspended = self._suspensions
+                self.memory.rank_anew(other)
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
 
     def _count_starving(self, ab: Behavior) -> None:
         """E4: count the loops that other applications' equal ABs have waited."""
-        for other in list(self.memory.waiting.values()):
+        for other in list(self.memory.waiting):
             if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
                 continue
             other.waited_loops += 1
@@ -350,6 +442,7 @@ class Selector:
             if self.bound is not None and other.waited_loops >= self.bound:
                 self._starved += 1
                 other.reaction = -self._starved
+                self.memory.waiting.moved(other)
 
     # Units ------------------------------------------------------------------
 

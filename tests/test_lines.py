@@ -1,0 +1,132 @@
+"""Of many waiting ABs only few are looked at; the decisions are those of looking at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+
+from prima.commands import TABLE_4_2
+from prima.messages import Command, Json, Record, Request, Step
+from prima.scheduler import selector
+from prima.scheduler.behavior import Behavior, Rank
+from prima.scheduler.chronicle import Chronicle
+from prima.scheduler.mediator import Mediator
+from prima.scheduler.memory import Memory
+from prima.scheduler.selection import Policy
+from tests.generated import Play, Run, Script, drive, perform, plays, scripts
+from tests.test_properties import examples
+
+
+def decided(act: Callable[[], Run], few: int) -> list[Record]:
+    """The records of a run in which all are looked at only where no more than ``few`` wait."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(selector, "FEW", few)
+        run = act()
+    # Who is not looked at is not told to be held.
+    return [record for record in run.records if record["phase"] != "hold"]
+
+
+@given(plays())
+@examples(20)
+def test_documents_are_mediated_alike_however_many_are_looked_at(play: Play) -> None:
+    assert decided(lambda: perform(play), 0) == decided(lambda: perform(play), 1000)
+
+
+@given(scripts())
+@examples(30)
+def test_requests_are_mediated_alike_however_many_are_looked_at(script: Script) -> None:
+    assert decided(lambda: drive(script), 0) == decided(lambda: drive(script), 1000)
+
+
+class Crowd:
+    """Applications that all want something at once."""
+
+    def __init__(self, few: int) -> None:
+        self.chronicle = Chronicle()
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(selector, "FEW", few)
+            self.mediator = Mediator(Policy(), TABLE_4_2, self.chronicle)
+        self.runs = 0
+
+    def ask(
+        self, app: int, what: tuple[str, str | None, dict[str, Json]], cause: int | None = None
+    ) -> None:
+        """One application asks for one Command."""
+        name = f"a{app}"
+        if name not in self.mediator.memory.apps:
+            self.mediator.load(name, "ea")
+        self.runs += 1
+        kind, text, arguments = what
+        steps = [Step(Command(kind, dict(arguments), text))]
+        self.mediator.request(name, Request(self.runs, steps, 1, cause))
+
+    def play(self, turns: int) -> None:
+        """Let what runs end, the latest first, and again and again."""
+        for _ in range(turns):
+            self.mediator.select()
+            self.chronicle.now += 100
+            for ab in list(self.mediator.memory.running.values())[-1:]:
+                self.mediator.ended(ab.id, True, {})
+                self.mediator.told.clear()
+        self.mediator.select()
+
+    def decisions(self) -> list[Record]:
+        """What was recorded, but for who was held."""
+        return [record for record in self.chronicle.drain() if record["phase"] != "hold"]
+
+
+KINDS: list[tuple[str, str | None, dict[str, Json]]] = [
+    ("speak", "Hello.", {}),
+    ("turn", None, {"angle": 10}),
+    ("gesture", None, {"name": "wave"}),
+    ("topological-move", None, {"to": "door"}),
+    ("turn-and-speak", "This way.", {"angle": 10}),
+    ("face-human", None, {}),
+    ("q-and-a", "Well?", {}),
+]
+
+
+@pytest.mark.parametrize("reacting", [0, 5])
+def test_a_crowd_is_served_in_the_same_order(reacting: int) -> None:
+    found = []
+    for few in (0, 1000):
+        crowd = Crowd(few)
+        for index in range(60):
+            if index % 11 == 0:
+                crowd.chronicle.now += 10
+                crowd.mediator.select()
+            cause = index if reacting and index % reacting == 0 else None
+            crowd.ask(index * 13 % 40, KINDS[index * 5 % len(KINDS)], cause)
+        crowd.play(150)
+        found.append(crowd.decisions())
+    assert found[0] == found[1]
+    assert sum(record["phase"] == "decision" for record in found[0]) >= 55
+
+
+class Counting(Policy):
+    """The policy, which notes whom it is asked for."""
+
+    def __init__(self, asked: list[Behavior]) -> None:
+        super().__init__()
+        object.__setattr__(self, "asked", asked)
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        asked: list[Behavior] = vars(self)["asked"]
+        asked.append(ab)
+        return super().rank(ab, memory, now)
+
+
+def test_the_work_of_a_decision_does_not_grow_with_those_who_wait() -> None:
+    looked = []
+    for count in (50, 500):
+        crowd = Crowd(8)
+        for index in range(count):
+            crowd.ask(index, KINDS[0])
+        ranks: list[Behavior] = []
+        crowd.mediator._selector.policy = Counting(ranks)
+        crowd.play(20)
+        looked.append(len(ranks))
+    assert looked[0] == looked[1]
+    assert looked[0] < 20 * 4
