@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.errors import UsageError
+from prima.transcript.criteria import MOST_STREAMS, Observer
 from prima.transcript.diff import compare, difference_json
 from prima.transcript.lines import read_lines
 from prima.transcript.record import Record, quick_reader
@@ -152,3 +153,23 @@ def test_one_thing_said_very_often_is_compared_in_order() -> None:
     difference = compare(before, after)
     assert difference.counts["lost"] == count - len(after)
     assert [change.after for change in difference.changes if change.after] == after
+
+
+def stream(number: int) -> list[dict[str, Any]]:
+    """A question of a stream of its own, which never ends, and a question to a service."""
+    app = f"app{number % 7}"
+    asks = {"behavior": f"{app}#{number}", "app": app, "command": "q-and-a", "text": "Well?"}
+    asks |= {"tree": f"{app}:{number}", "actor": "robot", "time": float(number)}
+    send = {"time": float(number), "phase": "send", "app": app, "data": {"to": f"s{number}"}}
+    return [{**asks, "phase": "request"}, {**asks, "phase": "start"}, send]
+
+
+def test_streams_that_never_end_are_looked_at_up_to_a_limit() -> None:
+    """Each start looks at all streams and waits that go on."""
+    observer = Observer()
+    count = 3 * MOST_STREAMS
+    for number in range(count):
+        for record in stream(number):
+            observer.add(record)
+    assert len(observer._trees) == len(observer._waits) == MOST_STREAMS
+    assert observer.result().unfaced == count

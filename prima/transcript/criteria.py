@@ -55,7 +55,11 @@ class _Tree:
     app: str
     pending: dict[str, Record] = field(default_factory=dict)
     """Requests of it that have not ended, by AB."""
+    topics: set[str] = field(default_factory=set)
+    """Those of them that do not leave the user."""
     running: set[str] = field(default_factory=set)
+    leaving: set[str] = field(default_factory=set)
+    """What of it runs and leaves the user."""
     begun: bool = False
     engaged: bool = False
     broken_by: str = ""
@@ -92,7 +96,7 @@ class _Event:
 
     name: str
     time: float
-    answered: tuple[str, ...] = ()
+    answered: set[str] = field(default_factory=set)
     """Applications that have reacted."""
     waited: str = ""
     """The application whose wait was broken and that this answers, until it is taken up."""
@@ -102,6 +106,8 @@ PARTS = 1 << 80
 """Parts of a second in which floats from a microsecond on are whole numbers."""
 MOST_EVENTS = 1000
 """How many events later a reaction may still come."""
+MOST_STREAMS = 256
+"""How many streams, and how many waits, are looked at at once: each start looks at all of them."""
 
 
 class Observer:
@@ -139,14 +145,15 @@ class Observer:
             case "end" | "cancel" | "fail" if record.get("behavior"):
                 self._end(record)
             case "stream-end":
-                tree = self._trees.pop(record["tree"], None)
-                self.found.unfaced += tree is not None and tree.unfaced
+                self._forget(record["tree"])
             case "event":
                 self._event(record)
             case "send":
                 app = record["app"]
                 talking = any(tree.begun for tree in self._trees.values() if tree.app == app)
                 self._waits[app, record["data"]["to"]] = _Wait(talking, self._now)
+                if len(self._waits) > MOST_STREAMS:
+                    del self._waits[next(iter(self._waits))]
             case "collision":
                 self._collide(record)
             case "interrupt":
@@ -164,9 +171,18 @@ class Observer:
         tree = self._trees.get(record["tree"])
         if tree is None:
             tree = self._trees[record["tree"]] = _Tree(record["tree"], record["app"])
+            if len(self._trees) > MOST_STREAMS:
+                self._forget(next(iter(self._trees)))
         tree.pending[record["behavior"]] = record
+        if not record.get("leaves"):
+            tree.topics.add(record["behavior"])
         self._of[record["behavior"]] = tree
         tree.asks = tree.asks or record["command"] == "q-and-a"
+
+    def _forget(self, name: str) -> None:
+        """A stream is over, or there are too many."""
+        tree = self._trees.pop(name, None)
+        self.found.unfaced += tree is not None and tree.unfaced
 
     def _start(self, record: Record) -> None:
         name = record["behavior"].partition(".")[0]
@@ -194,13 +210,15 @@ class Observer:
             tree.broken_by = ""
         tree.begun = True
         tree.running.add(name)
+        if request.get("leaves"):
+            tree.leaving.add(name)
         tree.engaged = tree.engaged or bool(request.get("engages"))
 
     def _react(self, app: str, serial: int, event: _Event) -> None:
         """An application starts something because of an event: the first time counts."""
         found = self.found
         if app not in event.answered:
-            event.answered += (app,)
+            event.answered.add(app)
             seconds = round(self._now - event.time, 3)
             found.reactions += 1
             found.reaction_max = max(found.reaction_max, seconds)
@@ -217,8 +235,7 @@ class Observer:
             if other.app == tree.app or other.broken_by or not other.begun:
                 continue
             # Where only a way is left to go, no topic is broken.
-            topic = any(not one.get("leaves") for one in other.pending.values())
-            if topic and not other.running and not tree.running:
+            if other.topics and not other.running and not tree.running:
                 other.broken_by = tree.app
                 other.by_reaction = tree.reacting >= 0
                 other.reacting = -1.0  # when it goes on, that is no reaction any more
@@ -231,8 +248,7 @@ class Observer:
         for other in self._trees.values():
             if other.app == tree.app or not other.engaged:
                 continue
-            doing = [other.pending[name] for name in other.running if name in other.pending]
-            if doing and all(one.get("leaves") for one in doing):
+            if 0 < len(other.leaving) == len(other.running):
                 continue
             if tree.name not in other.left_by:
                 other.left_by.add(tree.name)
@@ -244,8 +260,10 @@ class Observer:
         if tree is None:
             return
         tree.running.discard(name)
+        tree.leaving.discard(name)
         if not (again or record.get("outcome") in ("again", "halted")):
             tree.pending.pop(name, None)
+            tree.topics.discard(name)
             del self._of[name]
             self._cut.discard(name)
 
