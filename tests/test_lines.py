@@ -97,7 +97,7 @@ def test_a_crowd_is_served_in_the_same_order(reacting: int) -> None:
             if index % 11 == 0:
                 crowd.chronicle.now += 10
                 crowd.mediator.select()
-            cause = index if reacting and index % reacting == 0 else None
+            cause = index // 9 + 1 if reacting and index % reacting == 0 else None
             crowd.ask(index * 13 % 40, KINDS[index * 5 % len(KINDS)], cause)
         crowd.play(150)
         found.append(crowd.decisions())

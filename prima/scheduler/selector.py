@@ -294,9 +294,12 @@ class Selector:
         # Where the floor changes, all others are suspended: then each is looked at anyway.
         waiting, many = memory.waiting, self._lined()
         lined = many and ab.reaction is None and not by_floor_rule
-        if many:
-            apart = [*waiting.reactions.values(), *waiting.fresh(now)] if lined else waiting
-            lower = [entry for entry in self._ranked(apart, now) if entry[0] > rank]
+        if many:  # what is ranked by the lines alone is left to them, or looked for now
+            lower = [entry for entry in lower if not by_lines(entry[1], now)]
+            if not lined:
+                others_below = self._ranked((one for one in waiting if by_lines(one, now)), now)
+                lower += [entry for entry in others_below if entry[0] > rank]
+                lower.sort(key=itemgetter(0))
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
         resumed = self._run(ab, now)
@@ -474,6 +477,11 @@ class Selector:
                 self._record_start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
+
+
+def by_lines(ab: Behavior, now: int) -> bool:
+    """Whether an AB's place in its line says all of its rank (S2d to S2f)."""
+    return ab.reaction is None and ab.freed != now
 
 
 def yields(ab: Behavior, reaction: Behavior) -> bool:
