@@ -300,7 +300,9 @@ def matches() -> list[Row]:
             most=10,
             rounds=1,
         ),
-        Row("Its memory", "MB", few, "50,000 rows", half, most=2, rounds=1),
+        Row(
+            "Memory of `prima diff`, 100,000 rows", "MB", few, "50,000 rows", half, most=2, rounds=1
+        ),
     ]
 
 
