@@ -357,6 +357,28 @@ def test_without_scripts_the_transcript_can_be_read(
     context.close()
 
 
+@pytest.mark.parametrize(("size", "most"), [(DESK, 150), (PHONE, 60)])
+def test_a_long_run_opens_at_what_can_be_read(
+    browser: Browser, pages: dict[str, Path], size: tuple[int, int], most: int
+) -> None:
+    with Opened(browser, pages["long"], size) as opened:
+        page = opened.page
+        told = re.fullmatch(
+            r"Shown: 0 to (\d+) s of (\d+) s; .*Whole run.*", page.inner_text("#shown")
+        )
+        assert told and 30 <= int(told[1]) <= most < int(told[2])
+        page.focus("#moment")
+        page.keyboard.press("End")
+        assert f"to {told[2]} s of {told[2]} s" in page.inner_text("#shown")
+        page.click("#whole")
+        assert page.inner_text("#shown") == "The whole run is shown."
+
+
+def test_a_short_run_is_shown_whole(browser: Browser, pages: dict[str, Path]) -> None:
+    with Opened(browser, pages["one"], DESK) as opened:
+        assert opened.page.inner_text("#shown") == "The whole run is shown."
+
+
 def test_five_thousand_rows_stay_usable(browser: Browser, pages: dict[str, Path]) -> None:
     began = time.monotonic()
     with Opened(browser, pages["long"], DESK) as opened:

@@ -9,6 +9,7 @@
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   const SVG = "http://www.w3.org/2000/svg";
   const HEIGHT = 20, PITCH = 23, MOST_ROWS = 4;
+  const READABLE = 7, LEAST_SHOWN = 30; // pixels for a second, and seconds, when the page opens
 
   // A bar, as Python writes it: begin, end, name, application, text, row, devices, cuts.
   const [BEGIN, END, NAME, APP, TEXT, ROW, DEVICES, CUTS] = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -127,7 +128,7 @@
     const behind = [], parts = [];
     let serial = paper ? `paper-${index}-${from}` : `${index}`;
     serial = `hatch-${serial.replace(/[^\w-]/g, "-")}`;
-    const name = (text, y, kind = "name") => parts.push(draw("text", { x: 6, y, class: kind }, fit(text, left - 6)));
+    const name = (text, y, kind = "name") => parts.push(draw("text", { x: 6, y, class: kind }, fit(text, left - 12)));
 
     const box = (bar, y, height, kind, last, label) => {
       if (bar[END] < from || bar[BEGIN] > to) return last;
@@ -277,6 +278,8 @@
         host.replaceChildren(shown.svg);
         line.point();
       },
+      /** Pixels that time has. */
+      space: () => shown.right - shown.left,
       point() {
         if (!shown) return;
         const inside = state.now >= state.from - 1e-9 && state.now <= state.to + 1e-9;
@@ -341,11 +344,30 @@
     });
   }
 
+  function tellShown() {
+    const whole = state.to - state.from >= longest - 1e-9;
+    const part = `${state.from.toFixed(0)} to ${state.to.toFixed(0)} s of ${longest.toFixed(0)} s`;
+    find("shown").textContent = whole ? "The whole run is shown." : `Shown: ${part}; Later goes on, Whole run shows all.`;
+  }
+
   function view(from, to) {
     const span = Math.min(Math.max(to - from, Math.min(1, longest)), longest);
     const start = Math.min(Math.max(from, 0), longest - span);
     [state.from, state.to] = [start, start + span];
+    tellShown();
     later();
+  }
+
+  /** Bring the cursor into what is shown. */
+  function follow() {
+    const span = state.to - state.from;
+    if (state.now > state.to || state.now < state.from) view(state.now, state.now + span);
+  }
+
+  /** As much of the beginning as can be read; the whole run, where it is not much longer. */
+  function beginning() {
+    const span = Math.max(LEAST_SHOWN, timelines[0].space() / READABLE);
+    if (longest > span * 1.25) view(0, span);
   }
 
   const pan = (share) => view(state.from + share * (state.to - state.from), state.to + share * (state.to - state.from));
@@ -512,7 +534,7 @@
       shownAt = time;
       go(next);
     }
-    if (state.now > state.to || state.now < state.from) view(state.now, state.now + state.to - state.from);
+    follow();
     if (state.now >= longest) return play(false);
     frame = requestAnimationFrame(tick);
   }
@@ -691,7 +713,10 @@
   for (const hidden of document.querySelectorAll("#controls, .pictures, .keys")) hidden.hidden = false;
   if (rowCount) rove(buttonOf(line(0)));
   slider.max = longest;
-  slider.addEventListener("input", () => go(Number(slider.value)));
+  slider.addEventListener("input", () => {
+    go(Number(slider.value));
+    follow();
+  });
   find("play").addEventListener("click", () => play());
   find("earlier").addEventListener("click", () => pan(-0.5));
   find("later").addEventListener("click", () => pan(0.5));
@@ -708,7 +733,8 @@
   for (const kind of ["wheel", "touchmove"]) addEventListener(kind, () => { state.follow = false; }, { passive: true });
   addEventListener("hashchange", fromAddress);
   timelines.forEach((one) => one.redraw());
-  if (longest > 900) view(0, 120);
+  tellShown();
+  beginning();
   go(0);
   fromAddress();
 })();
