@@ -159,9 +159,9 @@ def stream(number: int) -> list[dict[str, Any]]:
     """A question of a stream of its own, which never ends, and a question to a service."""
     app = f"app{number % 7}"
     asks = {"behavior": f"{app}#{number}", "app": app, "command": "q-and-a", "text": "Well?"}
-    asks |= {"tree": f"{app}:{number}", "actor": "robot", "time": float(number)}
+    when = {"tree": f"{app}:{number}", "actor": "robot", "time": float(number)}
     send = {"time": float(number), "phase": "send", "app": app, "data": {"to": f"s{number}"}}
-    return [{**asks, "phase": "request"}, {**asks, "phase": "start"}, send]
+    return [{**asks, **when, "phase": "request"}, {**asks, **when, "phase": "start"}, send]
 
 
 def test_streams_that_never_end_are_looked_at_up_to_a_limit() -> None:
