@@ -795,3 +795,13 @@ def test_an_edge_tells_only_some_of_very_many_reasons() -> None:
 def test_help_shows_an_example() -> None:
     code, out, _ = prima(ROOT, "--help")
     assert code == 0 and "prima graph mediated.jsonl --what streams -o streams.svg" in out
+
+
+def test_a_long_name_is_broken_at_a_joint() -> None:
+    from prima.graph.svg import wrap
+
+    assert wrap("error.unsupported.point-by-hand", 170, 3) == [
+        "error.unsupported.point-by-",
+        "hand",
+    ]
+    assert "".join(wrap("x" * 60, 170, 9)) == "x" * 60

@@ -100,8 +100,11 @@ def wrap(text: str, width: float, lines: int, size: float = SIZE) -> list[str]:
     while rest and len(found) < lines - 1 and measure(rest, size) > width:
         end = len(fit(rest, width, size)) - 1
         space = rest.rfind(" ", 1, end + 1)
+        joint = max(rest.rfind(".", 1, end), rest.rfind("-", 1, end)) + 1
         if space > end // 3:
             end = space
+        elif joint > end // 3 and " " not in rest[joint:end]:
+            end = joint  # of a long name
         end = max(end, 1)
         found.append(rest[:end].rstrip())
         rest = rest[end:].lstrip()

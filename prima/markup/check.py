@@ -60,20 +60,63 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
     """Give every node its table key, and add what is wrong by the table of elements."""
+    namespace = vocabulary.namespace
+    known: dict[str, _Rules] = {}
+    read: dict[str, set[str]] = {}
     root.key = vocabulary.root
     stack = [root]
     while stack:
         node = stack.pop()
-        element = vocabulary.elements[node.key]
-        _check_attributes(node, element, vocabulary.attributes[node.key], node is root, problems)
-        _check_text(node, element, vocabulary, problems)
-        for child in node.nodes:
-            key = vocabulary.child(node.key, child.tag)
-            if key is None or child.namespace != vocabulary.namespace:
+        rules = known.get(node.key)
+        if rules is None:
+            rules = known[node.key] = _Rules(vocabulary, node.key, read)
+        if not rules.allow(node.attributes):
+            _check_attributes(node, rules, node is root, problems)
+        stray = False
+        for child in node.content:
+            if isinstance(child, str):
+                stray = stray or not (rules.element.text or child.isspace())
+                continue
+            key = rules.children.get(child.tag)
+            if key is None or child.namespace != namespace:
                 problems.append(_misplaced(child, node, vocabulary))
             else:
                 child.key = key
                 stack.append(child)
+        if stray:
+            problems.append(_stray_text(node, vocabulary))
+
+
+class _Rules:
+    """What the table says of elements of one key, at hand for all of them in a document."""
+
+    def __init__(self, vocabulary: Vocabulary, key: str, read: dict[str, set[str]]) -> None:
+        self.element = vocabulary.elements[key]
+        self.known = vocabulary.attributes[key]
+        self.children = vocabulary.children(key)
+        self.required = [item.name for item in self.element.attributes if item.required]
+        self.right: dict[str, set[str]] = {}
+        """Values that are right, by attributes; those that have been read are kept by kinds in
+        ``read``, as most are written again and again."""
+        for name, (item, is_expression) in self.known.items():
+            kind = "expression" if is_expression else item.kind
+            choices = item.choices and not is_expression
+            self.right[name] = set(item.choices) if choices else read.setdefault(kind, set())
+
+    def allow(self, attributes: dict[str, str]) -> bool:
+        """Whether these are attributes that the element may have, and all that it needs."""
+        for name, text in attributes.items():
+            right = self.right.get(name)
+            if right is None:
+                return False
+            if text not in right:
+                if _value_problem(*self.known[name], text):
+                    return False
+                right.add(text)
+        for name in self.required:
+            if name not in attributes and f"{name}-expr" not in attributes:
+                return False
+        return True
 
 
 def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
@@ -90,15 +133,11 @@ def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
     return Problem(child.place, "error", "misplaced-element", message, remedy)
 
 
-def _check_text(
-    node: Node, element: Element, vocabulary: Vocabulary, problems: list[Problem]
-) -> None:
-    if element.text or not node.content or not node.text:
-        return
+def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
     shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
     message = f'<{node.tag}> holds text: "{shown}".'
     remedy = text_remedy(node, "speak" in vocabulary.tags)
-    problems.append(Problem(_text_place(node), "error", "stray-text", message, remedy))
+    return Problem(_text_place(node), "error", "stray-text", message, remedy)
 
 
 def _text_place(node: Node) -> Place:
@@ -118,16 +157,13 @@ def _text_place(node: Node) -> Place:
     return node.place
 
 
-def _check_attributes(
-    node: Node,
-    element: Element,
-    known: dict[str, tuple[Attribute, bool]],
-    root: bool,
-    problems: list[Problem],
-) -> None:
+def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Problem]) -> None:
+    element, known = rules.element, rules.known
     unknown: list[str] = []
     for name, text in node.attributes.items():
         if root and name in EVERYWHERE:
+            if name == "xml:lang" and text:
+                problems += _language_problem(node, text)
             continue
         entry = known.get(name)
         if entry is None:
@@ -152,6 +188,16 @@ def _check_attributes(
         value = item.choices[0] if len(item.choices) == 1 else "..."
         remedy = f'Write {item.name}="{value}".'
         problems.append(Problem(node.place, "error", "missing-attribute", message, remedy))
+
+
+def _language_problem(node: Node, text: str) -> list[Problem]:
+    try:
+        read_value("language", text)
+    except ValueError as error:
+        wrong, remedy = parted(f'xml:lang "{text}" {error}')
+        place = node.attribute_place("xml:lang")
+        return [Problem(place, "error", "bad-value", wrong, remedy)]
+    return []
 
 
 def _unknown_attribute(
