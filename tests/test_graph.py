@@ -800,8 +800,6 @@ def test_help_shows_an_example() -> None:
 def test_a_long_name_is_broken_at_a_joint() -> None:
     from prima.graph.svg import wrap
 
-    assert wrap("error.unsupported.point-by-hand", 170, 3) == [
-        "error.unsupported.point-by-",
-        "hand",
-    ]
+    name = "error.unsupported.point-by-hand"
+    assert wrap(name, 170, 3) == ["error.unsupported.point-", "by-hand"]
     assert "".join(wrap("x" * 60, 170, 9)) == "x" * 60
