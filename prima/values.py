@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable
 from datetime import UTC
+from functools import cache
 
 from prima.deferred import dataclass
 
@@ -26,6 +27,7 @@ _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
 
 DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
 NAME = rf"[{_START}][{_REST}.\-]*"
+TARGET = f"#{NAME}"
 _WORD = rf"[{_START}$][{_REST}$]*"
 VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
 EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
@@ -45,9 +47,15 @@ def _fits(pattern: str, text: str) -> bool:
     """Whether a text fits a pattern of names; most are ASCII, and the whole alphabet is slow."""
     if len(text) > LONGEST_NAME:
         return False
-    if text.isascii():
+    return _alphabet(pattern, text.isascii()).fullmatch(text) is not None
+
+
+@cache
+def _alphabet(pattern: str, ascii_only: bool) -> re.Pattern[str]:
+    """A pattern of names, for all letters or for those of ASCII."""
+    if ascii_only:
         pattern = pattern.replace(_REST, "A-Za-z_0-9").replace(_START, "A-Za-z_")
-    return re.fullmatch(pattern, text) is not None
+    return re.compile(pattern)
 
 
 def _duration(text: str) -> int:
@@ -88,7 +96,7 @@ def _pattern(pattern: str, what: str) -> Callable[[str], str]:
 
 
 def _target(text: str) -> str:
-    if not _fits(f"#{NAME}", text):
+    if not _fits(TARGET, text):
         remedy = f'"#{text}"' if _fits(NAME, text) else '"#" and the id of a form'
         raise ValueError(f"is not a place to go to. Write {remedy}.")
     return text

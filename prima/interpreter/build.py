@@ -43,7 +43,6 @@ from prima.interpreter.elements import (
     Throw,
     Unit,
     Watch,
-    all_acts,
     run_commands,
     unit_commands,
 )
@@ -63,6 +62,16 @@ LONGEST_MS = 60_000
 HOLD_MS = 15_000
 """How long a stream is held for an event unless hold-for says otherwise (X3)."""
 
+Parts = dict[str, list[Node]]
+"""The child elements of an element by what they are for: see :data:`PARTS`."""
+PARTS = {
+    **dict.fromkeys(HANDLERS, "handlers"),
+    **dict.fromkeys(("var", "script"), "setup"),
+    **dict.fromkeys(("block", "field", "subdialog", "iu"), "items"),
+}
+"""What elements are for that others are for as well; the rest go by their tags."""
+COMMANDS = frozenset(ACTING)
+
 
 class Builder:
     """Builds a document; what is wrong is collected in ``problems``, and building goes on."""
@@ -74,6 +83,8 @@ class Builder:
         self.expressions: list[Expression] = []
         self.scripted = self.counting = False
         self._unnamed = 0
+        self._runs = 0
+        """How many runs of Commands have been built."""
 
     # Reading attributes -----------------------------------------------------
 
@@ -93,7 +104,7 @@ class Builder:
             value = read_value(kind, text)
         except ValueError:
             return default  # the schema's problem, told already
-        for item in DIALOGUE.elements[node.key].attributes:
+        for item in DIALOGUE.elements[node.key].attributes if node.key else ():
             number = item.name == name and isinstance(value, int | float)
             if number and not within(float(value), item.low, item.high):
                 message = f'{name} "{text}" {outside(kind, item.low, item.high)}'
@@ -127,20 +138,24 @@ class Builder:
 
     def one_of_two(self, node: Node, first: str, second: str) -> None:
         """Note where an element has neither or both of two attributes, or of their expressions."""
-        has = [
-            next((key for key in (name, f"{name}-expr") if key in node.attributes), "")
-            for name in (first, second)
-        ]
-        if all(has):
-            self.exclusive(node, *has)
-        elif not any(has) and not self.strange(node):
+        one, other = self.written(node, first), self.written(node, second)
+        if one and other:
+            self.exclusive(node, one, other)
+        elif not (one or other or self.strange(node)):
             message = f"<{node.tag}> needs either {first} or {second}."
             self.problem(node, "missing-attribute", message)
 
     @staticmethod
+    def written(node: Node, name: str) -> str:
+        """The name by which an attribute is there, or the expression in its place; or nothing."""
+        if name in node.attributes:
+            return name
+        return f"{name}-expr" if f"{name}-expr" in node.attributes else ""
+
+    @staticmethod
     def strange(node: Node) -> bool:
-        """Whether an element has an attribute that is not known: told, and likely what is missing."""
-        return not node.attributes.keys() <= DIALOGUE.attributes[node.key].keys()
+        """Whether something unknown in an element has been told, and is likely what is missing."""
+        return not node.key or not node.attributes.keys() <= DIALOGUE.attributes[node.key].keys()
 
     def exclusive(self, node: Node, first: str, second: str) -> None:
         """Note that two attributes exclude each other."""
@@ -188,7 +203,8 @@ class Builder:
         """Build the whole application."""
         root = self.root
         forms: dict[str, Form] = {}
-        for node in root.all("form"):
+        parts = self.parts(root)
+        for node in parts.get("form", ()):
             name = node.get("id")
             if name in forms:
                 self.problem(
@@ -208,11 +224,11 @@ class Builder:
             lang=self.lang,
             file=root.source.file,
             forms=forms,
-            handlers=self.handlers(root),
-            links=self.links(root),
-            watches=self.watches(root),
-            setup=self.setup(root),
-            properties=self.properties(root),
+            handlers=self.handlers(parts),
+            links=self.links(parts),
+            watches=self.watches(parts),
+            setup=self.setup(parts),
+            properties=self.properties(parts),
             node=root,
             expressions=self.expressions,
             scripted=self.scripted,
@@ -223,30 +239,43 @@ class Builder:
 
     def form(self, node: Node) -> Form:
         """A form."""
-        form = Form(
-            id=node.get("id"),
-            items=self.items(node),
-            handlers=self.handlers(node),
-            links=self.links(node),
-            watches=self.watches(node),
-            setup=self.setup(node),
-            filled=self.filleds(node),
-            properties=self.properties(node),
-            node=node,
-            hold=self.hold(node),
-            connect=node.get("channel") == "connect",
+        parts = self.parts(node)
+        return Form(  # in order: naming what is given takes as long as making it
+            node.get("id"),
+            self.items(parts),
+            self.handlers(parts),
+            self.links(parts),
+            self.watches(parts),
+            self.setup(parts),
+            self.filleds(parts),
+            self.properties(parts),
+            node,
+            self.hold(node),
+            node.get("channel") == "connect",
         )
-        return form
+
+    @staticmethod
+    def parts(node: Node) -> Parts:
+        """The child elements, divided by what they are for."""
+        found: Parts = {}
+        for child in node.content:
+            if not isinstance(child, str):
+                part = PARTS.get(child.tag, child.tag)
+                if part in found:
+                    found[part].append(child)
+                else:
+                    found[part] = [child]
+        return found
 
     def hold(self, node: Node) -> int | None:
         """How long a stream is held by the hints of an element (X3)."""
         longest: int = self.value(node, "hold-for", "duration", HOLD_MS)
         return longest if node.get("stream") == "hold" else None
 
-    def setup(self, node: Node) -> list[Declare | Script]:
+    def setup(self, parts: Parts) -> list[Declare | Script]:
         """Variables and scripts, in document order."""
         found: list[Declare | Script] = []
-        for child in node.all("var", "script"):
+        for child in parts.get("setup", ()):
             found.append(self.declare(child) if child.tag == "var" else self.script(child))
         return found
 
@@ -271,10 +300,10 @@ class Builder:
         self.scripted = True
         return Script(Expression(code, node, ""), node)
 
-    def properties(self, node: Node) -> dict[str, Json]:
+    def properties(self, parts: Parts) -> dict[str, Json]:
         """Properties by name, as values."""
         found: dict[str, Json] = {}
-        for child in node.all("property"):
+        for child in parts.get("property", ()):
             name = child.get("name")
             if name in PROPERTIES:
                 try:
@@ -285,31 +314,34 @@ class Builder:
                     self.problem(child, "bad-value", message, remedy, "value")
         return found
 
-    def handlers(self, node: Node) -> list[Handler]:
+    def handlers(self, parts: Parts) -> list[Handler]:
         """Handlers in document order."""
         found = []
-        for child in node.all(*HANDLERS):
-            events = child.get("event").split() if child.tag == "on" else [child.tag]
-            reactive = child.attributes.get("reactive")
-            count, content = self.value(child, "count", "integer", 1), self.content(child)
+        for child in parts.get("handlers", ()):
+            given = child.attributes
+            events = given.get("event", "").split() if child.tag == "on" else [child.tag]
+            reactive = given.get("reactive")
+            count = self.value(child, "count", "integer", 1)
             self.counting = self.counting or count > 1
+            runs = self._runs
+            content = self.content(child)
             found.append(
                 Handler(
-                    events=[event.rstrip(".") for event in events],
-                    cond=self.expression(child, "cond"),
-                    count=count,
-                    reactive=None if reactive is None else reactive == "true",
-                    content=content,
-                    node=child,
-                    waits=any(isinstance(act, Run) for act in all_acts(content)),
+                    [event.rstrip(".") for event in events],
+                    self.expression(child, "cond"),
+                    count,
+                    None if reactive is None else reactive == "true",
+                    content,
+                    child,
+                    self._runs > runs,
                 )
             )
         return found
 
-    def links(self, node: Node) -> list[Link]:
+    def links(self, parts: Parts) -> list[Link]:
         """Links in document order."""
         found = []
-        for child in node.all("link"):
+        for child in parts.get("link", ()):
             self.one_of_two(child, "next", "event")
             grammars = [read_grammar(self.problem, item) for item in child.all("grammar")]
             if len(grammars) != 1:
@@ -324,22 +356,22 @@ class Builder:
                 found.append(Link(to, child.get("event"), grammar, child))
         return found
 
-    def watches(self, node: Node) -> list[Watch]:
+    def watches(self, parts: Parts) -> list[Watch]:
         """Watches in document order."""
         return [
             Watch(child.get("name"), self.code(child.get("when"), child, "when"), child)
-            for child in node.all("watch")
+            for child in parts.get("watch", ())
         ]
 
     # Form items ---------------------------------------------------------------
 
-    def items(self, node: Node) -> list[Item]:
+    def items(self, parts: Parts) -> list[Item]:
         """The form items of a form or a unit."""
         made: list[Item] = []
-        for child in node.nodes:
+        for child in parts.get("items", ()):
             match child.tag:
                 case "block":
-                    block = Block(*self.item(child), content=self.content(child))
+                    block = Block(*self.item(child, self.parts(child)), content=self.content(child))
                     made.append(block)
                 case "field":
                     made.append(self.field(child))
@@ -350,7 +382,7 @@ class Builder:
         return made
 
     def item(
-        self, node: Node
+        self, node: Node, parts: Parts
     ) -> tuple[
         str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node, int | None
     ]:
@@ -360,19 +392,20 @@ class Builder:
         if not name:
             self._unnamed += 1
             name = f"$item{self._unnamed}"
-        handlers = self.handlers(node) if node.tag != "block" else []
+        handlers = self.handlers(parts) if node.tag != "block" else []
         return (
             name,
             self.expression(node),
             self.expression(node, "cond"),
             handlers,
-            self.properties(node),
+            self.properties(parts),
             node,
             self.hold(node) if "stream" in node.attributes else None,
         )
 
     def field(self, node: Node) -> Field:
         """A field, with all that it takes as an answer."""
+        parts = self.parts(node)
         prompts = [
             Prompt(
                 text=self.text(child),
@@ -382,10 +415,10 @@ class Builder:
                 bargein=self.value(child, "bargein", "boolean", None),
                 node=child,
             )
-            for child in node.all("prompt")
+            for child in parts.get("prompt", ())
         ]
         answers = Answers(type=node.get("type"))
-        for child in node.all("option"):
+        for child in parts.get("option", ()):
             said = child.text
             if not fold(said):
                 self.problem(
@@ -402,7 +435,8 @@ class Builder:
                     "Remove one of them.",
                 )
             answers.options.setdefault(fold(said), child.get("value", said))
-        answers.grammars = [read_grammar(self.problem, child) for child in node.all("grammar")]
+        grammars = parts.get("grammar", ())
+        answers.grammars = [read_grammar(self.problem, child) for child in grammars]
         strange = any(not child.key for child in node.nodes)  # told already
         if not (answers.options or answers.grammars or answers.type or strange):
             self.problem(
@@ -412,26 +446,28 @@ class Builder:
                 "Give it options, a grammar or a type.",
             )
         return Field(
-            *self.item(node),
+            *self.item(node, parts),
             prompts=prompts,
             answers=answers,
-            filled=self.filleds(node),
+            filled=self.filleds(parts),
             lang=self.lang,
             connect=node.get("channel") == "connect",
         )
 
     def subdialog(self, node: Node) -> Subdialog:
         """A subdialog."""
+        parts = self.parts(node)
         return Subdialog(
-            *self.item(node),
+            *self.item(node, parts),
             form=self.target(node, "src"),
             params=self.params(node),
-            filled=self.filleds(node),
+            filled=self.filleds(parts),
         )
 
     def unit(self, node: Node) -> Unit:
         """A unit around form items; its devices are those of everything in it."""
-        unit = Unit(*self.item(node), items=self.items(node))
+        parts = self.parts(node)
+        unit = Unit(*self.item(node, parts), items=self.items(parts))
         unit.longest = self.value(node, "longest", "duration", LONGEST_MS)
         devices: frozenset[str] = frozenset()
         for item in unit.items:
@@ -454,25 +490,31 @@ class Builder:
             message = f"<{command.type}> {why}; it cannot stand in a unit."
             self.problem(command.node, "not-in-unit", message, "Move it out of the <iu>.")
 
-    def filleds(self, node: Node) -> list[Filled]:
+    def filleds(self, parts: Parts) -> list[Filled]:
         """Filled elements."""
         return [
             Filled(child.get("mode", "all"), self.names(child), self.content(child), child)
-            for child in node.all("filled")
+            for child in parts.get("filled", ())
         ]
 
     # Content ----------------------------------------------------------------------
 
     def content(self, node: Node) -> list[Act]:
         """Executable content; Commands that follow one another become one run."""
-        return self.acts([child for child in node.nodes if child.key not in ("param", "value")])
+        return self.acts(
+            [
+                child
+                for child in node.content
+                if not isinstance(child, str) and child.key not in ("param", "value")
+            ]
+        )
 
     def acts(self, nodes: list[Node]) -> list[Act]:
         """Executable content from some of an element's children."""
         made: list[Act] = []
         sequence: list[Node] = []
         for node in nodes:
-            if node.tag in ACTING:
+            if node.tag in COMMANDS:
                 # A Command wanted now begins a run of its own: what stands before it comes first.
                 if sequence and self.is_now(node):
                     made.append(self.run(sequence))
@@ -499,6 +541,7 @@ class Builder:
         """Commands that follow one another, flattened into steps."""
         steps: list[StepTemplate] = []
         self.sequence(nodes, (), steps)
+        self._runs += 1
         return Run(steps, nodes[0])
 
     def sequence(
@@ -566,7 +609,7 @@ class Builder:
             text=content,
             now=node.get("order") == "now",
             extra=params,
-            handlers=self.handlers(node),
+            handlers=self.handlers(self.parts(node)),
             node=node,
             lang=self.lang,
             restartable=node.get("restartable") == "true",

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache, lru_cache
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from functools import cached_property, lru_cache
+from itertools import zip_longest
+from typing import Any
 
 from prima.commands import TABLE_4_2, CommandType
-from prima.deferred import field_names
 from prima.errors import Place, Problem, Severity, did_you_mean
 from prima.interpreter.elements import (
     Act,
+    Acts,
     Assign,
     Block,
     Clear,
@@ -29,9 +30,12 @@ from prima.interpreter.elements import (
     Handler,
     If,
     Item,
+    Log,
+    Prompt,
     Return,
     Run,
     Script,
+    SendOut,
     StepTemplate,
     Subdialog,
     Text,
@@ -43,7 +47,7 @@ from prima.interpreter.elements import (
     unit_commands,
 )
 from prima.interpreter.evaluation import ScriptError
-from prima.interpreter.events import Events, handlers_of, silent_fields, takes
+from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.expressions import check_expression, check_script, plain_context
 from prima.interpreter.names import IDENTIFIER, declared_names, free_names
 from prima.interpreter.plain import compiled
@@ -68,8 +72,11 @@ BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
 CALL = re.compile(r"\s*\(")
 """What expressions and texts are looked through for."""
 
-LEAVES, LISTS = (str, int, frozenset), (list, tuple)
-"""Values in which no expression stands, and those that hold others."""
+LEAVING = (Goto, Return, Exit)
+"""Acts behind which nothing is reached."""
+SCOPED = ("document", "dialog", "application")
+"""Scopes that the name of a variable may begin with."""
+NONE: frozenset[str] = frozenset()
 VARIABLES = frozenset({"event", "_event", "_message", "session", "sensor"})
 """What the language itself declares."""
 ABSENT = {
@@ -159,44 +166,87 @@ def document_commands(document: Document) -> Iterator[CommandTemplate]:
                 yield from run_commands(act.steps)
 
 
-@cache
-def _parts(kind: type) -> tuple[str, ...]:
-    """The fields of a value in which expressions may stand; looking them up is slow."""
-    if kind is Node:
-        return ()
-    return tuple(name for name in field_names(kind) if name != "node")
-
-
 @lru_cache(maxsize=1)
 def _context() -> Any:
     return plain_context()
 
 
-class Leads(NamedTuple):
-    """Where a form leads: forms it goes to and calls, and whether it can end or exit."""
+class Leads:
+    """Where a form leads, or the document's own content."""
 
-    targets: set[str]
-    calls: set[str]
-    ends: bool
-    exits: bool
+    __slots__ = ("anywhere", "calls", "ends", "exits", "targets")
+
+    def __init__(self) -> None:
+        self.targets: list[str] = []
+        """Forms it goes to."""
+        self.anywhere = False
+        """Whether an expression says where it goes."""
+        self.calls: list[str] = []
+        """Forms it calls as subdialogs."""
+        self.ends = self.exits = False
+        """Whether it can be left otherwise, and whether so by an exit."""
+
+
+class Known:
+    """The variables that content of a form may see."""
+
+    __slots__ = ("given", "own", "shared")
+
+    def __init__(self, shared: Set[str], own: Set[str], given: Set[str]) -> None:
+        self.shared = shared
+        self.own = own
+        self.given = given
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.shared or name in self.own or name in self.given
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.shared | self.own | self.given)
+
+
+Names = set[str] | Known
+"""Variables that some content may see."""
+
+
+def _of_run(run: Run) -> Iterator[object]:
+    for command in run_commands(run.steps):
+        yield from command.args.values()
+        yield from command.text or ()
+        yield from (value for _, value in command.extra)
+        yield from (handler.cond for handler in command.handlers)
+
+
+HELD: Mapping[type[Act], Callable[[Any], Iterable[object]]] = {
+    Declare: lambda act: (act.expr,),
+    Assign: lambda act: (act.expr,),
+    If: lambda act: [cond for cond, _ in act.branches],
+    Foreach: lambda act: (act.array,),
+    Log: lambda act: act.text,
+    Throw: lambda act: (act.event, act.message),
+    Goto: lambda act: (act.form, act.item),
+    SendOut: lambda act: (act.service, act.delay, *(value for _, value in act.params)),
+    Run: _of_run,
+}
+"""What acts hold that may be expressions, by kinds; scripts are looked at by themselves."""
 
 
 class Checker:
-    """Goes through a document once for each kind of mistake."""
+    """Looks for each kind of mistake in a document, among what has been gathered of it."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.problems: list[Problem] = []
+        self.acts = Acts(document)
         self.shared = self._setup_names(document.setup)
-        self.contents: dict[int, list[list[Act]]] = {}
-        """Pieces of content by the form they stand in (its id(); 0 for the document)."""
-        for form, content, _ in document.contents():
-            self.contents.setdefault(id(form) if form else 0, []).append(content)
-        self._declared: dict[int, set[str]] = {}
+        self.forms = [(form, all_items(form.items)) for form in document.forms.values()]
+        """Forms with all their items."""
+        self._declared: dict[str | None, set[str]] = {}
+        """Names by the form whose content declares them; None for the document."""
         self._given: dict[str, set[str]] = {}
         """Names that subdialogs give as params, by the form they call."""
         self._gather()
-        self._led: dict[int, Leads] = {}
+        self._common = self.shared | self._declared.get(None, set())
+        self._leads = self._led()
 
     def note(
         self,
@@ -222,7 +272,7 @@ class Checker:
         self._rounds()
         self._leaving()
         self._silence()
-        self.problems += Events(self.document).problems()
+        self.problems += Events(self.document, self.acts).problems()
         self._after_goto()
 
     # States -------------------------------------------------------------------
@@ -234,12 +284,10 @@ class Checker:
             self.note(node, "no-such-form", message, did_you_mean(name, forms), attribute)
 
     def _targets(self) -> None:
-        for form, content, _ in self.document.contents():
-            for act in all_acts(content):
-                if isinstance(act, Goto):
-                    self._goto(act, form)
-        for form in self.document.forms.values():
-            for item in all_items(form.items):
+        for form, act in self.acts.of(Goto):
+            self._goto(act, form)
+        for _, items in self.forms:
+            for item in items:
                 if isinstance(item, Subdialog):
                     self._form(item.form, item.node, "src")
         links = [*self.document.links, *(x for f in self.document.forms.values() for x in f.links)]
@@ -264,42 +312,48 @@ class Checker:
                     remedy = f'It is a form: write next="#{act.item}".'
                 self.note(act.node, "no-such-item", message, remedy, "nextitem")
 
-    def _leads(self, form: Form | None) -> Leads:
-        """Where content of a form (or the document's) leads to."""
-        key = id(form) if form else 0
-        if key in self._led:
-            return self._led[key]
-        targets: set[str] = set()
-        ends = exits = False
-        for content in self.contents.get(key, ()):
-            for act in all_acts(content):
-                if isinstance(act, Goto) and act.form is not None:
-                    targets |= {act.form} if isinstance(act.form, str) else set(self.document.forms)
-                ends = ends or isinstance(act, Exit | Return | Throw)
-                exits = exits or isinstance(act, Exit)
-        links = self.document.links if form is None else form.links
-        targets |= {link.form for link in links if link.form}
-        items = all_items(form.items) if form else []
-        calls = {item.form for item in items if isinstance(item, Subdialog)}
-        self._led[key] = Leads(targets, calls, ends, exits)
-        return self._led[key]
+    def _led(self) -> dict[str | None, Leads]:
+        """Where each form leads, and the document's own content (None)."""
+        found: dict[str | None, Leads] = {name: Leads() for name in (None, *self.document.forms)}
+        for form, goto in self.acts.of(Goto):
+            leads = found[form.id if form else None]
+            if isinstance(goto.form, str):
+                leads.targets.append(goto.form)
+            elif goto.form is not None:
+                leads.anywhere = True
+        for kind in (Exit, Return, Throw):
+            for form, _ in self.acts.of(kind):
+                leads = found[form.id if form else None]
+                leads.ends = True
+                leads.exits = leads.exits or kind is Exit
+        found[None].targets += [link.form for link in self.document.links if link.form]
+        for form, items in self.forms:
+            leads = found[form.id]
+            leads.targets += [link.form for link in form.links if link.form]
+            leads.calls += [item.form for item in items if isinstance(item, Subdialog)]
+        return found
 
     def _reached(self, names: Iterable[str], calls: bool) -> set[str]:
         """The forms that some forms lead to, themselves included; with subdialogs or without."""
         reached: set[str] = set()
-        waiting = sorted(names)
+        waiting = list(names)
         while waiting:
             name = waiting.pop()
-            if name not in reached and name in self.document.forms:
-                reached.add(name)
-                leads = self._leads(self.document.forms[name])
-                waiting += sorted(leads.targets | (leads.calls if calls else set()))
+            if name in reached or name not in self.document.forms:
+                continue
+            reached.add(name)
+            leads = self._leads[name]
+            if leads.anywhere:
+                return set(self.document.forms)
+            waiting += leads.targets
+            if calls:
+                waiting += leads.calls
         return reached
 
     def _hints(self) -> None:
         """X3: what a held stream costs others, and hints that can have no effect."""
-        for form in self.document.forms.values():
-            pieces: list[Form | Item] = [form, *all_items(form.items)]
+        for form, items in self.forms:
+            pieces: list[Form | Item] = [form, *items]
             for one in pieces:
                 node = one.node
                 if "hold-for" in node.attributes and "stream" not in node.attributes:
@@ -321,33 +375,38 @@ class Checker:
                     )
                     self.note(node, "hold-price", message, "", "stream", "note")
 
-            if form.connect and not self.document.handlers and not self._speaks(form):
+            if form.connect and not self.document.handlers and not self._speaks(form, items):
                 message = (
                     "The robot is to turn to the user before its first word, but says none here."
                 )
                 self.note(form.node, "idle-hint", message, "Remove the hint.", "channel", "warning")
 
-    def _speaks(self, form: Form) -> bool:
+    def _speaks(self, form: Form, items: list[Item]) -> bool:
         """Whether the robot says or asks something in a form, as far as can be seen."""
-        asks = any(isinstance(item, Field | Subdialog) for item in all_items(form.items))
-        says = (
-            command.text or command.type not in TABLE_4_2
-            for content in self.contents.get(id(form), ())
-            for act in all_acts(content)
-            if isinstance(act, Run)
-            for command in run_commands(act.steps)
-        )
-        return asks or any(says)
+        asks = any(isinstance(item, Field | Subdialog) for item in items)
+        return asks or form.id in self._speaking
+
+    @cached_property
+    def _speaking(self) -> set[str]:
+        """The forms whose content has the robot say something."""
+        return {
+            form.id
+            for form, run in self.acts.of(Run)
+            if form
+            and any(one.text or one.type not in TABLE_4_2 for one in run_commands(run.steps))
+        }
 
     def _reachable(self) -> None:
         forms = self.document.forms
         if not forms:
             return
-        everywhere = self._leads(None)
-        reached = self._reached([next(iter(forms)), *everywhere.targets], calls=True)
-        called = {name for form in forms.values() for name in self._leads(form).calls}
+        everywhere = self._leads[None]
+        starts = [*forms] if everywhere.anywhere else [next(iter(forms)), *everywhere.targets]
+        reached = self._reached(starts, calls=True)
+        called = {name for form in forms for name in self._leads[form].calls}
         inside = self._reached(called, calls=False)
         exiting = self._exiting()
+        leaves = everywhere.targets or everywhere.anywhere or everywhere.ends
         for name, form in forms.items():
             if not name:
                 continue  # nothing can name it, which has been told
@@ -356,9 +415,10 @@ class Checker:
                     form.node, "unreachable", f'Nothing leads to the form "{name}".',
                     "Go to it from somewhere, or remove it.", "id", "warning",
                 )  # fmt: skip
-            leads = self._leads(form)
-            left = leads.targets or leads.ends or leads.calls & exiting
-            if not (left or everywhere.targets or everywhere.ends) and name in reached:
+            leads = self._leads[name]
+            left = leads.targets or leads.anywhere or leads.ends
+            left = left or not exiting.isdisjoint(leads.calls)
+            if not (left or leaves) and name in reached:
                 remedy = (
                     "To come back from the subdialog, write <return/>."
                     if name in inside
@@ -369,13 +429,16 @@ class Checker:
 
     def _exiting(self) -> set[str]:
         """The forms from which an exit can be reached, through gotos and subdialogs."""
-        leading: dict[str, list[str]] = {}
-        for name, form in self.document.forms.items():
-            leads = self._leads(form)
-            for target in leads.targets | leads.calls:
-                leading.setdefault(target, []).append(name)
         forms = self.document.forms
-        waiting = [name for name, form in forms.items() if self._leads(form).exits]
+        waiting = [name for name in forms if self._leads[name].exits]
+        if not waiting:
+            return set()
+        waiting += [name for name in forms if self._leads[name].anywhere]
+        leading: dict[str, list[str]] = {}
+        for name in forms:
+            leads = self._leads[name]
+            for target in (*leads.targets, *leads.calls):
+                leading.setdefault(target, []).append(name)
         found: set[str] = set()
         while waiting:
             name = waiting.pop()
@@ -394,21 +457,18 @@ class Checker:
         return names
 
     def _names(self) -> None:
-        for form in self.document.forms.values():
+        for form, items in self.forms:
+            if not (items or form.filled):
+                continue
             seen: set[str] = set()
-            for item in all_items(form.items):
+            for item in items:
                 if item.name in seen:
                     message = f'The form "{form.id}" has two items named "{item.name}".'
                     self.note(item.node, "duplicate-name", message, "Rename one.", "name")
                 seen.add(item.name)
-            inputs = {i.name for i in all_items(form.items) if isinstance(i, Field | Subdialog)}
-            own = [
-                f
-                for i in all_items(form.items)
-                if isinstance(i, Field | Subdialog)
-                for f in i.filled
-            ]
-            for filled in [*form.filled, *own]:
+            asking = [item for item in items if isinstance(item, Field | Subdialog)]
+            inputs = {item.name for item in asking}
+            for filled in (*form.filled, *(one for item in asking for one in item.filled)):
                 self._namelist(filled, filled.names, inputs, "field")
 
     def _namelist(
@@ -422,90 +482,103 @@ class Checker:
 
     def _gather(self) -> None:
         """Names by the form that declares them, found in one go."""
-        for key, contents in self.contents.items():
-            for content in contents:
-                self._declared.setdefault(key, set()).update(self._content_names(content))
-        for form in self.document.forms.values():
-            own = self._declared.setdefault(id(form), set())
-            own |= self._setup_names(form.setup)
-            for item in all_items(form.items):
-                own |= {item.name, f"{item.name}$"}
+        for form, declare in self.acts.of(Declare):
+            self._own(form).add(declare.name)
+        for form, script in self.acts.of(Script):
+            self._own(form).update(declared_names(script.code.code))
+        for form, loop in self.acts.of(Foreach):
+            self._own(form).add(loop.item)
+        for form, items in self.forms:
+            if form.setup:
+                self._own(form).update(self._setup_names(form.setup))
+            for item in items:
+                self._own(form).update((item.name, f"{item.name}$"))
                 if isinstance(item, Subdialog):
                     given = self._given.setdefault(item.form, set())
                     given |= {name for name, _ in item.params}
 
-    def known_in(self, form: Form) -> set[str]:
-        """All variables that content of a form may see."""
-        shared = self._declared.get(0, set())
-        own = self._declared[id(form)]
-        return self.shared | shared | own | self._given.get(form.id, set())
+    def _own(self, form: Form | None) -> set[str]:
+        return self._declared.setdefault(form.id if form else None, set())
 
-    @staticmethod
-    def _content_names(content: list[Act]) -> set[str]:
-        names: set[str] = set()
-        for act in all_acts(content):
-            if isinstance(act, Declare):
-                names.add(act.name)
-            elif isinstance(act, Script):
-                names |= declared_names(act.code.code)
-            elif isinstance(act, Foreach):
-                names.add(act.item)
-        return names
+    def known_in(self, form: Form) -> Names:
+        """All variables that content of a form may see."""
+        own, given = self._declared.get(form.id, NONE), self._given.get(form.id, NONE)
+        return Known(self._common, own, given) if own or given else self._common
 
     # Expressions --------------------------------------------------------------
 
     def _expressions(self) -> None:
         document = self.document
         every = self.shared.union(*self._declared.values(), *self._given.values())
-        for part in (document.setup, document.watches):
-            self._walk(part, self.shared, every)
-        self._walk(document.handlers, every, every)
-        for form in document.forms.values():
-            known = self.known_in(form)
-            for piece in (form.setup, form.watches, form.handlers, form.filled, form.items):
-                self._walk(piece, known, every)
+        known: dict[str | None, Names] = {form.id: self.known_in(form) for form, _ in self.forms}
+        known[None] = every
+        self._outside(document, self.shared, every)
+        for form, items in self.forms:
+            self._outside(form, known[form.id], known[form.id])
+            for item in items:
+                self._item(item, known[form.id])
+        for kind, held in HELD.items():
+            for stands, act in self.acts.of(kind):
+                names = known[stands.id if stands else None]
+                for one in held(act):
+                    if isinstance(one, Expression):
+                        self._expression(one, names)
+        for stands, script in self.acts.of(Script):
+            self._script(script, known[stands.id if stands else None])
+        self._variables(known)
 
-    def _walk(self, value: object, known: set[str], every: set[str]) -> None:
-        """Find every expression in values and check it."""
-        if isinstance(value, Expression):
-            self._expression(value, known)
-        elif isinstance(value, Script):
-            self._script(value, known)
-        elif isinstance(value, LISTS):
-            for part in value:
-                if not isinstance(part, LEAVES):
-                    self._walk(part, known, every)
-        elif isinstance(value, dict):
-            self._walk(list(value.values()), known, every)
-        else:
-            names = _parts(type(value))  # type: ignore[arg-type]  # a class has a hash
-            if names:
-                self._variables(value, known)
-            for name in names:
-                part = getattr(value, name)
-                if part and not isinstance(part, LEAVES):
-                    self._walk(part, known, every)
+    def _outside(self, holder: Document | Form, known: Names, later: Names) -> None:
+        """Code of a document or form that is in no content; ``later`` is seen by its handlers."""
+        for act in holder.setup:
+            if isinstance(act, Script):
+                self._script(act, known)
+            elif act.expr is not None:
+                self._expression(act.expr, known)
+        for watch in holder.watches:
+            self._expression(watch.when, known)
+        self._conditions(holder.handlers, later)
 
-    def _variables(self, value: object, known: set[str]) -> None:
-        if isinstance(value, Assign):
-            head = value.name.split(".")
-            name = (
-                head[1]
-                if head[0] in ("document", "dialog", "application") and head[1:]
-                else head[0]
-            )
-            if name not in known:
-                self._undeclared(value.node.attribute_place("name"), name, known)
-        elif isinstance(value, Clear | Return):
-            for name in value.names:
-                if name not in known:
-                    self._undeclared(value.node.attribute_place("namelist"), name, known)
+    def _conditions(self, conditional: Iterable[Handler | Prompt], known: Names) -> None:
+        for one in conditional:
+            if one.cond is not None:
+                self._expression(one.cond, known)
+
+    def _item(self, item: Item, known: Names) -> None:
+        """Code of a form item that is in no content."""
+        self._conditions(item.handlers, known)
+        held: list[object] = [item.expr, item.cond]
+        if isinstance(item, Field):
+            self._conditions(item.prompts, known)
+            held += [part for prompt in item.prompts for part in prompt.text]
+        elif isinstance(item, Subdialog):
+            held += [value for _, value in item.params]
+        for one in held:
+            if isinstance(one, Expression):
+                self._expression(one, known)
+
+    def _variables(self, known: Mapping[str | None, Names]) -> None:
+        """Variables that acts give a value, clear or return."""
+        for form, assign in self.acts.of(Assign):
+            names = known[form.id if form else None]
+            head, dot, rest = assign.name.partition(".")
+            name = rest.partition(".")[0] if dot and head in SCOPED else head
+            if name not in names:
+                self._undeclared(assign.node.attribute_place("name"), name, names)
+        listed: list[tuple[Form | None, Clear | Return]] = [
+            *self.acts.of(Clear),
+            *self.acts.of(Return),
+        ]
+        for form, listing in listed:
+            names = known[form.id if form else None]
+            for name in listing.names:
+                if name not in names:
+                    self._undeclared(listing.node.attribute_place("namelist"), name, names)
 
     def _undeclared(
         self,
         place: Place,
         name: str,
-        known: set[str],
+        known: Names,
         bare: bool = False,
         called: bool = False,
     ) -> None:
@@ -520,7 +593,7 @@ class Checker:
             remedy = f"{remedy} For the text itself write '{name}'."
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
-    def _expression(self, expr: Expression, known: set[str]) -> None:
+    def _expression(self, expr: Expression, known: Names) -> None:
         plain = compiled(expr.code)
         if plain is not None or self._compiles(expr, check_expression):
             names = free_names(expr.code) if plain is None else plain.names
@@ -542,7 +615,7 @@ class Checker:
             problem = Problem(place, "warning", "assigning-condition", message, "Write ==.")
             self.problems.append(problem)
 
-    def _script(self, act: Script, known: set[str]) -> None:
+    def _script(self, act: Script, known: Names) -> None:
         if self._compiles(act.code, check_script):
             for name, start in free_names(act.code.code).items():
                 if name not in known:
@@ -586,15 +659,13 @@ class Checker:
     # Commands -----------------------------------------------------------------
 
     def _commands(self) -> None:
-        for form, content, _ in self.document.contents():
-            for act in all_acts(content):
-                if isinstance(act, Run):
-                    self._braces(act.steps, form)
-                    self._branches(act.steps)
-                    self._endless(act.steps, form)
-                    self._long_units(act.steps)
-        for form in self.document.forms.values():
-            for item in all_items(form.items):
+        for form, run in self.acts.of(Run):
+            self._braces(run.steps, form)
+            self._branches(run.steps)
+            self._endless(run.steps, form)
+            self._long_units(run.steps)
+        for form, items in self.forms:
+            for item in items:
                 if isinstance(item, Unit):
                     self._long_unit(item.node, self._unit_text(item))
                 for prompt in item.prompts if isinstance(item, Field) else ():
@@ -661,7 +732,7 @@ class Checker:
 
     def _rounds(self) -> None:
         """E4: forms that go to each other for ever without asking or waiting for anything."""
-        gotos = {name: self._always(form) for name, form in self.document.forms.items()}
+        gotos = {form.id: self._always(form) for form, items in self.forms if items}
         told: set[str] = set()
         for start in gotos:
             way: list[str] = []
@@ -699,16 +770,15 @@ class Checker:
 
     def _leaving(self) -> None:
         """3.3: a Command that leaves the user while a question is to be asked again."""
-        document = self.document
-        every = list(document.handlers)
-        for form in document.forms.values():
-            fields = [item for item in all_items(form.items) if isinstance(item, Field)]
+        every = list(self.document.handlers)
+        for form, items in self.forms:
+            fields = [item for item in items if isinstance(item, Field)]
             every += form.handlers if fields else []
             for field in fields:
                 for handler in field.handlers:
                     self._leaves(handler)
         for handler in every:
-            if set(handler.events) & {"noinput", "nomatch", "help"}:
+            if not DEFAULTS.isdisjoint(handler.events):
                 self._leaves(handler)
 
     def _leaves(self, handler: Handler) -> None:
@@ -768,16 +838,18 @@ class Checker:
             self._dead(content)
 
     def _dead(self, content: list[Act]) -> None:
-        for index, act in enumerate(content):
-            if isinstance(act, Goto | Return | Exit) and index + 1 < len(content):
-                node = content[index + 1].node
-                message = f"<{node.tag}> stands behind <{act.node.tag}> and is never reached."
+        for act, behind in zip_longest(content, content[1:]):
+            if behind is not None and isinstance(act, LEAVING):
+                message = (
+                    f"<{behind.node.tag}> stands behind <{act.node.tag}> and is never reached."
+                )
                 remedy = f"Put it before <{act.node.tag}>, or remove it."
-                self.note(node, "dead-content", message, remedy, severity="warning")
+                self.note(behind.node, "dead-content", message, remedy, severity="warning")
                 return
-            for branch in getattr(act, "branches", ()):
-                self._dead(branch[1])
-            if isinstance(act, Foreach):
+            if isinstance(act, If):
+                for _, branch in act.branches:
+                    self._dead(branch)
+            elif isinstance(act, Foreach):
                 self._dead(act.content)
 
 
@@ -786,11 +858,11 @@ def _place_in(expr: Expression, characters: int) -> Place:
     return expr.node.source.inside(expr.node.index, expr.attribute, characters)
 
 
-def _names_to_write(known: set[str]) -> set[str]:
+def _names_to_write(known: Names) -> set[str]:
     """Variables that an author may have meant: names that code can hold, and not our own."""
     return {
         word
-        for word in known | VARIABLES
+        for word in (*known, *VARIABLES)
         if IDENTIFIER.fullmatch(word) and not word.startswith("$")
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from prima.deferred import dataclass, field
 from prima.interpreter.grammar import Answers, Grammar
@@ -375,8 +375,40 @@ class Document:
         return found
 
 
+Kind = TypeVar("Kind", bound=Act)
+
+
+class Acts:
+    """The executable content of a document by kinds, gathered once; with the forms it stands in."""
+
+    def __init__(self, document: Document) -> None:
+        self._every: list[tuple[Form | None, Act]] = []
+        self._found: dict[type, list[Any]] = {}
+        for form, content, _ in document.contents():
+            for act in all_acts(content):
+                one = (form, act)
+                self._every.append(one)
+                kind = type(act)
+                if kind in self._found:
+                    self._found[kind].append(one)
+                else:
+                    self._found[kind] = [one]
+
+    def of(self, kind: type[Kind]) -> list[tuple[Form | None, Kind]]:
+        """All of a kind in document order, each with its form; None stands for the document."""
+        return self._found.get(kind, [])
+
+    def among(self, *kinds: type[Act]) -> list[Act]:
+        """All of some kinds, in document order."""
+        if self._found.keys().isdisjoint(kinds):
+            return []
+        return [act for _, act in self._every if isinstance(act, kinds)]
+
+
 def all_items(items: list[Item]) -> list[Item]:
     """Form items, those inside units included, in document order."""
+    if not items:
+        return []
     found: list[Item] = []
     for item in items:
         found.append(item)
@@ -387,6 +419,8 @@ def all_items(items: list[Item]) -> list[Item]:
 
 def all_acts(content: list[Act]) -> list[Act]:
     """Executable content with all that it holds, in document order."""
+    if HOLDING.isdisjoint(map(type, content)):
+        return content.copy()
     found: list[Act] = []
     for act in content:
         found.append(act)
@@ -400,6 +434,10 @@ def all_acts(content: list[Act]) -> list[Act]:
                 for handler in command.handlers:
                     found += all_acts(handler.content)
     return found
+
+
+HOLDING = frozenset([If, Foreach, Run])
+"""What holds other content."""
 
 
 def run_commands(steps: list[StepTemplate]) -> list[CommandTemplate]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from prima.commands import DEVICES
 from prima.errors import MANY_LETTERS, MANY_WORDS, Place, Problem
 from prima.interpreter.elements import (
+    Acts,
     CommandTemplate,
     Document,
     Expression,
@@ -18,7 +19,6 @@ from prima.interpreter.elements import (
     Run,
     SendOut,
     Throw,
-    all_acts,
     all_items,
     run_commands,
 )
@@ -47,7 +47,7 @@ HABITS = {
     "finished": "end",
 }
 """Names that authors expect, and those that the language has."""
-DEFAULTS = ("noinput", "nomatch", "help")
+DEFAULTS = frozenset(["noinput", "nomatch", "help"])
 """Thrown events that end nothing where no handler takes them."""
 MOST_PARTS = 20
 """Dots of an event's name that are looked at."""
@@ -97,34 +97,27 @@ def near(word: str, known: Iterable[str]) -> str:
     return plain[found[0]] if found else ""
 
 
-def handlers_of(document: Document) -> Iterator[Handler]:
-    """Every handler of a document."""
+def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handler]:
+    """Every handler of a document; ``acts`` are its acts, where they have been gathered."""
     yield from document.handlers
     for form in document.forms.values():
         yield from form.handlers
         for item in all_items(form.items):
             yield from item.handlers
-    for command in _commands(document):
+    for command in _commands(acts or Acts(document)):
         yield from command.handlers
 
 
-def _commands(document: Document) -> Iterator[CommandTemplate]:
-    for _, content, _ in document.contents():
-        for act in all_acts(content):
-            if isinstance(act, Run):
-                yield from run_commands(act.steps)
+def _commands(acts: Acts) -> Iterator[CommandTemplate]:
+    for _, run in acts.of(Run):
+        yield from run_commands(run.steps)
 
 
-def raised_by(document: Document) -> Iterator[Raised]:
+def raised_by(document: Document, acts: Acts) -> Iterator[Raised]:
     """The events that a document raises itself, where their names are written out."""
-    for _, content, _ in document.contents():
-        for act in all_acts(content):
-            if isinstance(act, Throw) and isinstance(act.event, str) and act.event:
-                yield Raised(act.event, act.node, "event", True)
-            elif isinstance(act, SendOut) and act.event:
-                yield Raised(act.event, act.node, "event", False)
-            elif isinstance(act, Return) and act.event:
-                yield Raised(act.event, act.node, "event", True)
+    for act in acts.among(Throw, SendOut, Return):
+        if isinstance(act, Throw | SendOut | Return) and isinstance(act.event, str) and act.event:
+            yield Raised(act.event, act.node, "event", not isinstance(act, SendOut))
     forms = document.forms.values()
     for link in [*document.links, *(one for form in forms for one in form.links)]:
         if link.event:
@@ -136,12 +129,12 @@ def raised_by(document: Document) -> Iterator[Raised]:
 class Events:
     """What a document knows of events, gathered once."""
 
-    def __init__(self, document: Document) -> None:
-        self.document = document
-        self.handlers = list(handlers_of(document))
+    def __init__(self, document: Document, acts: Acts | None = None) -> None:
+        acts = acts or Acts(document)
+        self.handlers = list(handlers_of(document, acts))
         self.heard = {name for handler in self.handlers for name in handler.events}
-        self.raised = list(raised_by(document))
-        self.commands = {command.type for command in _commands(document)}
+        self.raised = list(raised_by(document, acts))
+        self.commands = {command.type for command in _commands(acts)}
         items = [item for form in document.forms.values() for item in all_items(form.items)]
         if any(isinstance(item, Field) for item in items):
             self.commands.add("q-and-a")
@@ -149,16 +142,20 @@ class Events:
         """The services that are asked by their names, and where."""
         self.dynamic = False
         """Whether a service or an event is named by an expression."""
-        for _, content, _ in document.contents():
-            for act in all_acts(content):
-                if isinstance(act, SendOut) and isinstance(act.service, str) and act.service:
-                    self.asked.append((act.node, act.service))
-                named = act.service if isinstance(act, SendOut) else getattr(act, "event", "")
-                self.dynamic = self.dynamic or isinstance(named, Expression)
+        for _, sent in acts.of(SendOut):
+            if isinstance(sent.service, Expression):
+                self.dynamic = True
+            elif sent.service:
+                self.asked.append((sent.node, sent.service))
+        for _, throw in acts.of(Throw):
+            self.dynamic = self.dynamic or isinstance(throw.event, Expression)
         self.services = {name for _, name in self.asked}
         self._own = {one.name for one in self.raised}
         self._known = {name for one in (*STANDARD, *self._own) for name in beginnings(one)}
         self._guesses = 0
+        self._told: dict[str, tuple[str, str] | None] = {}
+        self._near: dict[str, str] = {}
+        """What has been found out for a name: guesses take time, and names come again."""
 
     def problems(self) -> list[Problem]:
         """Handlers of events that nobody raises, and events that no handler takes."""
@@ -178,10 +175,15 @@ class Events:
 
     def _unraised(self, name: str) -> tuple[str, str] | None:
         """What is wrong with the name of a handler, and the name that was probably meant."""
-        first, _, rest = name.partition(".")
         self._guesses += name not in self._known
         if "," in name or name in self._known or self._guesses > MOST_GUESSES:
             return None
+        if name not in self._told:
+            self._told[name] = self._guess(name)
+        return self._told[name]
+
+    def _guess(self, name: str) -> tuple[str, str] | None:
+        first, _, rest = name.partition(".")
         if first in OWN:
             if any(takes(rest, one) for one in self.commands):
                 return None
@@ -209,7 +211,11 @@ class Events:
         ends = " It ends the application." if one.fatal else ""
         message = f'No handler takes the event "{one.name}".{ends}'
         self._guesses += 1
-        nearest = near(one.name, self.heard) if self._guesses <= MOST_GUESSES else ""
+        nearest = ""
+        if self._guesses <= MOST_GUESSES:
+            if one.name not in self._near:
+                self._near[one.name] = near(one.name, self.heard)
+            nearest = self._near[one.name]
         remedy = f'Did you mean "{nearest}"?' if nearest else f'Write <on event="{one.name}">.'
         place = one.node.attribute_place(one.attribute)
         return Problem(place, "warning", "unheard-event", message, remedy)
@@ -243,6 +249,6 @@ def silent_fields(document: Document) -> list[Field]:
     if handled(document.handlers):
         return []
     for form in document.forms.values():
-        if not handled(form.handlers):
+        if form.items and not handled(form.handlers):
             look(form.items)
     return found

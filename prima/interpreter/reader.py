@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
 
 from prima.errors import Problem
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.markup.limits import LIMITS
 from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 
@@ -15,24 +19,92 @@ WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
 """Codes of what a whole document lacks, which may stand in an element that is not understood."""
 
 
+MOST_KEPT, MOST_KEPT_BYTES = 64, 2_000_000
+"""How many documents are kept that have been read, and how many bytes they were read from."""
+LARGE = 200_000
+"""Bytes from which on a document is so many objects that looking for garbage among them counts."""
+
+
+class _Read(NamedTuple):
+    """What a file was when it was last read, and what was read."""
+
+    data: bytes
+    limits: str
+    document: Document
+    problems: tuple[Problem, ...]
+
+
+_kept: dict[str, _Read] = {}
+"""Documents by their files' names, the one that was read last at the end."""
+
+
 def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     """Read an application and check it: schema first, then meaning.
+
+    The same bytes of the same file give the same document, as nothing changes one; only what
+    each file was last is kept, and of not too many files.
 
     Raises:
         DocumentError: no document at all can be given: it is not XML, or not
             such a document.
     """
+    limits = repr(LIMITS)
+    read = _kept.pop(file, None)
+    if read is None or read.data != data or read.limits != limits:
+        with _no_looking_for_garbage(len(data)):
+            read = _Read(data, limits, *_read(file, data))
+    _keep(file, read)
+    return read.document, list(read.problems)
+
+
+def _keep(file: str, read: _Read) -> None:
+    """Keep a document for the next time, and let go of those that nobody asked for longest."""
+    if len(read.data) > MOST_KEPT_BYTES:
+        return
+    _kept[file] = read
+    left = sum(len(one.data) for one in list(_kept.values()))
+    for name in list(_kept):
+        if len(_kept) <= MOST_KEPT and left <= MOST_KEPT_BYTES:
+            break
+        oldest = _kept.pop(name, None)
+        left -= len(oldest.data) if oldest else 0
+
+
+@contextmanager
+def _no_looking_for_garbage(size: int) -> Iterator[None]:
+    """Keep Python from looking for garbage meanwhile: what is made of a document stays.
+
+    A large one's objects go to those that have been looked through already, unless the program
+    has set objects aside itself.
+    """
+    if not gc.isenabled():
+        yield
+        return
+    gc.disable()
+    try:
+        if size >= LARGE:
+            gc.collect(1)  # what is garbage now must not stay
+        yield
+        if size >= LARGE and not gc.get_freeze_count():
+            gc.freeze()
+            gc.unfreeze()
+    finally:
+        gc.enable()
+
+
+def _read(file: str, data: bytes) -> tuple[Document, tuple[Problem, ...]]:
     from prima.interpreter.checks import check_document
 
     root, problems = read_tree(file, data, DIALOGUE)
+    told = bool(problems)
     builder = Builder(root)
     document = builder.document()
     problems += builder.problems
-    strange = list(_strange(root))
+    strange = list(_strange(root)) if told else []
     named = {text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"}
     found = check_document(document)
     problems += [one for one in found if not (strange and _follows(one, named))]
-    return document, sorted(set(problems))
+    return document, tuple(sorted(set(problems)))
 
 
 def _strange(root: Node) -> Iterator[Node]:

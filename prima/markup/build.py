@@ -52,11 +52,15 @@ class _Builder:
     def __init__(self, source: Source) -> None:
         self.source = source
         self.count = 0
-        self.top = Node("", source, 0, {})
+        self.top: list[Node | str] = []
         self.open = [self.top]
+        """The contents of the elements that are open."""
         self.names: dict[str, tuple[str, str]] = {}
         self.plain: set[str] = set()
         """Names of attributes that are of no namespace."""
+        self.most = LIMITS.elements
+        self.widest = LIMITS.attributes
+        self.deepest = LIMITS.depth
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         known = self.names.get(tag)
@@ -66,24 +70,26 @@ class _Builder:
         if not self.plain.issuperset(attributes):
             attributes = {attribute_name(key): text for key, text in attributes.items()}
             self.plain.update(key for key in attributes if ":" not in key and "}" not in key)
-        node = Node(known[0], self.source, self.count, attributes, [], "", known[1])
-        self.open[-1].content.append(node)
-        self.open.append(node)
+        content: list[Node | str] = []
+        node = Node(known[0], self.source, self.count, attributes, content, "", known[1])
+        opened = self.open
+        opened[-1].append(node)
+        opened.append(content)
         self.count += 1
         if len(tag) > MAX_NAME:
             raise TooMuch(node, "name")
-        if len(attributes) > LIMITS.attributes:
+        if len(attributes) > self.widest:
             raise TooMuch(node, "attributes")
-        if self.count > LIMITS.elements:
+        if self.count > self.most:
             raise TooMuch(node, "elements")
-        if len(self.open) > LIMITS.depth + 1:
+        if len(opened) > self.deepest + 1:
             raise TooMuch(node, "depth")
 
     def end(self, _tag: str) -> None:
         self.open.pop()
 
     def text(self, data: str) -> None:
-        self.open[-1].content.append(data)
+        self.open[-1].append(data)
 
     def unclear(self, *_: Any) -> None:
         raise Unclear
@@ -112,6 +118,6 @@ def build(source: Source, doctype: bool = False) -> Node:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         raise Unclear(error.lineno, error.offset + 1) from None
-    root = builder.top.content[0]
+    root = builder.top[0]
     assert isinstance(root, Node)
     return root

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of, parted
 from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
-from prima.values import read_value
+from prima.values import KINDS, XML_SPACE, read_value
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 
@@ -95,22 +95,29 @@ class _Rules:
         self.known = vocabulary.attributes[key]
         self.children = vocabulary.children(key)
         self.required = [item.name for item in self.element.attributes if item.required]
-        self.right: dict[str, set[str]] = {}
-        """Values that are right, by attributes; those that have been read are kept by kinds in
-        ``read``, as most are written again and again."""
+        self.values: dict[str, tuple[set[str], Callable[[str], object] | None]] = {}
+        """Values that are right, by attributes, and what reads others if there may be others;
+        those that have been read are kept by kinds in ``read``: most are written again and again."""
         for name, (item, is_expression) in self.known.items():
             kind = "expression" if is_expression else item.kind
-            choices = item.choices and not is_expression
-            self.right[name] = set(item.choices) if choices else read.setdefault(kind, set())
+            if item.choices and not is_expression:
+                self.values[name] = set(item.choices), None
+            else:
+                self.values[name] = read.setdefault(kind, set()), KINDS[kind].read
 
     def allow(self, attributes: dict[str, str]) -> bool:
         """Whether these are attributes that the element may have, and all that it needs."""
         for name, text in attributes.items():
-            right = self.right.get(name)
-            if right is None:
+            values = self.values.get(name)
+            if values is None:
                 return False
+            right, read = values
             if text not in right:
-                if _value_problem(*self.known[name], text):
+                if read is None:
+                    return False
+                try:
+                    read(text.strip(XML_SPACE))
+                except ValueError:
                     return False
                 right.add(text)
         for name in self.required:

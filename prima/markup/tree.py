@@ -120,7 +120,7 @@ class Node:
 
     def all(self, *tags: str) -> list[Node]:
         """The child elements of these names."""
-        return [node for node in self.nodes if node.tag in tags]
+        return [item for item in self.content if not isinstance(item, str) and item.tag in tags]
 
     def get(self, name: str, default: str = "") -> str:
         """An attribute's text."""

@@ -92,8 +92,8 @@ class Vocabulary:
         """The key of the element written ``tag`` inside the element ``key``, if allowed."""
         return self._children[key].get(tag)
 
-    def children(self, key: str) -> Iterable[str]:
-        """The tags allowed inside the element ``key``."""
+    def children(self, key: str) -> Mapping[str, str]:
+        """The elements allowed inside the element ``key``: tags as written to keys."""
         return self._children[key]
 
     def parents(self, tag: str) -> list[str]:
