@@ -9,15 +9,17 @@ the inbound values is a journal, and feeding them again a replay.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
 from prima.commands import CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
+from prima.interpreter.evaluation import PULSE
 from prima.messages import (
     CloseUnit,
+    Data,
     Emergency,
     Ended,
     Event,
@@ -60,15 +62,14 @@ AnyDocument: TypeAlias = "Document | VoiceDocument"
 App: TypeAlias = "Interpreter | VoiceInterpreter"
 
 
+SEEING = ("human.found", "human.lost")
+"""Events by which the camera tells whether it sees the user (V4)."""
 watchers: list[Callable[[App], None]] = []
 """Told of every interpreter that is made: what tests are covered by is seen from here."""
 
 
 class Session:
     """One robot's applications under one policy."""
-
-    instants = 0
-    """How many instants this process has gone through: a watchdog reads it."""
 
     def __init__(
         self,
@@ -97,23 +98,26 @@ class Session:
 
     # Driving ------------------------------------------------------------------
 
-    def step(self, now: int, inbound: Iterable[Inbound]) -> list[Order]:
+    def step(self, now: int, inbound: Collection[Inbound]) -> list[Order]:
         """Take in what happens at ``now`` (ms, never less than before); gives the orders.
 
         Orders are for the devices, in the order in which they were made; ``send``
         orders are for services.
         """
-        Session.instants += 1
+        PULSE.instants += 1
         self.chronicle.now = now
-        values = list(inbound)
-        if len(values) > 1:
-            values.sort(key=self._class)
-        for value in values:
-            self._take(value)
+        for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
+            if type(value) is Occurred:  # by far the most
+                self._occurred(value)
+            else:
+                self._take(value)
         self._time_out(now)
-        self._settle()
-        self.mediator.select()
-        orders = self.mediator.drain_orders()
+        mediator = self.mediator
+        if mediator.told:
+            self._settle()
+        if mediator.changed:
+            mediator.select()
+        orders = mediator.drain_orders()
         if self._sends:
             orders += self._sends
             self._sends = []
@@ -157,8 +161,8 @@ class Session:
     def _in_order(self) -> list[App]:
         """V3: the applications in declared order, the one whose stream is active first."""
         living = self._living()
-        active = self.mediator.memory.active
-        if active is None or len(living) < 2:
+        active = self.mediator.memory.active if len(living) > 1 else None
+        if active is None:
             return living
         first = self.apps[active.name]
         if first.over or first is living[0]:
@@ -176,8 +180,6 @@ class Session:
 
     def _take(self, value: Inbound) -> None:
         match value:
-            case Occurred():
-                self._occurred(value)
             case Ended():
                 self.mediator.ended(value.behavior, value.goal, value.data)
                 self._settle()
@@ -246,35 +248,26 @@ class Session:
         self._settle()
 
     def _occurred(self, value: Occurred) -> None:
-        apps = self._in_order() if value.app is None else self._alone(value.app)
-        data = dict(value.data)
-        self.chronicle.add(
-            "event",
-            value.actor,
-            inbound=True,
-            app=value.app,
-            event=value.name,
-            data=data or None,
-            serial=self._serial + 1,
-        )
-        if value.name in ("human.found", "human.lost"):
-            self.mediator.sees_user(value.name == "human.found")
-        self._raise(value.name, data, apps)
+        name, app, data = value.name, value.app, value.data
+        self.chronicle.event(name, value.actor, app, data, self._serial + 1)
+        if name in SEEING:
+            self.mediator.sees_user(name == "human.found")
+        self._raise(name, data, self._in_order() if app is None else self._alone(app))
 
     def _alone(self, name: str) -> list[App]:
         """The application of a name, if it is there."""
         app = self.apps.get(name)
         return [app] if app is not None and name in self._loaded and not app.over else []
 
-    def _raise(
-        self, name: str, data: dict[str, Json], apps: list[App], reactive: bool = True
-    ) -> None:
+    def _raise(self, name: str, data: Data, apps: list[App], reactive: bool = True) -> None:
         """V1: an event goes to every application; each one's handlers decide."""
         self._serial += 1
         event = Event(name, self._serial, data, reactive)
+        now = self.chronicle.now
         for app in apps:
-            app.event(self.chronicle.now, event)
-            self._act(app)
+            app.event(now, event)
+            if app.actions or app.deadline is not None or self._due:
+                self._act(app)
 
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from prima.interpreter.application import Interpreter
+from prima.interpreter.elements import Expression
+from prima.interpreter.frame import Fiber
 from prima.messages import Sensed
 from tests.robot import Bench, document
 
@@ -752,3 +755,28 @@ def test_what_is_asked_for_instead_of_a_refused_command_is_the_reaction() -> Non
     bench.event("corner")
     [asked] = [r for r in bench.phases("request") if r["command"] == "turn-and-speak"]
     assert asked["reactive"] and asked["cause"]
+
+
+def test_a_watch_is_looked_at_only_when_its_sensor_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench(
+        """<var name="n" expr="0"/><form id="a">
+        <watch name="low" when="sensor.battery.level &lt; 15"/>
+        <watch name="odd" when="sensor.front &lt; 1 &amp;&amp; n == 0"/>
+        <on event="low"><log>low</log></on></form>"""
+    )
+    looked: list[str] = []
+    (app,) = bench.session.apps.values()
+    assert isinstance(app, Interpreter)
+    condition = app.execute.condition
+
+    def noted(expr: Expression, fiber: Fiber) -> bool:
+        looked.append(expr.code)
+        return condition(expr, fiber)
+
+    monkeypatch.setattr(app.execute, "condition", noted)
+    bench.step(Sensed({"battery.level": 50.0, "front": 2.0}))
+    bench.step(Sensed({"front": 1.5}))
+    assert len(looked) == 2 + 1, "the battery has not changed; the other looks at a variable too"
+    bench.step(Sensed({"battery.level": 10.0}))
+    bench.step(Sensed({"front": 1.0}))
+    assert bench.logs() == ["low"]

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.interpreter.evaluation import PULSE
 from prima.session import Session
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
@@ -272,7 +273,7 @@ def test_nothing_is_computed_while_nothing_changes(
 def test_while_a_body_only_moves_on_nothing_is_decided(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    instants, decided = 0, Session.instants
+    instants, decided = 0, PULSE.instants
     advance = World.advance
 
     def counted(world: World, to: int) -> None:
@@ -285,7 +286,7 @@ def test_while_a_body_only_moves_on_nothing_is_decided(
     transcript = rehearse(tmp_path, body)
     assert transcript.outcome == "over"
     assert instants > 20
-    assert Session.instants - decided <= 3
+    assert PULSE.instants - decided <= 3
 
 
 def test_a_world_that_offers_something_to_a_robot_that_is_not_there_comes_to_an_end(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -468,8 +469,10 @@ def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_an_interrupt_ends_all_of_it(jobs: str, tmp_path: Path) -> None:
+    for number in range(12):
+        shutil.copytree(DEMOS[0].parent.parent, tmp_path / str(number))
     running = subprocess.Popen(
-        [sys.executable, "-m", "prima", "test", str(DEMOS[0].parent), "-j", jobs],
+        [sys.executable, "-m", "prima", "test", str(tmp_path), "-j", jobs],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         start_new_session=True,

@@ -240,17 +240,16 @@ def start_watchdog() -> None:
     import threading
     import time
 
-    from prima.interpreter.expressions import Engine
-    from prima.session import Session
+    from prima.interpreter.evaluation import PULSE
 
     def watch() -> None:
         seen, since = -1, time.monotonic()
         instant, began = -1, time.monotonic()
         while True:
             time.sleep(0.25)
-            count = Engine.evaluations
-            if Session.instants != instant:
-                instant, began = Session.instants, time.monotonic()
+            count = PULSE.evaluations
+            if PULSE.instants != instant:
+                instant, began = PULSE.instants, time.monotonic()
             if count % 2 == 0 or count != seen:
                 seen, since = count, time.monotonic()
             stuck = time.monotonic() - since > WATCHDOG_SECONDS

@@ -38,7 +38,7 @@ from prima.interpreter.frame import (
     Transfer,
 )
 from prima.interpreter.grammar import Answers
-from prima.interpreter.handling import Handling
+from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.messages import (
     Action,
@@ -92,7 +92,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.deadline: int | None = None
         """When :meth:`expire` wants to be called, if ever."""
         self._timer_serial = count(1)
-        self.armed: dict[int, bool] = {}
+        self.armed: dict[int, Armed] = {}
         self.sensors: dict[str, Json] = {}
         self.cause: int | None = None
         self.serial = 0
@@ -140,13 +140,18 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.sensors.update(values)
         if self.over:
             return []
+        watches = self.handling.watches()
+        if not watches:
+            return []
+        self._guard(self.handling.tell_sensors)
         raised: list[str] = []
-        for watch in self.handling.watches():
-            self._guard(self._look, watch, raised)
+        changed = {name.partition(".")[0] for name in values}
+        for watch in watches:
+            self._guard(self._look, watch, changed, raised)
         return raised
 
-    def _look(self, watch: Watch, raised: list[str]) -> None:
-        raised += self.handling.check_watches([watch])
+    def _look(self, watch: Watch, changed: set[str], raised: list[str]) -> None:
+        raised += self.handling.check_watches([watch], changed)
 
     def listens_to(self, text: str) -> Link | None:
         """The link that takes what the user said, innermost scope first (V1)."""
@@ -339,7 +344,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def transfer(self, frame: Frame, transfer: Transfer) -> None:
         """Leave a state for another; goto chains go round here, not deeper."""
-        while self.frame is not None and self.frame is not frame:
+        while self.frame is not frame and self.frame is not None:
             self.leave(self.frame)  # a subdialog that the state had called
             self.frame = self.frame.caller
         pending: tuple[Frame, Transfer] | None = (frame, transfer)
@@ -477,6 +482,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         for watch in frame.form.watches:
             self.armed.pop(id(watch), None)
         if frame.form.watches and self.sensors:
+            self.handling.tell_sensors()
             names = self.handling.check_watches(frame.form.watches)
             self.actions += [Raise(name) for name in names]
 

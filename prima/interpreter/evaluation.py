@@ -17,6 +17,19 @@ LARGEST = 2**53
 """Whole numbers up to here are exact."""
 
 
+class Pulse:
+    """What goes on in this process, for a watchdog in another thread."""
+
+    def __init__(self) -> None:
+        self.evaluations = 0
+        """How many evaluations by an engine have begun and ended: odd while one runs."""
+        self.instants = 0
+        """How many instants sessions have gone through."""
+
+
+PULSE = Pulse()
+
+
 class ScriptError(Exception):
     """An expression or script failed; becomes ``error.semantic`` in the application."""
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Set
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Handler, Item, Watch
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
+from prima.interpreter.names import GLOBALS, free_names, tokens_of
+from prima.interpreter.plain import CONSTANTS
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.messages import Event, Json, Notice
 
@@ -58,33 +63,38 @@ class Handling:
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
-        item = frame.item
-        self.count_event(frame, item, event.name)
+        item, document = frame.item, self.owner.document
+        if document.counting:
+            self.count_event(frame, item, event.name)
         candidates = self._taking(frame, item, event.name)
-        handler = None
         if candidates:
-            fiber = Fiber(frame, local=self._event_scope(event))
+            fiber = Fiber(frame, False, self._event_scope(event) if document.curious else None)
             handler = self._select(frame, fiber, item, candidates)
-        if handler is None:
-            if event.name.startswith("error."):
-                unhandled = Thrown(event, place)
-                unhandled.sought = True
-                raise unhandled
-            return
-        self._allow_reaction(handler, event)
-        self._launch(fiber, handler)
+            if handler is not None:
+                self._allow_reaction(handler, event)
+                self._launch(fiber, handler)
+                return
+        if event.name.startswith("error."):
+            unhandled = Thrown(event, place)
+            unhandled.sought = True
+            raise unhandled
 
     def _launch(self, fiber: Fiber, handler: Handler) -> None:
         frame = fiber.frame
+        if not handler.waits:
+            self._run_at_once(fiber, handler)
+            return
         if len(frame.fibers) >= MAX_FIBERS:
             self.owner.give_up(handler.node, "too many handlers under way")
-        for number, unit in frame.units:
+        self._enter_unit(fiber, handler)
+        self._go_along(fiber, self._handler_content(fiber, handler))
+
+    @staticmethod
+    def _enter_unit(fiber: Fiber, handler: Handler) -> None:
+        """U5: what a handler inside of a unit asks for belongs to the unit."""
+        for number, unit in fiber.frame.units:
             if handler in unit.handlers or any(handler in one.handlers for one in unit.items):
                 fiber.unit = number
-        if handler.waits:
-            self._go_along(fiber, self._handler_content(fiber, handler))
-        else:
-            self._run_at_once(fiber, handler)
 
     def _go_along(self, fiber: Fiber, content: Content) -> None:
         """Let content run beside what the state is doing."""
@@ -98,6 +108,7 @@ class Handling:
         try:
             transfer = self.owner.execute.run_at_once(handler.content, fiber)
         except (Thrown, ScriptError) as error:
+            self._enter_unit(fiber, handler)
             thrown = self.owner.thrown(error)
             self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
             return
@@ -220,8 +231,8 @@ class Handling:
         frame = self.owner.frame
         return [*(frame.form.watches if frame else []), *self.owner.document.watches]
 
-    def check_watches(self, watches: list[Watch]) -> list[str]:
-        """C6: raised when the condition turns true, armed again when it turns false."""
+    def tell_sensors(self) -> None:
+        """Give the application's variable ``sensor`` the values that are known."""
         tree: dict[str, Json] = {}
         for name, value in self.owner.sensors.items():
             *path, last = name.split(".")
@@ -233,13 +244,50 @@ class Handling:
                 held = inner
             held[last] = value
         self.owner.engine.set(self.owner.application, "sensor", tree)
+
+    def check_watches(self, watches: Iterable[Watch], changed: Set[str] | None = None) -> list[str]:
+        """C6: raised when the condition turns true, armed again when it turns false.
+
+        ``changed`` are the sensors that have new values, by the first part of their names;
+        a condition that looks at others alone is as it was.
+        """
         raised = []
-        frame = self.owner.frame
+        frame, armed = self.owner.frame, self.owner.armed
         assert frame is not None
         fiber = Fiber(frame)
         for watch in watches:
+            told = armed.setdefault(id(watch), Armed())
+            looked_at = sensors_of(watch.when.code) if told.sure else None
+            if not (changed is None or looked_at is None or looked_at & changed):
+                continue
+            told.sure = False
             true = self.owner.execute.condition(watch.when, fiber)
-            if true and not self.owner.armed.get(id(watch), False):
+            if true and not told.true:
                 raised.append(watch.name)
-            self.owner.armed[id(watch)] = true
+            told.true, told.sure = true, True
         return raised
+
+
+class Armed:
+    """What a watch's condition was when it was last looked at."""
+
+    true = False
+    sure = False
+    """Whether it could be evaluated."""
+
+
+SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*(\w+))?")
+OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
+
+
+@lru_cache(maxsize=1000)
+def sensors_of(code: str) -> frozenset[str] | None:
+    """The sensors that a condition looks at, by the first part of their names.
+
+    None where it may depend on anything else, or where which ones cannot be told.
+    """
+    used = {token.text for token in tokens_of(code)}
+    found = SENSOR.findall(code)
+    if free_names(code) or used & (OTHER | (GLOBALS - CONSTANTS.keys()) - {"sensor"}):
+        return None
+    return frozenset(found) if found and all(found) else None

@@ -73,6 +73,8 @@ VARIABLES = frozenset(
     ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
 )
 """Variables that the language itself declares."""
+MOST_KEPT = 20_000
+"""Expressions that are kept compiled."""
 WORDS = {"true": True, "false": False, "null": None}
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 INHERITED = frozenset(
@@ -173,7 +175,7 @@ def compiled(code: str) -> Compiled | None:
     return _kept(code) if len(code) <= LONG else None
 
 
-@lru_cache(maxsize=20_000)
+@lru_cache(maxsize=MOST_KEPT)
 def _kept(code: str) -> Compiled | None:
     try:
         parser = _Parser(code)
@@ -694,6 +696,10 @@ def outward(value: Any) -> Json:
     return plain_number(value)
 
 
+FUNCTIONS: dict[str, Function] = {}
+"""What has been evaluated lately, by its code."""
+
+
 class PlainEngine:
     """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
 
@@ -709,12 +715,14 @@ class PlainEngine:
         """Scopes in which a long text has been put, by their id()."""
         self._added = 0
 
-    @staticmethod
-    def _call(code: str) -> Function:
+    def _call(self, code: str) -> Function:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        return found[0]
+        if len(FUNCTIONS) >= MOST_KEPT:
+            FUNCTIONS.clear()
+        FUNCTIONS[code] = found.call
+        return found.call
 
     def scope(self, **values: Json) -> Scope:
         """A new scope."""
@@ -752,11 +760,11 @@ class PlainEngine:
 
     def condition(self, code: str, scopes: Scopes) -> bool:
         """Evaluate an expression as a condition."""
-        return truth(self._call(code)(scopes))
+        return truth((FUNCTIONS.get(code) or self._call(code))(scopes))
 
     def text(self, code: str, scopes: Scopes) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
-        value = self._call(code)(scopes)
+        value = (FUNCTIONS.get(code) or self._call(code))(scopes)
         if value is UNDEFINED:
             return "null"
         return bounded(
@@ -765,7 +773,7 @@ class PlainEngine:
 
     def value(self, code: str, scopes: Scopes) -> Json:
         """Evaluate an expression and give its value as plain data."""
-        return outward(self._call(code)(scopes))
+        return outward((FUNCTIONS.get(code) or self._call(code))(scopes))
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
@@ -777,7 +785,7 @@ class PlainEngine:
         Raises:
             ScriptError: it is no array.
         """
-        array = self._call(code)(scopes)
+        array = (FUNCTIONS.get(code) or self._call(code))(scopes)
         if not isinstance(array, list):
             raise ScriptError(f"{code} is not an array")
         if len(array) > most:
@@ -786,7 +794,7 @@ class PlainEngine:
 
     def assign(self, scope: Scope, name: str, code: str, scopes: Scopes) -> None:
         """Evaluate an expression and give its value to a variable of a scope."""
-        self.put(scope, name, self._call(code)(scopes))
+        self.put(scope, name, (FUNCTIONS.get(code) or self._call(code))(scopes))
 
     def assign_declared(self, name: str, code: str, scopes: Scopes) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
@@ -801,7 +809,7 @@ class PlainEngine:
             head, known = "", scopes[::-1]
         for scope in known:
             if name in scope:
-                self.put(scope, name, self._call(code)(scopes))
+                self.put(scope, name, (FUNCTIONS.get(code) or self._call(code))(scopes))
                 return
         name = f"{head}.{name}" if head else name
         raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
@@ -813,7 +821,7 @@ class PlainEngine:
             ScriptError: the variables would hold too much.
         """
         scope[name] = value
-        if isinstance(value, str) and len(value) > LONG:
+        if type(value) is str and len(value) > LONG:
             self._hold(scope, len(value))
 
     def _hold(self, scope: Scope, length: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.messages import Cue, Json, Record
+from prima.messages import Cue, Data, Json, Record
 from prima.scheduler.behavior import Behavior, Stream
 
 LOSERS_NAMED = 8
@@ -24,6 +24,20 @@ class Chronicle:
         fields["phase"] = phase
         fields["actor"] = actor
         self.records.append(fields)
+
+    def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
+        """Record an event that has come in."""
+        record: Record = {
+            "time": self.now,
+            "phase": "event",
+            "actor": actor,
+            "app": app,
+            "event": name,
+            "data": dict(data) or None,
+            "serial": serial,
+            "inbound": True,
+        }
+        self.records.append(record)
 
     def drain(self) -> list[Record]:
         """Give what was recorded since the last time."""

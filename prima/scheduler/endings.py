@@ -53,8 +53,12 @@ class Endings:
 
     def drain_orders(self) -> list[Order]:
         """Give the orders made since the last time."""
-        orders, self._selector.orders = self._selector.orders, []
-        return orders
+        selector = self._selector
+        orders = selector.orders
+        if orders:
+            selector.orders = []
+            return orders
+        return []
 
     def _now(self) -> int:
         return self.chronicle.now

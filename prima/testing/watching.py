@@ -116,6 +116,7 @@ def _marks(app: Interpreter, marks: Marks) -> None:
     contents = _contents(app.document)
     begin, follow = app.begin, app.follow
     run, condition = app.execute.run, app.execute.condition
+    run_at_once = app.execute.run_at_once
     select = app.algorithm.select_item
 
     def begun(frame: Any, setup: bool = True) -> Any:
@@ -132,6 +133,12 @@ def _marks(app: Interpreter, marks: Marks) -> None:
             marks.add(root, node, "in")
         return run(content, fiber)
 
+    def ran_at_once(content: Any, fiber: Any) -> Any:
+        node = contents.get(id(content))
+        if node is not None:
+            marks.add(root, node, "in")
+        return run_at_once(content, fiber)
+
     def held(expr: Any, fiber: Any) -> bool:
         found = condition(expr, fiber)
         marks.add(root, expr.node, "true" if found else "false")
@@ -145,6 +152,7 @@ def _marks(app: Interpreter, marks: Marks) -> None:
 
     app.begin, app.follow = begun, followed  # type: ignore[method-assign]
     app.execute.run, app.execute.condition = ran, held  # type: ignore[method-assign]
+    app.execute.run_at_once = ran_at_once  # type: ignore[method-assign]
     app.algorithm.select_item = selected  # type: ignore[method-assign]
 
 
