@@ -71,6 +71,7 @@ PARTS = {
 }
 """What elements are for that others are for as well; the rest go by their tags."""
 COMMANDS = frozenset(ACTING)
+ONLY_NEXT = frozenset(["next"])
 
 
 class Builder:
@@ -125,6 +126,8 @@ class Builder:
 
     def either(self, node: Node, name: str, default: str = "") -> str | Expression:
         """An attribute, or the expression in NAME-expr; never both."""
+        if f"{name}-expr" not in node.attributes:
+            return node.attributes.get(name, default)
         found = self.expression(node, f"{name}-expr")
         if found is None:
             return node.get(name, default)
@@ -134,7 +137,7 @@ class Builder:
 
     def target(self, node: Node, name: str) -> str:
         """The form that an attribute names; the schema tells where the # is missing."""
-        return node.get(name).strip(XML_SPACE).removeprefix("#")
+        return node.attributes.get(name, "").strip(XML_SPACE).removeprefix("#")
 
     def one_of_two(self, node: Node, first: str, second: str) -> None:
         """Note where an element has neither or both of two attributes, or of their expressions."""
@@ -696,8 +699,9 @@ class Builder:
     def assign(self, node: Node) -> Assign:
         """An assign; what it names may be a part of a variable."""
         name = node.get("name")
-        scope, _, part = name.partition(".")
-        self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
+        if "." in name:
+            scope, _, part = name.partition(".")
+            self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
         return Assign(name, self.code(node.get("expr"), node, "expr"), node)
 
     def condition(self, node: Node) -> If:
@@ -721,6 +725,8 @@ class Builder:
 
     def goto(self, node: Node) -> Goto:
         """A goto, to a form or to an item."""
+        if node.attributes.keys() == ONLY_NEXT:  # as nearly all are
+            return Goto(self.target(node, "next") or None, None, node)
         form, item = self.either(node, "next"), self.either(node, "nextitem")
         self.one_of_two(node, "next", "nextitem")
         if isinstance(form, str):

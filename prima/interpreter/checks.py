@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from functools import cached_property, lru_cache
-from itertools import zip_longest
 from typing import Any
 
 from prima.commands import TABLE_4_2, CommandType
@@ -838,13 +837,14 @@ class Checker:
             self._dead(content)
 
     def _dead(self, content: list[Act]) -> None:
-        for act, behind in zip_longest(content, content[1:]):
-            if behind is not None and isinstance(act, LEAVING):
-                message = (
-                    f"<{behind.node.tag}> stands behind <{act.node.tag}> and is never reached."
-                )
-                remedy = f"Put it before <{act.node.tag}>, or remove it."
-                self.note(behind.node, "dead-content", message, remedy, severity="warning")
+        for index, act in enumerate(content, 1):
+            if isinstance(act, LEAVING):
+                for behind in content[index : index + 1]:
+                    message = (
+                        f"<{behind.node.tag}> stands behind <{act.node.tag}> and is never reached."
+                    )
+                    remedy = f"Put it before <{act.node.tag}>, or remove it."
+                    self.note(behind.node, "dead-content", message, remedy, severity="warning")
                 return
             if isinstance(act, If):
                 for _, branch in act.branches:

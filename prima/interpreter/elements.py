@@ -319,10 +319,11 @@ class Form:
     taking: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
     """The handlers in scope by an item's and an event's name, as they have been looked for."""
 
-    @property
-    def bare(self) -> bool:
-        """Whether there is nothing to do when it is entered but to wait for events."""
-        return not (self.items or self.setup or self.watches)
+    bare: bool = False
+    """Whether there is nothing to do when it is entered but to wait for events."""
+
+    def __post_init__(self) -> None:
+        self.bare = not (self.items or self.setup or self.watches)
 
 
 Content = tuple[Form | None, list[Act], Node]
@@ -350,6 +351,8 @@ class Document:
     """Whether there is a script, or something is assigned to a part of a variable."""
     counting: bool = False
     """Whether any handler looks at how often its event has occurred."""
+    plain: bool | None = None
+    """Whether all its code can be evaluated without an engine; None until somebody has looked."""
     curious: bool = False
     """Whether any code may look at the event that is being handled."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
@@ -382,17 +385,16 @@ class Acts:
     """The executable content of a document by kinds, gathered once; with the forms it stands in."""
 
     def __init__(self, document: Document) -> None:
-        self._every: list[tuple[Form | None, Act]] = []
+        self._document = document
         self._found: dict[type, list[Any]] = {}
+        found = self._found
         for form, content, _ in document.contents():
             for act in all_acts(content):
-                one = (form, act)
-                self._every.append(one)
                 kind = type(act)
-                if kind in self._found:
-                    self._found[kind].append(one)
+                if kind in found:
+                    found[kind].append((form, act))
                 else:
-                    self._found[kind] = [one]
+                    found[kind] = [(form, act)]
 
     def of(self, kind: type[Kind]) -> list[tuple[Form | None, Kind]]:
         """All of a kind in document order, each with its form; None stands for the document."""
@@ -402,7 +404,8 @@ class Acts:
         """All of some kinds, in document order."""
         if self._found.keys().isdisjoint(kinds):
             return []
-        return [act for _, act in self._every if isinstance(act, kinds)]
+        contents = self._document.contents()
+        return [act for _, one, _ in contents for act in all_acts(one) if isinstance(act, kinds)]
 
 
 def all_items(items: list[Item]) -> list[Item]:

@@ -21,7 +21,7 @@ WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
 
 MOST_KEPT, MOST_KEPT_BYTES = 64, 2_000_000
 """How many documents are kept that have been read, and how many bytes they were read from."""
-LARGE = 200_000
+LARGE = 20_000
 """Bytes from which on a document is so many objects that looking for garbage among them counts."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 from xml.parsers import expat
 
@@ -46,53 +47,48 @@ def attribute_name(name: str) -> str:
     return prefix + local if prefix else f"{{{namespace}}}{local}"
 
 
-class _Builder:
-    """Takes expat's calls."""
+Start = Callable[[str, dict[str, str]], None]
+"""Takes a start tag: the element's name and its attributes."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.count = 0
-        self.top: list[Node | str] = []
-        self.open = [self.top]
-        """The contents of the elements that are open."""
-        self.names: dict[str, tuple[str, str]] = {}
-        self.plain: set[str] = set()
-        """Names of attributes that are of no namespace."""
-        self.most = LIMITS.elements
-        self.widest = LIMITS.attributes
-        self.deepest = LIMITS.depth
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        known = self.names.get(tag)
+def _starter(source: Source, opened: list[list[Node | str]]) -> Start:
+    """What makes nodes of start tags; ``opened`` are the contents of the elements that are open.
+
+    It is called for every element: hence the variables of this function.
+    """
+    names: dict[str, tuple[str, str]] = {}
+    plain: set[str] = set()  # attributes that are of no namespace
+    most, widest, deepest = LIMITS.elements, LIMITS.attributes, LIMITS.depth + 1
+    count = 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        known = names.get(tag)
         if known is None:
             namespace, _, name = tag.rpartition("}")
-            known = self.names[tag] = (name, namespace)
-        if not self.plain.issuperset(attributes):
+            known = names[tag] = (name, namespace)
+            if len(tag) > MAX_NAME:
+                raise TooMuch(Node(name, source, count, attributes), "name")
+        if not plain.issuperset(attributes):
             attributes = {attribute_name(key): text for key, text in attributes.items()}
-            self.plain.update(key for key in attributes if ":" not in key and "}" not in key)
+            plain.update(key for key in attributes if ":" not in key and "}" not in key)
         content: list[Node | str] = []
-        node = Node(known[0], self.source, self.count, attributes, content, "", known[1])
-        opened = self.open
+        node = Node(known[0], source, count, attributes, content, "", known[1])
         opened[-1].append(node)
         opened.append(content)
-        self.count += 1
-        if len(tag) > MAX_NAME:
-            raise TooMuch(node, "name")
-        if len(attributes) > self.widest:
+        count += 1
+        if len(attributes) > widest:
             raise TooMuch(node, "attributes")
-        if self.count > self.most:
+        if count > most:
             raise TooMuch(node, "elements")
-        if len(opened) > self.deepest + 1:
+        if len(opened) > deepest:
             raise TooMuch(node, "depth")
 
-    def end(self, _tag: str) -> None:
-        self.open.pop()
+    return start
 
-    def text(self, data: str) -> None:
-        self.open[-1].append(data)
 
-    def unclear(self, *_: Any) -> None:
-        raise Unclear
+def _unclear(*_: Any) -> None:
+    raise Unclear
 
 
 def build(source: Source, doctype: bool = False) -> Node:
@@ -105,19 +101,20 @@ def build(source: Source, doctype: bool = False) -> Node:
     if "\0" in source.text:  # by which expat would guess another encoding
         raise Unclear
     data = source.text.encode()
-    builder = _Builder(source)
+    top: list[Node | str] = []
+    opened = [top]
     parser = expat.ParserCreate("utf-8", "}")
     parser.buffer_text = True
     parser.buffer_size = max(len(data), 1)
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.text
+    parser.StartElementHandler = _starter(source, opened)
+    parser.EndElementHandler = lambda _: opened.pop()
+    parser.CharacterDataHandler = lambda text: opened[-1].append(text)
     if not doctype:
-        parser.StartDoctypeDeclHandler = builder.unclear
+        parser.StartDoctypeDeclHandler = _unclear
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         raise Unclear(error.lineno, error.offset + 1) from None
-    root = builder.top[0]
+    root = top[0]
     assert isinstance(root, Node)
     return root
