@@ -55,6 +55,7 @@ from prima.scheduler.selection import Policy
 from prima.values import moment
 
 if TYPE_CHECKING:
+    from prima.interpreter.expressions import Engine
     from prima.voicexml.application import VoiceInterpreter
     from prima.voicexml.document import VoiceDocument
 
@@ -69,7 +70,11 @@ watchers: list[Callable[[App], None]] = []
 
 
 class Session:
-    """One robot's applications under one policy."""
+    """One robot's applications under one policy.
+
+    ``engine`` is shared by those of its applications in PRIMA's own language that need one, if
+    they all can be trusted; else each has its own.
+    """
 
     def __init__(
         self,
@@ -78,10 +83,12 @@ class Session:
         commands: Mapping[str, CommandType],
         bound: int | None = None,
         date: str = START,
+        engine: Engine | None = None,
     ) -> None:
         self._began = moment(date)
+        self._engine = engine
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {doc.id: interpreter_of(doc, own, self._began) for doc in documents}
+        self.apps = {doc.id: interpreter_of(doc, own, self._began, engine) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound)
@@ -111,8 +118,9 @@ class Session:
                 self._occurred(value)
             else:
                 self._take(value)
-        self._time_out(now)
         mediator = self.mediator
+        if self._due or mediator.timed:
+            self._time_out(now)
         if mediator.told:
             self._settle()
         if mediator.changed:
@@ -236,7 +244,9 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            app = self.apps[name] = interpreter_of(app.document, app.arguments, self._began)
+            app = self.apps[name] = interpreter_of(
+                app.document, app.arguments, self._began, self._engine
+            )
         self._loaded.add(name)
         self._alive = None
         app.sensors.update(self._sensors)
@@ -442,12 +452,15 @@ class Session:
 
 
 def interpreter_of(
-    document: AnyDocument, arguments: Mapping[str, frozenset[str]], began: int
+    document: AnyDocument,
+    arguments: Mapping[str, frozenset[str]],
+    began: int,
+    engine: Engine | None = None,
 ) -> App:
     """The interpreter of a document, of whichever language it is, in a run that began then."""
     app: App
     if isinstance(document, Document):
-        app = Interpreter(document, arguments)
+        app = Interpreter(document, arguments, engine)
     else:
         from prima.voicexml.application import VoiceInterpreter
 

@@ -11,9 +11,9 @@ import math
 import re
 from collections.abc import Callable
 from datetime import UTC
-from functools import cache
+from functools import cache, lru_cache
 
-from prima.deferred import dataclass
+from prima.deferred import dataclass, pattern
 
 Value = str | int | float | bool
 
@@ -25,13 +25,13 @@ _START = (
 _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
 """Characters that go on with one, dot and hyphen apart; ``\\c`` in XML Schema."""
 
-DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
+DURATION = pattern(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
 NAME = rf"[{_START}][{_REST}.\-]*"
 TARGET = f"#{NAME}"
 _WORD = rf"[{_START}$][{_REST}$]*"
 VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
 EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
-NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+NUMBER = pattern(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 LONGEST_NAME = 500
 """Letters that a name may have."""
 XML_SPACE = " \t\r\n"
@@ -43,19 +43,19 @@ _XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
 
 
-def _fits(pattern: str, text: str) -> bool:
+def _fits(form: str, text: str) -> bool:
     """Whether a text fits a pattern of names; most are ASCII, and the whole alphabet is slow."""
     if len(text) > LONGEST_NAME:
         return False
-    return _alphabet(pattern, text.isascii()).fullmatch(text) is not None
+    return _alphabet(form, text.isascii()).fullmatch(text) is not None
 
 
 @cache
-def _alphabet(pattern: str, ascii_only: bool) -> re.Pattern[str]:
+def _alphabet(form: str, ascii_only: bool) -> re.Pattern[str]:
     """A pattern of names, for all letters or for those of ASCII."""
     if ascii_only:
-        pattern = pattern.replace(_REST, "A-Za-z_0-9").replace(_START, "A-Za-z_")
-    return re.compile(pattern)
+        form = form.replace(_REST, "A-Za-z_0-9").replace(_START, "A-Za-z_")
+    return re.compile(form)
 
 
 def _duration(text: str) -> int:
@@ -140,6 +140,7 @@ def _date(text: str) -> str:
         raise ValueError("is a date that no calendar has. Check its month, day and hour.") from None
 
 
+@lru_cache(maxsize=100)
 def moment(date: str) -> int:
     """A date as ``2005-03-01T10:00:00`` (UTC) in ms since 1970.
 

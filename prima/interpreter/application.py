@@ -64,16 +64,24 @@ MAX_TIMERS = 256
 
 
 class Interpreter(Bounds["Engine | PlainEngine"]):
-    """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands."""
+    """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands.
+
+    ``engine`` is what evaluates the document's code, if it needs one; applications that trust
+    each other may share it. Their variables stand apart, but not what a script does to the
+    engine's own objects.
+    """
 
     def __init__(
-        self, document: Document, arguments: Mapping[str, frozenset[str]] | None = None
+        self,
+        document: Document,
+        arguments: Mapping[str, frozenset[str]] | None = None,
+        engine: Engine | None = None,
     ) -> None:
         self.document = document
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        super().__init__(evaluator_of(document))
+        super().__init__(evaluator_of(document, engine))
         self.actions: list[Action] = []
         self.now = 0
         self.over = False
@@ -111,8 +119,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if now != self._instant:
             self._tick(now)
         self.serial = event.serial
-        if self.frame is not None:
-            self._guard(self.handling.dispatch, event, self.frame)
+        frame = self.frame
+        if frame is not None:
+            try:
+                self.handling.dispatch(event, frame)
+            except (Thrown, ScriptError, GoOut) as error:
+                self._rescue(error)
         self.cause = None
 
     def notice(self, now: int, notice: Notice) -> None:
@@ -255,14 +267,20 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
                 self._guard(self.engine.clock, self.application, now / 1000)
 
     def _guard(self, act: Callable[..., object], *given: Any) -> None:
-        """Do something for the application; an event nobody handles ends it (VoiceXML 5.2.5)."""
+        """Do something for the application."""
         try:
-            try:
-                act(*given)
-            except (Thrown, ScriptError) as error:
-                self._seek_handler(self.thrown(error))
-        except (Thrown, ScriptError) as error:
-            self._unhandled(self.thrown(error))
+            act(*given)
+        except (Thrown, ScriptError, GoOut) as error:
+            self._rescue(error)
+
+    def _rescue(self, error: Thrown | ScriptError | GoOut) -> None:
+        """Seek a handler of an event; one that nobody handles ends the application (5.2.5)."""
+        try:
+            if isinstance(error, GoOut):
+                raise error
+            self._seek_handler(self.thrown(error))
+        except (Thrown, ScriptError) as unhandled:
+            self._unhandled(self.thrown(unhandled))
         except GoOut as out:
             self._quit(out.reason, out.failed, out.source)
 
@@ -350,7 +368,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         pending: tuple[Frame, Transfer] | None = (frame, transfer)
         while pending is not None:
             frame, transfer = pending
-            if isinstance(transfer, GoForm):
+            if type(transfer) is GoForm:
                 self.leave(frame)
                 form = self.document.forms[transfer.form]
                 self.count_step(form.node)
@@ -409,8 +427,9 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def leave(self, frame: Frame) -> None:
         """O3: the state's content ends, its units are concluded, its Commands are given up."""
-        for fiber in frame.fibers:
-            self.forget(fiber)
+        if frame.fibers:
+            for fiber in frame.fibers:
+                self.forget(fiber)
         if frame.units:
             self.close_units(frame)
         if self._timers:
@@ -459,7 +478,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame = frame
-        if not (frame.fresh or frame.called_by) and frame.form.bare:
+        if frame.form.bare and not (frame.fresh or frame.called_by):
             return None
         frame.stalled = False
         fiber = Fiber(frame, main=True)
@@ -503,10 +522,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)
 
 
-def evaluator_of(document: Document) -> Engine | PlainEngine:
+def evaluator_of(document: Document, shared: Engine | None = None) -> Engine | PlainEngine:
     """What evaluates a document's code: Python where that is all it needs."""
     if is_plain(document):
         return PlainEngine()
+    if shared is not None:
+        return shared
     from prima.interpreter.expressions import Engine
 
     return Engine()

@@ -33,20 +33,21 @@ class Bounds(Generic[Evaluator]):
         """When the run began by its own calendar (ms since 1970, UTC)."""
         self.written = 0
         """Characters said, logged and sent since the start."""
-        self._steps = 0
+        self.steps = 0
+        """Pieces of content gone through in this instant."""
         self._output = 0
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
-        self._steps = self._output = 0
+        self.steps = self._output = 0
         engine = self.engine
         engine.now = self.began + now
         engine.spent = 0.0
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""
-        self._steps += steps
-        if self._steps > MAX_STEPS:
+        self.steps += steps
+        if self.steps > MAX_STEPS:
             self.give_up(node, "it loops without ever waiting")
         if self.engine.spent > MAX_SCRIPT_SECONDS:
             self.give_up(node, "its scripts take too long without ever waiting")

@@ -73,11 +73,14 @@ def _script_error(error: Exception) -> ScriptError:
 
 
 class Engine:
-    """The ECMAScript of one application; nothing of another's is visible in it."""
+    """The ECMAScript of one application, or of several that trust each other.
 
-    def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
+    ``memory`` bounds all that it holds (bytes).
+    """
+
+    def __init__(self, scopes: tuple[str, ...] = SCOPES, memory: int = MEMORY_LIMIT) -> None:
         context = quickjs.Context()
-        context.set_memory_limit(MEMORY_LIMIT)
+        context.set_memory_limit(memory)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         self._context = context

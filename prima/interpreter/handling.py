@@ -63,7 +63,8 @@ class Handling:
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
-        item, document = frame.item, self.owner.document
+        owner, item = self.owner, frame.item
+        document = owner.document
         if document.counting:
             self.count_event(frame, item, event.name)
         candidates = self._taking(frame, item, event.name)
@@ -71,8 +72,12 @@ class Handling:
             fiber = Fiber(frame, False, self._event_scope(event) if document.curious else None)
             handler = self._select(frame, fiber, item, candidates)
             if handler is not None:
-                self._allow_reaction(handler, event)
-                self._launch(fiber, handler)
+                reactive = event.reactive if handler.reactive is None else handler.reactive
+                owner.cause = event.serial if reactive else None  # C5
+                if handler.waits:
+                    self._launch(fiber, handler)
+                else:
+                    self._run_at_once(fiber, handler)
                 return
         if event.name.startswith("error."):
             unhandled = Thrown(event, place)
@@ -104,18 +109,18 @@ class Handling:
 
     def _run_at_once(self, fiber: Fiber, handler: Handler) -> None:
         """Run a handler that waits for nothing: no coroutine is needed."""
-        frame = fiber.frame
+        frame, owner = fiber.frame, self.owner
         try:
-            transfer = self.owner.execute.run_at_once(handler.content, fiber)
+            transfer = owner.execute.run_at_once(handler.content, fiber)
         except (Thrown, ScriptError) as error:
             self._enter_unit(fiber, handler)
             thrown = self.owner.thrown(error)
             self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
             return
         if transfer is not None:
-            self.owner.transfer(frame, transfer)
-        else:
-            self.owner.go_on(frame)
+            owner.transfer(frame, transfer)
+        elif frame.form.items:
+            owner.go_on(frame)
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
         frame = fiber.frame
@@ -209,9 +214,10 @@ class Handling:
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking
     ) -> Handler | None:
-        first = candidates[0][0] if candidates else None
-        if first is None or (len(candidates) == 1 and first.count <= 1 and first.cond is None):
-            return first
+        if len(candidates) == 1:
+            first = candidates[0][0]
+            if first.cond is None and first.count <= 1:
+                return first
         where = item.name if item is not None else ""
 
         def holds(cond: Expression) -> bool:

@@ -10,19 +10,21 @@ beyond it, and its whole application runs in an :class:`~prima.interpreter.expre
 
 from __future__ import annotations
 
-import json
 import math
 import operator
 import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakValueDictionary
 
+from prima.deferred import pattern
 from prima.interpreter.elements import Document
 from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number
 from prima.interpreter.names import GLOBALS, RESERVED
-from prima.messages import Json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 
 class Undefined:
@@ -132,7 +134,7 @@ BUILT_IN = (GLOBALS - VARIABLES - CONSTANTS.keys()) | {
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
 SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
 """What ECMAScript takes for white space."""
-TOKEN = re.compile(
+TOKEN = pattern(
     r"""(?P<space>[ \t\n\r]+)"""
     r"""|(?P<number>(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.]))"""
     r"""|(?P<name>[A-Za-z_$][\w$]*)|(?P<text>"[^"\\\n\r]*"|'[^'\\\n\r]*')"""
@@ -141,15 +143,18 @@ TOKEN = re.compile(
     r"""|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
     re.ASCII,
 )
-NUMERIC = re.compile(
+NUMERIC = pattern(
     r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
 )
-SURROGATE = re.compile("[\ud800-\udfff]")
+SURROGATE = pattern("[\ud800-\udfff]")
 
 
 def is_plain(document: Document) -> bool:
     """Whether all the code of a document can be evaluated here."""
-    return not document.scripted and all(compiled(one.code) for one in document.expressions)
+    if document.plain is None:
+        codes = [one.code for one in document.expressions]
+        document.plain = not document.scripted and all(map(compiled, codes))
+    return document.plain
 
 
 class _Beyond(Exception):
@@ -646,7 +651,7 @@ def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
         ScriptError: something holds itself, as a scope does.
     """
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return _quoted(value)
     if isinstance(value, float) and not math.isfinite(value):
         return "null"
     if not isinstance(value, list | dict):
@@ -657,11 +662,18 @@ def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
     if isinstance(value, list):
         return f"[{','.join(stringify(one, around) for one in value)}]"
     pairs = [
-        f"{json.dumps(key, ensure_ascii=False)}:{stringify(one, around)}"
+        f"{_quoted(key)}:{stringify(one, around)}"
         for key, one in sorted(value.items(), key=_position)
         if one is not UNDEFINED
     ]
     return f"{{{','.join(pairs)}}}"
+
+
+def _quoted(value: str) -> str:
+    """A text as JSON, which few documents need."""
+    from json import dumps
+
+    return dumps(value, ensure_ascii=False)
 
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
@@ -692,7 +704,9 @@ def outward(value: Any) -> Json:
     if isinstance(value, str):
         return bounded(well_formed(value))
     if isinstance(value, list | dict):
-        return json.loads(bounded(well_formed(stringify(value))))
+        from json import loads
+
+        return loads(bounded(well_formed(stringify(value))))
     return plain_number(value)
 
 
@@ -711,7 +725,7 @@ class PlainEngine:
         """The time by the run's calendar: nothing here asks for it."""
         self.spent = 0.0
         """Seconds of evaluations: nothing here can take long."""
-        self._long: WeakValueDictionary[int, Scope] = WeakValueDictionary()
+        self._long: WeakValueDictionary[int, Scope] | None = None
         """Scopes in which a long text has been put, by their id()."""
         self._added = 0
 
@@ -802,17 +816,20 @@ class PlainEngine:
         Raises:
             ScriptError: no scope declares it, or the expression fails.
         """
+        application, document, dialog, local = scopes
         if "." in name:
-            head, _, name = name.rpartition(".")
-            known: tuple[Scope, ...] = (scopes[SCOPES.index(head)],)
+            scope, last = scopes[SCOPES.index(name.partition(".")[0])], name.rpartition(".")[2]
         else:
-            head, known = "", scopes[::-1]
-        for scope in known:
-            if name in scope:
-                self.put(scope, name, (FUNCTIONS.get(code) or self._call(code))(scopes))
-                return
-        name = f"{head}.{name}" if head else name
-        raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
+            last = name
+            if name in document:  # where most variables are
+                scope = local if name in local else dialog if name in dialog else document
+            else:
+                scope = local if name in local else dialog if name in dialog else application
+        if last not in scope:
+            raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
+        scope[last] = value = (FUNCTIONS.get(code) or self._call(code))(scopes)
+        if type(value) is str and len(value) > LONG:
+            self._hold(scope, len(value))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the values that there are here.
@@ -826,6 +843,8 @@ class PlainEngine:
 
     def _hold(self, scope: Scope, length: int) -> None:
         """Bound what all variables hold together; it is counted anew only now and then."""
+        if self._long is None:
+            self._long = WeakValueDictionary()
         self._long[id(scope)] = scope
         self._added += length
         if self._added > MOST_HELD:

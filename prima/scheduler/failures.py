@@ -61,12 +61,15 @@ class Failures(Endings):
         """The next instant at which a unit, a device or an event waited for is too late."""
         return min((*self._deadlines.values(), *self._holds.values()), default=None)
 
+    @property
+    def timed(self) -> bool:
+        """Whether anything has a deadline."""
+        return bool(self._deadlines or self._holds)
+
     def expire(self) -> bool:
         """U5, E1: end what has run longer than it may; tells whether there was any such."""
-        if not self._deadlines and not self._holds:
-            return False
         now = self._now()
-        if min((*self._deadlines.values(), *self._holds.values())) > now:
+        if not self.timed or min((*self._deadlines.values(), *self._holds.values())) > now:
             return False
         self.changed = True
         for name in [name for name, due in self._holds.items() if due <= now]:
