@@ -1,22 +1,27 @@
-"""Dataclasses whose methods are made when they are first used.
+"""Dataclasses whose methods, and patterns whose matchers, are made when they are first used.
 
 The standard library writes and compiles all methods of a dataclass where the class stands. That
 takes longer than all else in the import of most modules, and a command uses few of the classes
 and few of their methods. :func:`dataclass` and :func:`field` mean what they mean there, and type
 checkers take them for the standard library's; only the moment is another one: ``__init__`` is made
 for the first object, and the rest, by the standard library itself, when it is first asked for.
+:func:`pattern` means :func:`re.compile` in the same way: most commands use few of the patterns of
+the modules that they import.
 """
 
 from __future__ import annotations
+
+import re
 
 # Not from typing: the command line's start goes through here.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
     from dataclasses import dataclass, field
+    from re import compile as pattern
     from typing import Any
 
-__all__ = ["dataclass", "field", "field_names"]
+__all__ = ["dataclass", "field", "field_names", "pattern"]
 
 NONE = object()
 """Stands for a default that is not there."""
@@ -152,5 +157,17 @@ def field_names(kind: type) -> tuple[str, ...]:
     return tuple(getattr(kind, "__deferred__", ()))
 
 
+class _Pattern:
+    """What :func:`re.compile` gives, but its functions (``match``, ...) come when they are asked for."""
+
+    def __init__(self, pattern: Any, flags: int = 0) -> None:
+        self.pattern, self._flags = pattern, flags
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(re.compile(self.pattern, self._flags), name)
+        setattr(self, name, found)  # from now on it costs what it does there
+        return found
+
+
 if not TYPE_CHECKING:
-    dataclass, field = _dataclass, _Field
+    dataclass, field, pattern = _dataclass, _Field, _Pattern

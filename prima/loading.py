@@ -12,12 +12,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from itertools import islice
-from os.path import normpath
-from pathlib import Path
+from os.path import exists, getsize, isfile, normpath
 from typing import TYPE_CHECKING, TypeVar
-from urllib.parse import unquote, urlsplit
 
-from prima.deferred import dataclass, field
+from prima.deferred import dataclass, field, pattern
 from prima.errors import (
     DocumentError,
     Place,
@@ -36,6 +34,8 @@ from prima.markup.limits import LIMITS
 from prima.markup.reader import parse, too_large
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from prima.markup.tree import Node
     from prima.session import AnyDocument
     from prima.sim.rehearsal import Cast
@@ -62,13 +62,20 @@ def in_place_of_files(texts: Mapping[Path, bytes]) -> Iterator[None]:
         _texts.reset(token)
 
 
+def _path(path: str | Path) -> Path:
+    """A path as one object; whatever reads a file by its name does without these modules."""
+    from pathlib import Path
+
+    return Path(path)
+
+
 def _open_text(path: str | Path) -> bytes | None:
     """What counts in place of a file, if anything does."""
     texts = _texts.get()
     if not texts:
         return None
     try:
-        return texts.get(Path(path).resolve())
+        return texts.get(_path(path).resolve())
     except (OSError, ValueError, RuntimeError):
         return None
 
@@ -86,13 +93,12 @@ def read_file(path: str | Path) -> bytes:
             raise too_large(str(path), len(text))
         return text
     try:
-        if Path(path).exists() and not Path(path).is_file():
+        if exists(path) and not isfile(path):
             raise UsageError(f"{path}: cannot be read: it is not a file.")
-        with Path(path).open("rb") as stream:
+        with open(path, "rb") as stream:
             data = stream.read(LIMITS.bytes + 1)
             if len(data) > LIMITS.bytes:
-                size = Path(path).stat().st_size
-                raise too_large(str(path), max(size, len(data)))
+                raise too_large(str(path), max(getsize(path), len(data)))
             return data
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
@@ -112,7 +118,7 @@ def read_application(
         return read_document(path, data)
     from prima.voicexml.document import VoiceDocument, read_page
 
-    file = Path(path)
+    file = _path(path)
     page = read_page(file.name, path, data)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
     folder = file.parent
@@ -129,7 +135,7 @@ def read_application(
     return document, [*page.problems, *later]
 
 
-VOICEXML_ROOT = re.compile(
+VOICEXML_ROOT = pattern(
     rb"(?:\xef\xbb\xbf|\xff\xfe|\xfe\xff)?"
     rb"(?:\s++|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>)*+"
     rb"<(?:[\w.-]+:)?vxml[\s>/]",
@@ -138,7 +144,7 @@ VOICEXML_ROOT = re.compile(
 """All before a document's root element, and the beginning of VoiceXML's."""
 
 
-APPLICATION = re.compile(
+APPLICATION = pattern(
     VOICEXML_ROOT.pattern.replace(rb"(?:[\w.-]+:)?vxml[\s>/]", rb"prima\s(?:[^<>]*\s)?")
     + b'xmlns="%s"' % DIALOGUE.namespace.encode(),
     re.DOTALL,
@@ -191,6 +197,8 @@ def _glance(folder: Path, uri: str, most: int) -> tuple[bytes, int]:
 
 def _inside(folder: Path, uri: str) -> Path:
     """Where a file of an application's folder is; nothing else is looked at."""
+    from urllib.parse import unquote, urlsplit
+
     from prima.voicexml.document import FetchError
 
     parts = urlsplit(uri)
@@ -240,14 +248,15 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 def _validate_one(path: str) -> list[Problem]:
     try:
         data = read_file(path)
-        if is_voicexml(data):
+        application = APPLICATION.match(data) is not None
+        if not application and is_voicexml(data):
             from prima.voicexml.document import read_page
 
-            page = read_page(Path(path).name, path, data)
+            page = read_page(_path(path).name, path, data)
             return [*page.problems, *page.warnings()]
-        if is_grammar(data):
-            return _grammar_problems(Path(path), data)
-        root = None if APPLICATION.match(data) else parse(path, data)
+        if not application and is_grammar(data):
+            return _grammar_problems(_path(path), data)
+        root = None if application else parse(path, data)
         if root is None or root.namespace == DIALOGUE.namespace:
             document, problems = read_document(path, data)
             return problems + _prices(document) if b"<iu" in data else problems
@@ -256,7 +265,7 @@ def _validate_one(path: str) -> list[Problem]:
 
         vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
         if vocabulary is WORLD:
-            reading = _Reading(Path(path), {})
+            reading = _Reading(_path(path), {})
             for area in read_world(path, data).areas:
                 if area.src not in reading.files:
                     reading.offered(area.src, area)
@@ -270,7 +279,7 @@ def _validate_one(path: str) -> list[Problem]:
     return []
 
 
-GRAMMAR = re.compile(
+GRAMMAR = pattern(
     rb"\s*(?:#ABNF|#JSGF|;GSL|#GSL)|" + VOICEXML_ROOT.pattern.replace(b"vxml", b"grammar"),
     re.DOTALL,
 )
@@ -324,7 +333,7 @@ def load_scenario(path: str | Path) -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _load(Path(path), read_file(path))
+    return _load(_path(path), read_file(path))
 
 
 def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> Loaded:
@@ -355,7 +364,7 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
         f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
     )
     try:
-        loaded = _load(Path("stage.xml"), text.encode())
+        loaded = _load(_path("stage.xml"), text.encode())
     except DocumentError as error:
         if any(
             one.code == "duplicate-id" and one.place.file == "stage.xml" for one in error.problems
@@ -429,7 +438,7 @@ class _Reading:
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
-        target = Path(normpath(self.path.parent / name))
+        target = _path(normpath(self.path.parent / name))
         try:
             content = read_file(target)
             self.files[name] = _digest(content)
@@ -552,11 +561,11 @@ def _digest(data: bytes) -> str:
 
 def schemas_folder() -> Path:
     """The folder of the schemas that come with the package."""
-    inside = Path(__file__).parent / "schemas"
-    return inside if inside.is_dir() else Path(__file__).parent.parent / "schemas"
+    inside = _path(__file__).parent / "schemas"
+    return inside if inside.is_dir() else _path(__file__).parent.parent / "schemas"
 
 
 def documents_folder() -> Path:
     """The folder of the demo documents that come with the package."""
-    inside = Path(__file__).parent / "documents"
-    return inside if inside.is_dir() else Path(__file__).parent.parent / "documents"
+    inside = _path(__file__).parent / "documents"
+    return inside if inside.is_dir() else _path(__file__).parent.parent / "documents"

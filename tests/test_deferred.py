@@ -5,13 +5,17 @@ from __future__ import annotations
 import copy
 import dataclasses
 import pickle
+import pkgutil
+import re
 import subprocess
 import sys
+from importlib import import_module
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
 
+import prima
 from prima import deferred
 
 TEXT = '''
@@ -183,3 +187,26 @@ def test_nothing_is_written_before_it_is_needed() -> None:
     code = "import sys, prima.messages; print('dataclasses' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+def test_a_pattern_is_what_the_standard_library_compiles() -> None:
+    for given in ((r"(?P<a>x)+", re.DOTALL), (rb"a|b",)):
+        pattern, real = deferred.pattern(*given), re.compile(*given)
+        assert (pattern.pattern, pattern.flags) == (real.pattern, real.flags)
+        text = real.pattern[:0] + (b"ab" if isinstance(real.pattern, bytes) else "axx")
+        for one in (pattern, pattern):
+            assert one.findall(text) == real.findall(text)
+            assert str(one.search(text)) == str(real.search(text))
+
+
+def test_every_pattern_can_be_compiled() -> None:
+    """What nobody has used yet may be wrong: here all are used."""
+    found = 0
+    for module in list(pkgutil.walk_packages(prima.__path__, "prima.")):
+        if module.name.endswith("__main__"):
+            continue
+        for one in vars(import_module(module.name)).values():
+            if isinstance(one, deferred.pattern):  # type: ignore[arg-type]
+                assert one.groups >= 0
+                found += 1
+    assert found > 10

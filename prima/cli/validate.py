@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import click
 from click.exceptions import Exit
@@ -102,14 +101,14 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
 
 def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int]:
     """Check and print; gives how many files could not be read, and how many errors there are."""
-    from prima import api
+    from prima import loading  # not the whole interface, for a quick start
 
     problems: list[Problem] = []
     unread: list[str] = []
     names = list(_expanded(files))
     for index, name in enumerate(names, 1):
         try:
-            problems += api.validate([name])
+            problems += loading.validate([name])
         except UsageError as error:
             unread.append(str(error))
         if len(names) >= MANY and sys.stderr.isatty():
@@ -132,6 +131,8 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
     Raises:
         UsageError: a folder holds no document.
     """
+    from pathlib import Path
+
     for name in files:
         if not os.path.isdir(name):
             yield name
@@ -185,6 +186,8 @@ def _watch(files: tuple[str, ...], form: str, notes: bool) -> None:
 
 def _changes(files: tuple[str, ...]) -> dict[str, float]:
     """When each document in the folders of the files was changed: a scenario names others."""
+    from pathlib import Path
+
     folders = {name if os.path.isdir(name) else os.path.dirname(name) or "." for name in files}
     found: dict[str, float] = {}
     for folder in folders:

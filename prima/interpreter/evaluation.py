@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from prima.messages import Json
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 Scope = Any
 """A scope object, of whatever kind the evaluator has."""

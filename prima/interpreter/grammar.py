@@ -10,13 +10,16 @@ import re
 import unicodedata
 from collections.abc import Callable, Generator
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from prima.deferred import dataclass, field
-from prima.messages import Json
+from prima.deferred import dataclass, field, pattern
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 _BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
-_NUMBER = re.compile(r"(\d+(?:[.,:]\d+)+)")
+_NUMBER = pattern(r"(\d+(?:[.,:]\d+)+)")
 MAX_STEPS = 100_000
 """How many steps matching one utterance may take."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
+
+from prima.deferred import pattern
 
 RESERVED = frozenset(
     [
@@ -112,16 +113,16 @@ WORD = r"(?:[^\W\d]|\$)[\w$]*"
 TEMPLATE = (
     r"`(?:\\.|\$\{(?:[^`{}]|`(?:\\.|[^`\\])*+`|\{[^{}]*+\})*+\}|[^`\\])*+`?"  # one in another
 )
-TOKEN = re.compile(
+TOKEN = pattern(
     rf"""//[^\n]*+|/\*(?:[\s\S]*?\*/|[\s\S]*)|"(?:\\[\s\S]|[^"\\\n])*+"?|'(?:\\[\s\S]|[^'\\\n])*+'?"""
     rf"""|{TEMPLATE}|[0-9][\w.]*+|#?{WORD}|\.\.\.|=>|[=!]==?|[<>]=|\?\.(?![0-9])|\S"""
 )
-PATTERN = re.compile(r"/(?![/*])(?:\\.|\[(?:\\.|[^\]\\\n]){0,99}+\]|[^/\\\n\[])++/[a-z]*")
+PATTERN = pattern(r"/(?![/*])(?:\\.|\[(?:\\.|[^\]\\\n]){0,99}+\]|[^/\\\n\[])++/[a-z]*")
 """A regular expression, where a division cannot stand."""
-INSERTED = re.compile(r"\$\{((?:[^`{}]|\{[^{}]*\})*)\}")
+INSERTED = pattern(r"\$\{((?:[^`{}]|\{[^{}]*\})*)\}")
 """An expression in a template."""
-IDENTIFIER = re.compile(WORD)
-OPERAND = re.compile(r"[\w$)\]\"'`]")
+IDENTIFIER = pattern(WORD)
+OPERAND = pattern(r"[\w$)\]\"'`]")
 """How something ends behind which a stroke divides."""
 BEFORE_OPERAND = frozenset(["return", "typeof", "case", "in", "of", "do", "else", "void", "delete"])
 PAIRS = {"(": ")", "[": "]", "{": "}"}
@@ -192,8 +193,8 @@ def assigned_names(code: str) -> set[str]:
     return (outside | inside - reader.declared() - reader.parameters()) - GLOBALS
 
 
-ASSIGNS = re.compile(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
-DECLARES = re.compile(r"\b(?:var|let|const|function|class)\b")
+ASSIGNS = pattern(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
+DECLARES = pattern(r"\b(?:var|let|const|function|class)\b")
 
 
 class _Reader:

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import re
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from prima.errors import did_you_mean
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
 from prima.interpreter.leads import index_choices
 from prima.markup.tree import Node
 
+if TYPE_CHECKING:
+    from typing import Protocol
 
-class Note(Protocol):
-    """Notes a problem at an element or the value of one of its attributes."""
+    class Note(Protocol):
+        """Notes a problem at an element or the value of one of its attributes."""
 
-    def __call__(
-        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
-    ) -> None:
-        """Note it, with what to write instead."""
+        def __call__(
+            self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+        ) -> None:
+            """Note it, with what to write instead."""
 
 
 def read_grammar(note: Note, node: Node) -> Grammar:
