@@ -147,26 +147,25 @@ class Behavior:
     inner: dict[str, Behavior] = field(default_factory=dict)
     busy: dict[str, Behavior] = field(default_factory=dict)
     longest: int | None = None
+    # As the Command's type has it; nothing in a unit leaves the user (K2):
+    feedback: bool = False
+    """Whether the Command makes one loop after another (U2)."""
+    leaves: bool = False
+    """Whether the AB leaves the user (K2)."""
+    engages: bool = False
+    """Whether the AB engages the user (K1)."""
+    priority: int = HIGH
+
+    def __post_init__(self) -> None:
+        row = self.type
+        if row is not None:
+            self.feedback, self.leaves = row.feedback, row.leaves
+            self.engages, self.priority = row.engages, row.priority
 
     @property
     def id(self) -> str:
         """The AB's name in the transcript; a loop of a feedback Command has its number."""
         return f"{self.name}.{self.loop}" if self.loop else self.name
-
-    @property
-    def feedback(self) -> bool:
-        """Whether the Command makes one loop after another (U2)."""
-        return self.type is not None and self.type.feedback
-
-    @property
-    def leaves(self) -> bool:
-        """Whether the AB leaves the user (K2)."""
-        return self.type is not None and self.type.leaves
-
-    @property
-    def engages(self) -> bool:
-        """Whether the AB engages the user (K1)."""
-        return self.type is not None and self.type.engages
 
     @property
     def motion(self) -> str:
@@ -178,8 +177,3 @@ class Behavior:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         what = self.group or self.command
         return what is not None and what.restartable and not self.silent
-
-    @property
-    def priority(self) -> int:
-        """The Command type's priority; a unit's is high, as nothing in it leaves (K2)."""
-        return HIGH if self.type is None else self.type.priority

@@ -46,17 +46,16 @@ class Chronicle:
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        self.add(
-            phase,
-            "robot",
-            app=ab.app.name,
-            behavior=ab.id,
-            tree=ab.stream.name,
-            command=ab.type.name if ab.type else "iu",
-            text=ab.command.text if ab.command else None,
-            unit=ab.unit.id if ab.unit else None,
-            **fields,
-        )
+        fields["time"] = self.now
+        fields["phase"] = phase
+        fields["actor"] = "robot"
+        fields["app"] = ab.app.name
+        fields["behavior"] = ab.id
+        fields["tree"] = ab.stream.name
+        fields["command"] = ab.type.name if ab.type else "iu"
+        fields["text"] = ab.command.text if ab.command else None
+        fields["unit"] = ab.unit.id if ab.unit else None
+        self.records.append(fields)
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""

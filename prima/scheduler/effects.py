@@ -120,6 +120,8 @@ def difference(angle: float, other: float) -> float:
 
 def pose_of(data: Data) -> Pose | None:
     """The pose that a device tells at a Command's end, if it does."""
+    if "x" not in data:
+        return None
     values = [data.get(name) for name in ("x", "y", "heading")]
     if not all(isinstance(value, int | float) and math.isfinite(value) for value in values):
         return None

@@ -163,6 +163,9 @@ def allowance(ab: Behavior) -> int:
         for name, argument in row.arguments.items()
         if argument.kind == "duration" and name in command.args
     )
+    letters = MS_A_LETTER * len(command.text or "")
+    if not command.cues:
+        return HANG_MS + sum(stated) + letters
     times = sum(
         cue.value
         for cue in command.cues
@@ -171,5 +174,4 @@ def allowance(ab: Behavior) -> int:
     slowest = min(
         (float(cue.value or 1) for cue in command.cues if cue.kind == "rate"), default=1.0
     )
-    letters = MS_A_LETTER * len(command.text or "") / min(slowest, 1.0)
-    return HANG_MS + sum(stated) + round(times + letters)
+    return HANG_MS + sum(stated) + round(times + letters / min(slowest, 1.0))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.scheduler.behavior import Behavior, Rank, State, Stream
 from prima.scheduler.memory import Memory
+from prima.scheduler.waiting import rank_declared, rank_in_line, rank_request
 
 Refusal = tuple[str, str]
 """The rule that keeps an AB from starting, and what it is kept back by."""
@@ -33,22 +34,6 @@ def rank_reaction(ab: Behavior, memory: Memory) -> tuple[int, ...]:
 def rank_continuing(ab: Behavior, now: int) -> tuple[int, ...]:
     """S2c: a parent that has ended in this instant goes before others."""
     return (0 if ab.freed == now else 1,)
-
-
-def rank_suspended(ab: Behavior) -> tuple[int, ...]:
-    """S2d: the stream suspended last goes first."""
-    suspended = ab.stream.suspended
-    return (1,) if suspended is None else (0, -suspended)
-
-
-def rank_request(ab: Behavior) -> tuple[int, ...]:
-    """S2e: the earlier request goes first."""
-    return (ab.requested,)
-
-
-def rank_declared(ab: Behavior) -> tuple[int, ...]:
-    """S2f: the order in which applications were declared, then the serial number."""
-    return (ab.app.order, ab.serial)
 
 
 def outranks(priority: int, stream: Stream) -> bool:
@@ -112,9 +97,7 @@ class Policy:
             rank_priority(ab),
             rank_reaction(ab, memory),
             rank_continuing(ab, now),
-            rank_suspended(ab),
-            rank_request(ab),
-            rank_declared(ab),
+            *rank_in_line(ab),
         )
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:

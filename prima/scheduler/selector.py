@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import islice
 from operator import itemgetter
 
 from prima.messages import Command, Group, Order
@@ -13,7 +12,7 @@ from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy, Refusal, composes_with_floor, outranks
-from prima.scheduler.waiting import LEAST, Line, key_of, rank_of
+from prima.scheduler.waiting import LEAST, Line
 
 STARVING_LOOPS = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
@@ -132,15 +131,15 @@ class Selector:
         let = self._let(line) if free else NOBODY
         if together < rank[:3] or let is EVERYBODY:
             return [], 0
-        key = key_of(rank) if together == rank[:3] else LEAST
-        start = line.below(key)
+        place = rank[3:] if together == rank[:3] else LEAST
+        start = line.below(place)
         apart = {ab.name for ab in waiting.fresh(now)}  # ranked one by one
         if isinstance(let, Application):
             apart |= {ab.name for ab in waiting.of(let)}
-        count = len(line.entries) - start - sum(waiting.stands(name, line, key) for name in apart)
-        named = (entry for entry in islice(line.entries, start, None) if entry[1].name not in apart)
-        firsts = [((*together, *rank_of(key)), ab) for key, ab in islice(named, LOSERS_NAMED)]
-        return firsts, count
+        count = len(line.entries) - start - sum(waiting.stands(name, line, place) for name in apart)
+        first = line.entries[start : start + LOSERS_NAMED + len(apart)]
+        named = [(together + place, ab) for place, ab in first if ab.name not in apart]
+        return named[:LOSERS_NAMED], count
 
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""

@@ -13,12 +13,8 @@ from collections.abc import Iterator
 
 from prima.scheduler.behavior import Application, Behavior, Rank
 
-Key = tuple[int, int, int, int]
-"""What orders a line: S2d (twice), S2e and S2f."""
-LEAST: Key = (-1, 0, 0, 0)
-"""Before all others."""
-BITS = 40
-"""Of a serial number, which stands behind the application's in one number."""
+LEAST: Rank = ((-1,),)
+"""Before all others of a line."""
 Kind = tuple[frozenset[str], int, bool]
 """Devices, priority, and whether it leaves the user."""
 
@@ -28,11 +24,11 @@ class Line:
 
     def __init__(self, kind: Kind) -> None:
         self.devices, self.priority, self.leaves = kind
-        self.entries: list[tuple[Key, Behavior]] = []
+        self.entries: list[tuple[Rank, Behavior]] = []
 
-    def below(self, key: Key) -> int:
-        """Where those begin that stand behind a key."""
-        return bisect_left(self.entries, (key,))
+    def below(self, rank: Rank) -> int:
+        """Where those begin that stand behind a rank."""
+        return bisect_left(self.entries, (rank,))
 
 
 class Waiting:
@@ -45,7 +41,7 @@ class Waiting:
         self.by_app: dict[str, dict[str, Behavior]] = {}
         self._fresh: dict[str, Behavior] = {}
         """Those that began to wait in the instant in which they were freed (S2c), and older ones."""
-        self._places: dict[str, tuple[Line, Key]] = {}
+        self._places: dict[str, tuple[Line, Rank]] = {}
 
     def add(self, ab: Behavior) -> None:
         """An AB begins to wait."""
@@ -58,9 +54,9 @@ class Waiting:
         line = self.lines.get(kind)
         if line is None:
             line = self.lines[kind] = Line(kind)
-        key = line_key(ab)
-        insort(line.entries, (key, ab))
-        self._places[ab.name] = line, key
+        rank = rank_in_line(ab)
+        insort(line.entries, (rank, ab))
+        self._places[ab.name] = line, rank
         if ab.freed >= 0:
             self._fresh[ab.name] = ab
 
@@ -75,8 +71,8 @@ class Waiting:
         self._fresh.pop(ab.name, None)
         if self.reactions.pop(ab.name, None) is not None:
             return
-        line, key = self._places.pop(ab.name)
-        del line.entries[line.below(key)]
+        line, rank = self._places.pop(ab.name)
+        del line.entries[line.below(rank)]
         if not line.entries:
             del self.lines[line.devices, line.priority, line.leaves]
 
@@ -92,14 +88,16 @@ class Waiting:
 
     def fresh(self, now: int) -> list[Behavior]:
         """The ABs that go before others of their line because of S2c, in this instant."""
+        if not self._fresh:
+            return []
         for name in [name for name, ab in self._fresh.items() if ab.freed != now]:
             del self._fresh[name]
         return list(self._fresh.values())
 
-    def stands(self, name: str, line: Line, key: Key) -> bool:
-        """Whether an AB stands in a line behind a key."""
+    def stands(self, name: str, line: Line, rank: Rank) -> bool:
+        """Whether an AB stands in a line behind a rank."""
         found = self._places.get(name)
-        return found is not None and found[0] is line and found[1] > key
+        return found is not None and found[0] is line and found[1] > rank
 
     def __iter__(self) -> Iterator[Behavior]:
         return iter(self.all.values())
@@ -111,20 +109,22 @@ class Waiting:
         return name in self.all
 
 
-def line_key(ab: Behavior) -> Key:
-    """Where an AB stands among those of its kind (S2d, S2e, S2f)."""
+def rank_in_line(ab: Behavior) -> Rank:
+    """The last parts of a rank, S2d to S2f: where an AB stands among those of its kind."""
+    return (rank_suspended(ab), rank_request(ab), rank_declared(ab))
+
+
+def rank_suspended(ab: Behavior) -> tuple[int, ...]:
+    """S2d: the stream suspended last goes first."""
     suspended = ab.stream.suspended
-    order = (1, 0) if suspended is None else (0, -suspended)
-    return (*order, ab.requested, ab.app.order << BITS | ab.serial)
+    return (1,) if suspended is None else (0, -suspended)
 
 
-def key_of(rank: Rank) -> Key:
-    """The key that belongs to a rank."""
-    order = rank[3] if len(rank[3]) == 2 else (1, 0)
-    return (order[0], order[1], rank[4][0], rank[5][0] << BITS | rank[5][1])
+def rank_request(ab: Behavior) -> tuple[int, ...]:
+    """S2e: the earlier request goes first."""
+    return (ab.requested,)
 
 
-def rank_of(key: Key) -> Rank:
-    """The last parts of a rank, S2d to S2f, that belong to a key."""
-    suspended = (1,) if key[0] else (0, key[1])
-    return (suspended, (key[2],), (key[3] >> BITS, key[3] & (1 << BITS) - 1))
+def rank_declared(ab: Behavior) -> tuple[int, ...]:
+    """S2f: the order in which applications were declared, then the serial number."""
+    return (ab.app.order, ab.serial)
