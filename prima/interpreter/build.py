@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from prima.commands import (
     TABLE_4_2,
     CommandType,
@@ -55,8 +57,10 @@ from prima.interpreter.names import RESERVED
 from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
-from prima.messages import Json
 from prima.values import XML_SPACE, nearest, outside, read_value, within
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 LONGEST_MS = 60_000
 HOLD_MS = 15_000

@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from prima.commands import TABLE_4_2, CommandType
+from prima.deferred import pattern
 from prima.errors import Place, Problem, Severity, did_you_mean
 from prima.interpreter.elements import (
     Act,
@@ -47,10 +48,8 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
-from prima.interpreter.expressions import check_expression, check_script, plain_context
 from prima.interpreter.names import IDENTIFIER, declared_names, free_names
 from prima.interpreter.plain import compiled
-from prima.markup.slips import half
 from prima.markup.tree import Node
 from prima.values import read_value
 
@@ -65,10 +64,10 @@ MANY_FORMS = 8
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
-STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
-ASSIGNMENT = re.compile(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
-BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
-CALL = re.compile(r"\s*\(")
+STRINGS = pattern(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+ASSIGNMENT = pattern(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
+BRACES = pattern(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+CALL = pattern(r"\s*\(")
 """What expressions and texts are looked through for."""
 
 LEAVING = (Goto, Return, Exit)
@@ -167,7 +166,16 @@ def document_commands(document: Document) -> Iterator[CommandTemplate]:
 
 @lru_cache(maxsize=1)
 def _context() -> Any:
+    from prima.interpreter.expressions import plain_context
+
     return plain_context()
+
+
+def _check_code(code: str, script: bool) -> None:
+    """Compile a script or an expression by an engine, which simple code does without."""
+    from prima.interpreter.expressions import check_expression, check_script
+
+    (check_script if script else check_expression)(_context(), code)
 
 
 class Leads:
@@ -594,7 +602,7 @@ class Checker:
 
     def _expression(self, expr: Expression, known: Names) -> None:
         plain = compiled(expr.code)
-        if plain is not None or self._compiles(expr, check_expression):
+        if plain is not None or self._compiles(expr):
             names = free_names(expr.code) if plain is None else plain.names
             for name, start in names.items():
                 if name not in known:
@@ -615,7 +623,7 @@ class Checker:
             self.problems.append(problem)
 
     def _script(self, act: Script, known: Names) -> None:
-        if self._compiles(act.code, check_script):
+        if self._compiles(act.code, script=True):
             for name, start in free_names(act.code.code).items():
                 if name not in known:
                     message = f'The script uses "{name}", which nothing declares.'
@@ -624,11 +632,11 @@ class Checker:
                     remedy = ABSENT.get(name, "") or did_you_mean(name, _names_to_write(known))
                     self.problems.append(Problem(place, "warning", code, message, remedy))
 
-    def _compiles(self, expr: Expression, check: Callable[[Any, str], None]) -> bool:
+    def _compiles(self, expr: Expression, script: bool = False) -> bool:
         if expr.attribute and expr.attribute not in expr.node.attributes:
             return False  # it is missing, which has been told
         try:
-            check(_context(), expr.code)
+            _check_code(expr.code, script)
         except ScriptError as error:
             shown = " ".join(expr.code.split())
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
@@ -642,6 +650,8 @@ class Checker:
     @staticmethod
     def _expression_remedy(code: str) -> str:
         """What to write for an expression that is none, where that is a common slip."""
+        from prima.markup.slips import half
+
         bare = STRINGS.sub("", code)
         wide = [
             one for one in bare if one != half(one) and half(one).isascii() and half(one).strip()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from prima.deferred import dataclass, field
 from prima.interpreter.grammar import Answers, Grammar
 from prima.markup.tree import Node
-from prima.messages import Json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 Text = list["str | Expression"]
 """Text with expressions in it, in order."""

@@ -12,6 +12,7 @@ import re
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from prima.deferred import pattern
 from prima.errors import DocumentError, Place, Problem
 from prima.markup.build import (
     MAX_NAME,
@@ -59,8 +60,8 @@ REMEDIES = (
     (r"CData", "It ends with ]]>."),
 )  # fmt: skip
 """The parser's words, and what the author may do."""
-DECLARATION = re.compile(r"<\?xml[^>]*?\?>")
-ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
+DECLARATION = pattern(r"<\?xml[^>]*?\?>")
+ENCODING = pattern(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
 BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF16_LE, "utf-16"),
@@ -69,8 +70,8 @@ BOMS = (
     (b"\0<\0?", "utf-16-be"),
 )
 """How files of some encodings begin (XML 1.0, appendix F)."""
-LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
-TEMPLATE = re.compile(r"<%|<\?php|<\?=")
+LATE_DECLARATION = pattern(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
+TEMPLATE = pattern(r"<%|<\?php|<\?=")
 
 
 def _error(place: Place, code: str, message: str, remedy: str = "") -> DocumentError:
@@ -287,7 +288,7 @@ WORDS = (
     (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
 )
 """The parser's words, and plainer ones."""
-OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
+OPEN_QUOTE = pattern(r"""=\s*(["'])[^"'<]*\Z""")
 
 
 def _clearer(source: Source, place: Place, message: str, remedy: str) -> tuple[Place, str, str]:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from prima.deferred import dataclass, field
+from prima.deferred import dataclass, field, pattern
 from prima.errors import Place
 
-MARKUP = re.compile(
+MARKUP = pattern(
     r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']|"[^"]*"|'[^']*')*+>"""
     r"""|(?P<start><)(?:[^>"']|"[^"]*"|'[^']*')*+>""",
     re.DOTALL,
 )
 """A piece of markup of a well-formed document; a start tag has its group."""
-NAME = re.compile(r"<[^\s/>]+")
-ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
-PIECE = re.compile(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|.", re.DOTALL)
+NAME = pattern(r"<[^\s/>]+")
+ATTRIBUTE = pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+PIECE = pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|.", re.DOTALL)
 """A piece of text as written: it gives no character, several as they are, or one."""
 
 
