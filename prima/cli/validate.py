@@ -131,12 +131,12 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
     Raises:
         UsageError: a folder holds no document.
     """
-    from pathlib import Path
-
     for name in files:
         if not os.path.isdir(name):
             yield name
             continue
+        from pathlib import Path
+
         found = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
         if not found:
             raise UsageError(
