@@ -29,7 +29,7 @@ class _Read(NamedTuple):
     """What a file was when it was last read, and what was read."""
 
     data: bytes
-    limits: str
+    limits: tuple[int, ...]
     document: Document
     problems: tuple[Problem, ...]
 
@@ -48,9 +48,10 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
         DocumentError: no document at all can be given: it is not XML, or not
             such a document.
     """
-    limits = repr(LIMITS)
+    limits = (LIMITS.bytes, LIMITS.elements, LIMITS.attributes, LIMITS.depth)
     read = _kept.pop(file, None)
     if read is None or read.data != data or read.limits != limits:
+        read = None  # the memory of the one before is free for this one
         with _no_looking_for_garbage(len(data)):
             read = _Read(data, limits, *_read(file, data))
     _keep(file, read)
@@ -85,11 +86,24 @@ def _no_looking_for_garbage(size: int) -> Iterator[None]:
         if size >= LARGE:
             gc.collect(1)  # what is garbage now must not stay
         yield
-        if size >= LARGE and not gc.get_freeze_count():
+        if size >= LARGE and not _objects_set_aside():
             gc.freeze()
             gc.unfreeze()
     finally:
         gc.enable()
+
+
+_aside: list[bool] = []
+
+
+def _objects_set_aside() -> bool:
+    """Whether the program has kept objects from being looked at, as the language server does.
+
+    Counting them takes long where there are some; so it is done until there are.
+    """
+    if not _aside and gc.get_freeze_count():
+        _aside.append(True)
+    return bool(_aside)
 
 
 def _read(file: str, data: bytes) -> tuple[Document, tuple[Problem, ...]]:
