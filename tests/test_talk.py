@@ -388,7 +388,7 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
         ("/tuch head", 'There is no command "/tuch". Did you mean "/touch"?'),
         ("/touch", 'Write "/touch SENSOR".'),
         ("/touch hed", 'There is no touch sensor "hed". Did you mean "head"?'),
-        ("/touch nose", 'There is no touch sensor "nose". Write back or head.'),
+        ("/touch nose", 'There is no touch sensor "nose". There is back and head.'),
         ("/walk postr", 'There is no place or thing "postr". Did you mean "poster"?'),
         ("/walk 1", None),
         ("/walk 1 x", '"x" is not a number. Write digits, as in "1.5".'),

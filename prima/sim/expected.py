@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Problem
 from prima.interpreter.elements import Document
+from prima.interpreter.surroundings import nearest
 from prima.session import AnyDocument
 from prima.sim.scenario import Expectation, Profile, Scenario
 
 COMMANDS = ("does", "finishes", "doing", "done")
 """Attributes that name a Command."""
-MOST_NAMES = 12
-"""Names that a remedy lists."""
 
 
 def check_expectations(
@@ -31,24 +30,21 @@ def check_expectations(
         if ":" not in one.words.get("sends", ""):
             checks.append(("sends", services, "service"))
         for name, words, what in checks:
-            _known(one, name, set(words), what, problems)
+            _known(one, name, set(words), f"There is no {what}", problems)
         if not one.by or one.by in applications:
             _state(one, documents, problems)
     return problems
 
 
 def _known(
-    one: Expectation, name: str, words: set[str], what: str, problems: list[Problem]
+    one: Expectation, name: str, words: set[str], wrong: str, problems: list[Problem]
 ) -> None:
     word = one.node.attributes.get(name)
     if word is None or word in words:
         return
-    remedy = did_you_mean(word, words)
-    if not remedy and 0 < len(words) <= MOST_NAMES:
-        remedy = f"There is {one_of(words)}."
-    message = f'There is no {what} "{word}".'
     place = one.node.attribute_place(name)
-    problems.append(Problem(place, "error", "no-such-name", message, remedy))
+    remedy = nearest(word, words)
+    problems.append(Problem(place, "error", "no-such-name", f'{wrong} "{word}".', remedy))
 
 
 def _state(one: Expectation, documents: list[AnyDocument], problems: list[Problem]) -> None:
@@ -59,5 +55,5 @@ def _state(one: Expectation, documents: list[AnyDocument], problems: list[Proble
         if not isinstance(document, Document):
             return
         forms |= set(document.forms)
-    whose = f"form of {one.by}" if one.by else "form of these applications"
-    _known(one, "state", forms, whose, problems)
+    wrong = f"{one.by} has no form" if one.by else "No application has a form"
+    _known(one, "state", forms, wrong, problems)

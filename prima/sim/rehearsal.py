@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from prima.errors import DocumentError, Problem, did_you_mean
+from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
+from prima.interpreter.surroundings import nearest
 from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.scheduler.selection import Policy
 from prima.session import AnyDocument, Session
@@ -66,16 +67,18 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
             if node.tag == tag and word is not None and word not in words:
                 place = node.attribute_place(name)
                 message = f'There is no {what} "{word}".'
-                problems.append(
-                    Problem(place, "error", "no-such-name", message, did_you_mean(word, words))
-                )
+                remedy = nearest(word, words)
+                problems.append(Problem(place, "error", "no-such-name", message, remedy))
     seen: set[str] = set()
     nodes = [node for _, _, node in scenario.applications]
     nodes += {name: area.node for area, name in reversed(cast.offers)}.values()
     for node, document in zip(nodes, cast.documents, strict=True):
         if document.id in seen:
             message = f'Two applications have the id "{document.id}".'
-            problems.append(Problem(node.place, "error", "duplicate-id", message))
+            own = isinstance(document, Document)
+            remedy = "Change the id in one of the documents" if own else 'Give one another id="..."'
+            remedy += ", or remove this one."
+            problems.append(Problem(node.place, "error", "duplicate-id", message, remedy))
         seen.add(document.id)
     return problems + check_expectations(scenario, cast.documents, cast.robot)
 

@@ -10,6 +10,7 @@ from typing import Any
 from prima.commands import DEVICES, TABLE_4_2, Argument, CommandType
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
+from prima.interpreter.surroundings import nearest as nearest_name
 from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
@@ -21,6 +22,7 @@ from prima.values import nearest, outside, read_value, within
 Point = tuple[float, float]
 MAX_AREAS = 256
 """Areas that a world may have."""
+RENAME = "Rename one."
 
 
 class Reader:
@@ -73,7 +75,7 @@ class Reader:
         choices = set(words)
         if word and word not in choices:
             message = f'There is no {what} "{word}".'
-            self.problem(node, "no-such-name", message, name, did_you_mean(word, choices))
+            self.problem(node, "no-such-name", message, name, nearest_name(word, choices))
 
     def finish(self) -> None:
         """Raise what was found.
@@ -144,7 +146,7 @@ def read_world(file: str, data: bytes) -> Map:
     for node in reader.root.all("place", "thing", "corner"):
         name = node.get("id")
         if name in seen:
-            reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id")
+            reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id", RENAME)
         seen.add(name)
         at = (reader.get(node, "x") or 0.0, reader.get(node, "y") or 0.0)
         if node.tag == "place":
@@ -159,6 +161,9 @@ def read_world(file: str, data: bytes) -> Map:
     for node in reader.root.all("way"):
         for end in ("from", "to"):
             reader.known(node, end, set(world.places), "place")
+        if node.get("from") == node.get("to") != "":
+            message = f'The way goes from "{node.get("from")}" to itself.'
+            reader.problem(node, "bad-value", message, "to", "Name another place.")
         world.ways.append((node.get("from"), node.get("to")))
     for node in reader.root.all("wall"):
         x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
@@ -169,7 +174,8 @@ def read_world(file: str, data: bytes) -> Map:
         reader.problem(node, "too-large", message, "", "Divide the world.")
     for node in areas[:MAX_AREAS]:
         if node.get("id") in seen:
-            reader.problem(node, "duplicate-id", f'"{node.get("id")}" is there twice.', "id")
+            message = f'"{node.get("id")}" is there twice.'
+            reader.problem(node, "duplicate-id", message, "id", RENAME)
         seen.add(node.get("id"))
         x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
         title = node.get("title", node.get("id"))
@@ -592,6 +598,12 @@ def _when(reader: Reader, node: Node) -> When:
                 remedy = 'Write when it happens, such as at="3s" or said="Hello".'
                 reader.problem(node, "missing-attribute", message, "", remedy)
             given = ["at"]
+    if not node.nodes and not node.text:
+        message = "<when> holds nothing."
+        remedy = (
+            'Put into it what happens then, such as <say>Hello.</say> or <touch sensor="head"/>.'
+        )
+        reader.problem(node, "empty", message, "", remedy)
     doings = [_doing(reader, child) for child in node.nodes if child.key]
     return When(
         given[0],
@@ -695,7 +707,7 @@ def _expectations(reader: Reader, root: Node) -> list[Expectation]:
     def read(node: Node, previous: Expectation | None, ordered: bool) -> Expectation:
         made = _expectation(reader, node, previous, ordered, ids)
         if made.id in ids:
-            reader.problem(node, "duplicate-id", f'"{made.id}" is there twice.', "id")
+            reader.problem(node, "duplicate-id", f'"{made.id}" is there twice.', "id", RENAME)
         ids.update({made.id} - {""})
         found.append(made)
         return made

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from prima.commands import DEVICES
 from prima.markup.vocabulary import Element, Vocabulary, attribute
 from prima.prelude import START
 
@@ -92,6 +93,12 @@ WORLD = Vocabulary(
             ),
         ),
     ),
+    hints={
+        **dict.fromkeys(("room", "location", "position", "node", "waypoint"), "Write <place>."),
+        **dict.fromkeys(("path", "road", "route", "edge", "link"), "Write <way>."),
+        **dict.fromkeys(("object", "item", "landmark"), "Write <thing>."),
+        **dict.fromkeys(("robot", "person"), "It is the scenario that says who is where."),
+    },
 )
 
 ROBOT = Vocabulary(
@@ -244,6 +251,12 @@ ROBOT = Vocabulary(
             ),
         ),
     ),
+    hints={
+        **dict.fromkeys(("sensor", "touch-sensor"), 'Write <touch sensor="..."/>.'),
+        **{name: f'Write <device name="{name}"/>.' for name in DEVICES},
+        **dict.fromkeys(("command", "add"), 'Write <adds command="...">.'),
+        "language": 'Write <voice lang="..."/>.',
+    },
 )
 
 _ACTIONS = (
@@ -574,4 +587,18 @@ SCENARIO = Vocabulary(
             ("expect",),
         ),
     ),
+    hints={
+        **dict.fromkeys(("user", "human", "visitor"), "Write <person>."),
+        **dict.fromkeys(("app", "fa", "ea", "prima", "vxml"), 'Write <application src="..."/>.'),
+        **dict.fromkeys(("speak", "prompt", "says"), "Write <say>: what the user says."),
+        **dict.fromkeys(("tap", "press", "stroke"), 'Write <touch sensor="..."/>.'),
+        **dict.fromkeys(("go", "goto", "move", "topological-move"), 'Write <walk to="..."/>.'),
+        **dict.fromkeys(("sleep", "pause", "delay", "after"), 'Write <wait for="3s"/>.'),
+        **dict.fromkeys(("on", "at", "if", "then", "catch"), "Write <when>, with its trigger."),
+        **dict.fromkeys(("assert", "expected", "must"), "Write <expect>."),
+        **dict.fromkeys(("forbid", "must-not", "not"), "Write <never>."),
+        "world": 'Name it in the root element: <scenario world="..." robot="...">.',
+        "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
+        "comment": "Write <note>, or a comment of XML: <!-- ... -->.",
+    },
 )

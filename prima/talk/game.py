@@ -303,18 +303,8 @@ class Game:
         return [one for one in scenario.whens if one.trigger == "at"][-1].doings
 
     def _told(self, problem: Problem) -> str:
-        """A problem in what was typed, with the words that there are if none is near."""
-        remedy = problem.remedy
-        if problem.code == "no-such-name" and not remedy:
-            what = problem.message.removeprefix("There is no ").partition('"')[0].strip()
-            words = {
-                "touch sensor": self.names.sensors,
-                "place or thing": self.names.points,
-                "device": self.names.devices,
-                "application": self.names.applications,
-            }.get(what, frozenset())
-            remedy = f"Write {one_of(words)}." if words else ""
-        return f"{problem.message} {remedy}".rstrip()
+        """A problem in what was typed."""
+        return f"{problem.message} {problem.remedy}".rstrip()
 
     def _read(self, whens: list[str]) -> Scenario:
         """The scene as a scenario, with what is done."""
