@@ -6,7 +6,12 @@ With guards, each state has three, of which the last holds.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from prima.interpreter.elements import Document
+    from prima.interpreter.expressions import Engine
 
 GUARDS = ("n < 0", "n < -1", "n >= 0")
 
@@ -62,6 +67,48 @@ class Prima:
         assert isinstance(app, Interpreter) and app.frame is not None
         assert len(self.session.drain()) >= self.now, "records are missing"
         return int(app.engine.get(app.frame.document, "n"))
+
+
+class Alone:
+    """The ring as an application without a session: its interpreter, as the peers are."""
+
+    def __init__(self, document: Document, engine: Engine | None = None) -> None:
+        from prima.interpreter.application import Interpreter
+
+        self.app = Interpreter(document, None, engine)
+        self.app.start(0)
+        self.now = 0
+
+    def tick(self, times: int) -> None:
+        """Take events in, one at an instant."""
+        from prima.messages import Event
+
+        for now in range(self.now + 1, self.now + times + 1):
+            self.app.event(now, Event("tick", now))
+        self.now += times
+
+    def count(self) -> int:
+        """The counter, read by the application itself."""
+        assert self.app.frame is not None and not self.app.actions
+        return int(self.app.engine.get(self.app.frame.document, "n"))
+
+
+def applications(scripted: bool, guards: bool = False) -> Callable[[], Alone]:
+    """How to make applications of one document that has been read once.
+
+    One with a script needs an ECMAScript engine, which all of them share.
+    """
+    from prima.interpreter.expressions import Engine
+    from prima.interpreter.reader import read_document
+
+    text = prima_text(2, guards)
+    if scripted:
+        script = "<script>function next(x) { return x + 1; }</script>"
+        text = text.replace('expr="n + 1"', 'expr="next(n)"').replace("<form", f"{script}<form", 1)
+    document, problems = read_document("ring.xml", text.encode())
+    assert not problems and document.scripted == scripted, problems
+    engine = Engine(memory=512 * 2**20) if scripted else None
+    return lambda: Alone(document, engine)
 
 
 def sismic_text(states: int, guards: bool = False) -> str:

@@ -17,9 +17,17 @@ from time import perf_counter
 
 from bench import peers
 from bench.fresh import check, fresh, note
-from bench.machines import Prima, Sismic, Transitions, prima_text, sismic_text
+from bench.machines import (
+    Alone,
+    Prima,
+    Sismic,
+    Transitions,
+    applications,
+    prima_text,
+    sismic_text,
+)
 
-Machine = Prima | Sismic | Transitions
+Machine = Prima | Alone | Sismic | Transitions
 BATCH = 200
 """Events between two looks at the clock."""
 MOST_EVENTS = 100_000
@@ -33,6 +41,8 @@ def build(system: str, states: int, guards: bool = False) -> Callable[[], Machin
     if system == "prima":
         text = f"<!-- {os.urandom(8).hex()} -->{prima_text(states, guards)}"
         return lambda: Prima(text)
+    if system in ("application", "scripted"):
+        return applications(system == "scripted", guards)
     if system == "sismic":
         chart = sismic_text(states, guards)
         return lambda: Sismic(chart)

@@ -156,16 +156,22 @@ class Behavior:
     """Whether the AB engages the user (K1)."""
     priority: int = HIGH
 
+    id: str = ""
+    """The AB's name in the transcript; a loop of a feedback Command has its number."""
+
     def __post_init__(self) -> None:
+        self.id = self.name
         row = self.type
         if row is not None:
             self.feedback, self.leaves = row.feedback, row.leaves
             self.engages, self.priority = row.engages, row.priority
 
-    @property
-    def id(self) -> str:
-        """The AB's name in the transcript; a loop of a feedback Command has its number."""
-        return f"{self.name}.{self.loop}" if self.loop else self.name
+    def next_loop(self) -> None:
+        """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
+        if self.loop:
+            self.parent = self.id
+        self.loop += 1
+        self.id = f"{self.name}.{self.loop}"
 
     @property
     def motion(self) -> str:

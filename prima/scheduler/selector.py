@@ -347,9 +347,7 @@ class Selector:
         ab.waited_loops = 0
         ab.resumed = ab.loop > 0 and ab.freed != now
         if ab.feedback:
-            if ab.loop:
-                ab.parent = ab.id
-            ab.loop += 1
+            ab.next_loop()
         self.started.append(ab)
         beside = self.policy.has("x5") and self.memory.conflict(ab) is not None
         first = ab.started < 0 or ab.restarting
