@@ -306,18 +306,21 @@ class Checker:
         if isinstance(act.form, str):
             self._form(act.form, act.node, "next")
         if isinstance(act.item, str):
-            items = (
-                all_items(form.items)
-                if form
-                else [item for one in self.document.forms.values() for item in all_items(one.items)]
-            )
-            names = {item.name for item in items}
+            names = self._item_names[form.id if form else None]
             if act.item not in names:
                 message = f'There is no form item "{act.item}" to go to.'
                 remedy = did_you_mean(act.item, names)
                 if act.item in self.document.forms:
                     remedy = f'It is a form: write next="#{act.item}".'
                 self.note(act.node, "no-such-item", message, remedy, "nextitem")
+
+    @cached_property
+    def _item_names(self) -> dict[str | None, set[str]]:
+        """The names of the items of each form, and of all (None)."""
+        found: dict[str | None, set[str]] = {
+            form.id: {item.name for item in items} for form, items in self.forms
+        }
+        return {**found, None: set().union(*found.values())}
 
     def _led(self) -> dict[str | None, Leads]:
         """Where each form leads, and the document's own content (None)."""
