@@ -17,7 +17,7 @@ from prima.sim.vocabulary import ROBOT, WORLD
 TEMPLATES = Path(__file__).parent / "templates"
 ANSWERS = {
     "Would you like something to drink?": "Yes.",
-    "Would you like tea or juice?": "Tea.",
+    "Would you like juice or tea?": "Tea.",
     "Tea or juice?": "Tea.",
     "Shall I wave, or nod?": "Wave.",
 }
@@ -43,6 +43,8 @@ def write(kind: str, name: str) -> list[Path]:
     path = Path(stem + ending)
     if path.exists():
         raise UsageError(f"{path}: is there already; name another file.")
+    if not path.parent.is_dir():
+        raise UsageError(f"{path}: there is no folder {path.parent}; make it first.")
     if kind == "scenario":
         return _scenario(path)
     return [_fill(kind, path)]

@@ -51,6 +51,13 @@ def test_a_scenario_takes_in_what_its_folder_has(tmp_path: Path) -> None:
     assert "Shall I wave, or nod?" in table and "ends cafe: exit" in table
 
 
+def test_every_question_of_a_new_scenario_is_answered_once(tmp_path: Path) -> None:
+    for kind, name in (("fa", "friend"), ("ea", "cafe"), ("vxml", "bar"), ("scenario", "visit")):
+        prima("new", kind, name, cwd=tmp_path)
+    table = prima("run", "visit.xml", cwd=tmp_path).stdout
+    assert table.count('"Tea."') == 2 and "ends bar: exit" in table
+
+
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "guide.xml").write_text("mine")
     for kind in ("ea", "scenario"):
@@ -62,7 +69,7 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="cannot be written"):
+    with pytest.raises(UsageError, match="there is no folder"):
         write("ea", str(tmp_path / "none" / "guide"))
 
 

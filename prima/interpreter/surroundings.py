@@ -18,6 +18,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import event_place, handlers_of
 from prima.interpreter.grammar import fold
+from prima.markup.tree import Node
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
 """Arguments of Commands that name something of the surroundings."""
@@ -43,22 +44,8 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
     problems = []
     for command in commands_of(document):
         for name, value in command.args.items():
-            if name not in PLACED or not isinstance(value, str):
-                continue
-            what = PLACED[name]
-            known = {
-                "to": names.places,
-                "toward": names.places | names.things,
-                "name": names.gestures,
-            }[name]
-            if what == "gesture" and not known:
-                continue  # the robot has no arm, which is told already
-            if value.strip() not in known:
-                whose = "The robot knows" if what == "gesture" else "The world has"
-                message = f'{whose} no {what} "{value}".'
-                place = command.node.attribute_place(name)
-                remedy = nearest(value, known)
-                problems.append(Problem(place, "warning", "no-such-name", message, remedy))
+            if name in PLACED and isinstance(value, str):
+                problems += check_name(command.node, name, value, names)
     for handler in handlers_of(document):
         for event in handler.events:
             first, _, sensor = event.partition(".")
@@ -68,6 +55,24 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
                 remedy = nearest(sensor, names.sensors)
                 problems.append(Problem(place, "warning", "no-such-name", message, remedy))
     return problems
+
+
+def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:
+    """A warning if an argument of a Command, one of :data:`PLACED`, names what is not there."""
+    what = PLACED[name]
+    known = {
+        "to": names.places,
+        "toward": names.places | names.things,
+        "name": names.gestures,
+    }[name]
+    if what == "gesture" and not known:
+        return []  # the robot has no arm, which is told already
+    if value.strip() in known:
+        return []
+    whose = "The robot knows" if what == "gesture" else "The world has"
+    message = f'{whose} no {what} "{value}".'
+    place = node.attribute_place(name)
+    return [Problem(place, "warning", "no-such-name", message, nearest(value, known))]
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from prima.commands import TABLE_4_2
 from prima.errors import MANY_WORDS, Problem, did_you_mean
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, near
-from prima.interpreter.surroundings import Sayings, Surroundings, check_surroundings
+from prima.interpreter.surroundings import (
+    PLACED,
+    Sayings,
+    Surroundings,
+    check_name,
+    check_surroundings,
+)
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
 from prima.values import read_value
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ENDINGS = frozenset({"exit", "unloaded"})
 """Why an application ends, beside the names of events."""
@@ -32,6 +40,9 @@ def check_hearing(cast: Cast) -> list[Problem]:
     )
     documents = [document for document in cast.documents if isinstance(document, Document)]
     problems = [one for document in documents for one in check_surroundings(document, names)]
+    for document in cast.documents:
+        if not isinstance(document, Document):
+            problems += _named(document.page.root, names)
     nodes = list(_nodes(cast.scenario.node))
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     if len(documents) < len(cast.documents):
@@ -48,6 +59,15 @@ def _nodes(root: Node) -> Iterator[Node]:
         node = stack.pop()
         stack += reversed(node.nodes)
         yield node
+
+
+def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
+    """What Commands of PRIMA in a VoiceXML document name and is not there."""
+    for node in _nodes(root):
+        if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
+            for name, value in node.attributes.items():
+                if name in PLACED and name in TABLE_4_2[node.tag].arguments:
+                    yield from check_name(node, name, value, names)
 
 
 def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:

@@ -16,6 +16,7 @@ from prima.interpreter.expressions import (
     check_script,
     plain_context,
 )
+from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.values import read_value
@@ -226,7 +227,8 @@ def _fits(kind: str, text: str) -> bool:
 
 def _bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
     message = f'{name} "{text}" is not allowed here.'
-    remedy = _REMEDIES.get(kind) or f"Write {one_of(kind.split())}."
+    right = meant("duration", text) if kind == "time" else ""
+    remedy = f'Write "{right}".' if right else _REMEDIES.get(kind, f"Write {one_of(kind.split())}.")
     return Problem(node.attribute_place(name), "error", "bad-value", message, remedy)
 
 
@@ -358,6 +360,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
             _compile(node, "", problems, context)
         if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
             problems += _grammar_problems(node, root.get("xml:lang", "en"))
+        if node.key == "field" and node.get("type"):
+            problems += _type_problems(node)
         for name in ("next", "src"):
             target = node.get(name)
             if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
@@ -366,6 +370,21 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
                 place = node.attribute_place(name)
                 problems.append(Problem(place, "warning", "no-such-form", message, hint))
     return problems
+
+
+def _type_problems(field: Node) -> list[Problem]:
+    """A built-in type that is none: the field throws error.unsupported.builtin (2.3.1)."""
+    from prima.grammar.builtin import TYPES, built_in
+
+    kind = field.get("type")
+    try:
+        built_in(kind, "voice", "en")
+    except ValueError as error:
+        remedy = did_you_mean(kind, TYPES) or f"Write {one_of(TYPES)}, or a <grammar>."
+        remedy += " At run time it is error.unsupported.builtin."
+        place = field.attribute_place("type")
+        return [Problem(place, "warning", "no-such-name", str(error), remedy)]
+    return []
 
 
 def _grammar_problems(node: Node, lang: str) -> list[Problem]:
