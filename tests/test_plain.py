@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.commands import TABLE_4_2
-from prima.interpreter import application
+from prima.interpreter import application, plain
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import Engine
 from prima.interpreter.plain import (
@@ -266,3 +266,134 @@ def test_applications_that_trust_each_other_share_an_engine() -> None:
     assert [(one["app"], one["message"]) for one in logs] == [
         ("one", "1"), ("ten", "10"), ("one", "3"), ("ten", "30"),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        *('o["²"]', "o['٣']", "'0x" + "f" * 300 + "' * 1", "'0o" + "7" * 400 + "' * 1"),
+        *("'0x" + "123456789abcdef" * 3 + "' * 1", "'" + "9" * 400 + "' * 1", "9" * 400),
+        *("o[4294967295]", "list[4294967296]", "list['00']", "smile[1e400]", "t[99999999999999999999]"),
+        "!" * 90 + "n", "- " * 60 + "n", "n ? " * 45 + "n" + " : 2" * 45,
+    ],
+)  # fmt: skip
+def test_odd_numbers_and_names_mean_the_same(code: str) -> None:
+    both(code)
+
+
+@pytest.mark.parametrize(
+    "code",
+    ["'a\\\u2028b'", "'a\\\u2029b'", "(" * 200, "[" * 200, "-(" * 100, "!" * 200, "'a" * 200],
+)
+def test_what_is_too_deep_or_too_odd_is_left_to_the_engine(code: str) -> None:
+    assert compiled(code) is None
+
+
+ODD_DATA: list[Any] = [
+    *({"²": 1, "٣": 2, "0": 3}, {"1" * 5000: 1, "b": 2}, {"toString": 1}, {"valueOf": 1}),
+    *({"99999999999": 1, "2147483648": 2, "b": 0, "2147483647": 3, "-1": 4, "01": 5, "1.5": 6},),
+    *({"__proto__": {"x": 1}}, {"toJSON": 1}, {"length": "x"}, {"\ud800": "\udc00"}, {"": {"": 0}}),
+    *({"x": 10**400, "n": -(10**400)}, {"x": -0.0, "n": 2**53 + 1}, {"x": "\x7f", "n": "\u2028"}),
+]
+ODD_CODES = [
+    *("o", "o + ''", "o - 1", "o == 1", "o < 'x'", "+o", "o.x", "1 / o.x", "o.n + o.x", "o.length", "l"),
+    *("l + ''", "l - 1", "l == ','", "l < o", "[1] + l", "o['1.5'] + o['-1']", "typeof o.x", "o == o"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("code", ODD_CODES)
+@pytest.mark.parametrize("data", ODD_DATA, ids=range(len(ODD_DATA)))
+def test_odd_data_means_the_same(data: Any, code: str) -> None:
+    for method in ("value", "text", "condition"):
+        found = []
+        for engine in (PlainEngine(), ENGINE):
+            scopes = scopes_of(engine)
+            engine.set(scopes[2], "o", data)
+            engine.set(scopes[2], "l", [data, [data]])
+            one = outcome(lambda: getattr(engine, method)(code, scopes))  # noqa: B023
+            found.append(one[:2] if one[0] == "fails" else one)
+        assert found[0] == found[1]
+
+
+class Word(str):
+    """A kind of text."""
+
+    __slots__ = ()
+
+
+def test_kinds_of_numbers_and_texts_are_numbers_and_texts() -> None:
+    engine = PlainEngine()
+    scopes = scopes_of(engine)
+    engine.set(scopes[2], "o", {"word": Word("four"), "whole": 10**400, "yes": True})
+    assert engine.condition("o.word === 'four' && o.whole === Infinity && o.yes === true", scopes)
+
+
+@pytest.mark.parametrize("engine", [PlainEngine(), ENGINE], ids=["plain", "engine"])
+@pytest.mark.parametrize("depth", [150, 900, 20_000])
+def test_data_too_deep_is_an_error_of_its_own(engine: Any, depth: int) -> None:
+    scopes = scopes_of(engine)
+    data: Any = []
+    for _ in range(depth):
+        data = [data]
+    try:
+        engine.set(scopes[2], "deep", data)
+        engine.text("deep + ''", scopes)
+        engine.value("deep", scopes)
+    except ScriptError:
+        pass
+
+
+def test_long_texts_do_not_take_long_again_and_again() -> None:
+    engine = PlainEngine()
+    scopes = scopes_of(engine)
+    engine.set(scopes[1], "a", "é" * 99_999)
+    engine.set(scopes[1], "b", "é" * 99_999)
+    with pytest.raises(ScriptError, match="too long"):
+        for _ in range(1000):
+            engine.condition(" && ".join(["a <= b"] * 49), scopes)
+    assert engine.spent > 0
+    engine.spent = 0.0
+    engine.condition("a <= b", scopes)
+
+
+@pytest.mark.parametrize(
+    "code", ["a == b", "a != 1", "1 == a", "a + ''", "+a", "a * 1", "a[9]", "a < b", "a.length"]
+)
+def test_work_with_long_texts_is_counted(code: str) -> None:
+    engine = PlainEngine()
+    scopes = scopes_of(engine)
+    engine.set(scopes[1], "a", "é" * 5_000)
+    engine.set(scopes[1], "b", "é" * 5_000)
+    engine.value(code, scopes)
+    assert engine.spent > 0
+
+
+def test_a_variable_that_would_be_too_much_is_not_kept() -> None:
+    engine = PlainEngine()
+    scopes = scopes_of(engine)
+
+    def assign_declared(_scope: Any, name: str, code: str, scopes: Any) -> None:
+        engine.assign_declared(name, code, scopes)
+
+    engine.set(scopes[1], "s", "x" * 60_000)
+    for index in range(200):
+        engine.unset(scopes[1], f"v{index}")
+        for give in (engine.assign, assign_declared):
+            try:
+                give(scopes[1], f"v{index}", f"s + {index}", scopes)
+            except ScriptError:
+                engine.spent = 0.0
+    held = sum(len(value) for value in scopes[1].values() if isinstance(value, str))
+    assert held < MOST_HELD + 200_000
+
+
+def test_compiled_code_does_not_grow_without_end() -> None:
+    for index in range(1000):
+        assert compiled("+".join(["a", *["b"] * 98, str(index)])) is not None
+    assert sum(one.pieces for one in plain.KEPT.values() if one is not None) <= plain.MOST_KEPT
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><var name="b"/><form id="f">'
+    logs = "".join(f'<log><value expr="{"b+" * 98}{index}"/></log>' for index in range(600))
+    text = f"{head}<block>{logs}</block></form></prima>"
+    document, problems = read_document("a.xml", text.encode())
+    assert not [one for one in problems if one.severity == "error"]
+    assert not is_plain(document), "so much code is compiled only where it is run"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -57,3 +58,11 @@ def plain_number(value: Json) -> Json:
     if isinstance(value, float) and abs(value) < LARGEST and value == int(value):
         return int(value)
     return value
+
+
+def whole(value: int) -> float:
+    """A whole number as ``float``, which is infinite beyond the largest there is."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf

@@ -15,7 +15,15 @@ from typing import Any
 
 import _quickjs as quickjs
 
-from prima.interpreter.evaluation import PULSE, SCOPES, Scope, ScriptError, bounded, plain_number
+from prima.interpreter.evaluation import (
+    PULSE,
+    SCOPES,
+    Scope,
+    ScriptError,
+    bounded,
+    plain_number,
+    whole,
+)
 from prima.interpreter.names import assigned_names, declared_names
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
@@ -162,11 +170,19 @@ class Engine:
         self._call(self._help["clock"], scope, seconds)
 
     def into(self, value: Json) -> Any:
-        """A Python value as one the engine takes."""
+        """A Python value as one the engine takes.
+
+        Raises:
+            ScriptError: it has lists or objects too deep inside each other.
+        """
         if isinstance(value, dict | list | tuple):
-            return self._call(self._context.parse_json, json.dumps(value))
+            try:
+                data = json.dumps(value)
+            except RecursionError:
+                raise ScriptError("it is nested too deep") from None
+            return self._call(self._context.parse_json, data)
         # The binding cuts whole numbers to 32 bits.
-        return float(value) if isinstance(value, int) and abs(value) >= 2**31 else value
+        return whole(value) if isinstance(value, int) and abs(value) >= 2**31 else value
 
     def set(self, scope: Scope, name: str, value: Json) -> None:
         """Give a variable of a scope a value from outside."""

@@ -13,14 +13,13 @@ from __future__ import annotations
 import math
 import operator
 import re
-from collections.abc import Callable, Mapping
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakValueDictionary
 
 from prima.deferred import pattern
 from prima.interpreter.elements import Document
-from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number
+from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
 from prima.interpreter.names import GLOBALS, RESERVED
 
 if TYPE_CHECKING:
@@ -47,7 +46,9 @@ class Scope(dict[str, Any]):
 class Named(Scope):
     """A scope that its own expressions know by name: ``application``, ``document``, ``dialog``."""
 
-    __slots__ = ()
+    __slots__ = ("evaluator",)
+    evaluator: PlainEngine
+    """Who counts the work, in an application's scope."""
 
 
 Scopes = tuple[Scope, Scope, Scope, Scope]
@@ -60,23 +61,37 @@ class Compiled(NamedTuple):
 
     call: Function
     names: Mapping[str, int]
+    pieces: int
+    """Of how many pieces of code it was made."""
 
 
 MOST_TOKENS = 200
 """Pieces of code beyond which an expression is left to the engine: functions nest so deep."""
+DEEPEST = 100
+"""Brackets and operators before an operand that may stand inside each other."""
 LONGEST = 100_000
 """Characters that a text may have; nothing longer could leave the scopes."""
 MOST_HELD = 4_000_000
 """Characters of long texts that all variables of an application may have together."""
 LONG = 1_000
 """Characters from which on a text counts as long."""
+SHORT = 200
+"""Characters up to which a text is no work worth counting."""
+SECONDS = 4e-9
+"""What a character takes at most to be compared, joined or read."""
+MOST_SECONDS = 3.0
+"""What the work with long texts may take in one instant, all together."""
+COUNTED = 10
+"""As many characters is the work of counting a variable."""
 
 VARIABLES = frozenset(
     ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
 )
 """Variables that the language itself declares."""
-MOST_KEPT = 20_000
-"""Expressions that are kept compiled."""
+MOST_KEPT = 100_000
+"""Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
+MOST_PIECES = 50_000
+"""Pieces of code that a document may have to be evaluated here."""
 WORDS = {"true": True, "false": False, "null": None}
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 INHERITED = frozenset(
@@ -138,7 +153,7 @@ TOKEN = pattern(
     r"""(?P<space>[ \t\n\r]+)"""
     r"""|(?P<number>(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.]))"""
     r"""|(?P<name>[A-Za-z_$][\w$]*)|(?P<text>"[^"\\\n\r]*"|'[^'\\\n\r]*')"""
-    r"""|(?P<escaped>"(?:\\[^ux0-9\n\r]|[^"\\\n\r])*"|'(?:\\[^ux0-9\n\r]|[^'\\\n\r])*')"""
+    r"""|(?P<escaped>"(?:\\[^ux0-9\n\r\u2028\u2029]|[^"\\\n\r])*"|'(?:\\[^ux0-9\n\r\u2028\u2029]|[^'\\\n\r])*')"""
     r"""|(?P<mark>[=!]==?|[<>]=|&&|\|\||\+(?![+=])|-(?![-=])|\*(?![*=])|/(?![/*=])|%(?!=)|[<>](?![<>])"""
     r"""|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
     re.ASCII,
@@ -146,15 +161,28 @@ TOKEN = pattern(
 NUMERIC = pattern(
     r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
 )
+INDEX = pattern("0|[1-9][0-9]{0,9}")
+MOST_INDEX = 2**32 - 2
 SURROGATE = pattern("[\ud800-\udfff]")
 
 
 def is_plain(document: Document) -> bool:
     """Whether all the code of a document can be evaluated here."""
     if document.plain is None:
-        codes = [one.code for one in document.expressions]
-        document.plain = not document.scripted and all(map(compiled, codes))
+        document.plain = not document.scripted and _are_plain(
+            {one.code: None for one in document.expressions}
+        )
     return document.plain
+
+
+def _are_plain(codes: Iterable[str]) -> bool:
+    pieces = 0
+    for code in codes:
+        found = compiled(code)
+        pieces += found.pieces if found else 0
+        if found is None or pieces > MOST_PIECES:
+            return False
+    return True
 
 
 class _Beyond(Exception):
@@ -177,18 +205,39 @@ LEVELS: dict[str, int] = {
 
 def compiled(code: str) -> Compiled | None:
     """An expression as a function of the scopes it sees, or None if it needs an engine."""
-    return _kept(code) if len(code) <= LONG else None
+    if len(code) > LONG:
+        return None
+    if code not in KEPT:
+        found = _compile(code)
+        _Kept.pieces += found.pieces if found else 1 + len(code) // SHORT
+        if _Kept.pieces > MOST_KEPT:
+            _Kept.pieces = 0
+            KEPT.clear()
+            FUNCTIONS.clear()
+        KEPT[code] = found
+        return found
+    return KEPT[code]
 
 
-@lru_cache(maxsize=MOST_KEPT)
-def _kept(code: str) -> Compiled | None:
+KEPT: dict[str, Compiled | None] = {}
+"""What has been compiled lately, by its code."""
+FUNCTIONS: dict[str, Function] = {}
+"""What has been evaluated lately, by its code."""
+
+
+class _Kept:
+    pieces = 0
+    """Of all that is kept."""
+
+
+def _compile(code: str) -> Compiled | None:
     try:
         parser = _Parser(code)
         call = parser.conditional()
         parser.expect("")
     except _Beyond:
         return None
-    return Compiled(call, parser.names)
+    return Compiled(call, parser.names, len(parser.tokens))
 
 
 class _Parser:
@@ -207,7 +256,7 @@ class _Parser:
             if match.lastgroup != "space":
                 self.tokens.append(_Token(match.lastgroup or "", match[0], match.start()))
         self.tokens.append(END)
-        self.at = 0
+        self.at = self.depth = 0
 
     def take(self) -> _Token:
         """The next piece."""
@@ -257,6 +306,15 @@ class _Parser:
 
     def unary(self) -> Function:
         """``!a``, ``-a``, ``+a``, ``typeof a``, and what binds more strongly."""
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise _Beyond
+        found = self.operand()
+        self.depth -= 1
+        return found
+
+    def operand(self) -> Function:
+        """What an operator before it, if any, makes of a member."""
         token = self.tokens[self.at]
         if token.kind == "mark" and token.text in "!-+":
             self.at += 1
@@ -264,8 +322,8 @@ class _Parser:
             if token.text == "!":
                 return lambda scopes: not truth(inner(scopes))
             if token.text == "-":
-                return lambda scopes: -number(inner(scopes))
-            return lambda scopes: number(inner(scopes))
+                return lambda scopes: -_numeric(inner(scopes), scopes)
+            return lambda scopes: _numeric(inner(scopes), scopes)
         if token.kind == "name" and token.text == "typeof":
             self.at += 1
             return self.type_of()
@@ -414,7 +472,7 @@ def _variable(name: str, place: tuple[int, int]) -> Function:
 def _member(value: Function, key: str, place: tuple[int, int]) -> Function:
     if key in INHERITED or key in METHODS:
         raise _Beyond
-    index = int(key) if key.isdigit() and key == str(int(key)) else -1
+    index = index_of(key)
 
     def read(scopes: Scopes) -> Any:
         found = value(scopes)
@@ -425,6 +483,8 @@ def _member(value: Function, key: str, place: tuple[int, int]) -> Function:
             raise ScriptError(f"TypeError: cannot read property '{key}' of {what}", [place])
         if not isinstance(found, list | str):
             return UNDEFINED
+        if len(found) > SHORT and isinstance(found, str):
+            work(scopes, found)
         if key == "length":
             return float(len(found) if isinstance(found, list) else units(found))
         if isinstance(found, str):
@@ -440,19 +500,50 @@ def _operation(mark: str, left: Function, right: Function) -> Function:
             return lambda scopes: right(scopes) if truth(value := left(scopes)) else value
         case "||":
             return lambda scopes: value if truth(value := left(scopes)) else right(scopes)
-        case "===":
-            return lambda scopes: same(left(scopes), right(scopes))
-        case "!==":
-            return lambda scopes: not same(left(scopes), right(scopes))
-        case "==":
-            return lambda scopes: alike(left(scopes), right(scopes))
-        case "!=":
-            return lambda scopes: not alike(left(scopes), right(scopes))
+        case "===" | "!==":
+            return _equality(same, left, right, mark == "===")
+        case "==" | "!=":
+            return _equality(alike, left, right, mark == "==")
         case "+":
             return _sum(left, right)
         case "-" | "*" | "/" | "%":
             return _arithmetic(ARITHMETIC[mark], left, right)
     return _comparison(COMPARISONS[mark], left, right)
+
+
+def work(scopes: Scopes, value: Any) -> None:
+    """Count the work with a value that may be long.
+
+    Raises:
+        ScriptError: the application has taken too long in this instant.
+    """
+    if isinstance(value, str | list) and len(value) > SHORT:
+        evaluator = getattr(scopes[0], "evaluator", None)
+        if evaluator is not None:
+            evaluator.work(len(value))
+
+
+def _equality(
+    act: Callable[[Any, Any], bool], left: Function, right: Function, wanted: bool
+) -> Function:
+    def compare(scopes: Scopes) -> bool:
+        first, second = left(scopes), right(scopes)
+        if type(first) is not float:
+            if type(first) is not str or len(first) > SHORT:
+                work(scopes, first)
+                work(scopes, second)
+        elif type(second) is not float:
+            work(scopes, second)
+        return act(first, second) is wanted
+
+    return compare
+
+
+def _numeric(value: Any, scopes: Scopes) -> float:
+    if type(value) is float:
+        return value
+    work(scopes, value)
+    return number(value)
 
 
 def _sum(left: Function, right: Function) -> Function:
@@ -464,8 +555,10 @@ def _sum(left: Function, right: Function) -> Function:
         if not isinstance(first, str) and not isinstance(second, str):
             return number(first) + number(second)
         joined = text(first) + text(second)
-        if len(joined) > LONGEST:
-            raise ScriptError("it used too much memory")
+        if len(joined) > SHORT:
+            if len(joined) > LONGEST:
+                raise ScriptError("it used too much memory")
+            work(scopes, joined)
         return joined
 
     return add
@@ -476,7 +569,7 @@ def _arithmetic(act: Callable[[float, float], float], left: Function, right: Fun
         first, second = left(scopes), right(scopes)
         if type(first) is float and type(second) is float:
             return act(first, second)
-        return act(number(first), number(second))
+        return act(_numeric(first, scopes), _numeric(second, scopes))
 
     return calculate
 
@@ -488,8 +581,12 @@ def _comparison(act: Callable[[Any, Any], bool], left: Function, right: Function
             return act(first, second)
         first, second = primitive(first), primitive(second)
         if isinstance(first, str) and isinstance(second, str):
+            if first.isascii() and second.isascii():
+                return act(first, second)
+            work(scopes, first)
+            work(scopes, second)
             return act(order(first), order(second))
-        return act(number(first), number(second))
+        return act(_numeric(first, scopes), _numeric(second, scopes))
 
     return compare
 
@@ -538,8 +635,6 @@ def truth(value: Any) -> bool:
 
 def primitive(value: Any) -> Any:
     """An array or object as the text that it is where a plain value is needed (7.1.1)."""
-    if isinstance(value, dict) and "toString" in value:
-        raise ScriptError("TypeError: toPrimitive")
     return text(value) if isinstance(value, list | dict) else value
 
 
@@ -556,7 +651,7 @@ def number(value: Any) -> float:
         return 0.0
     if NUMERIC.fullmatch(code) is None:
         return math.nan
-    return float(int(code, 0)) if code[1:2] in tuple("xXoObB") else float(code)
+    return whole(int(code, 0)) if code[1:2] in tuple("xXoObB") else float(code)
 
 
 def text(value: Any) -> str:
@@ -569,7 +664,11 @@ def text(value: Any) -> str:
         return "null" if value is None else str(value).lower()
     if isinstance(value, list):
         return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
-    return "[object Object]" if isinstance(value, dict) else "undefined"
+    if isinstance(value, dict):
+        if "toString" in value:  # it is no function
+            raise ScriptError("TypeError: toPrimitive")
+        return "[object Object]"
+    return "undefined"
 
 
 def number_text(value: float) -> str:
@@ -619,6 +718,11 @@ def alike(first: Any, second: Any) -> bool:
     return number(first) == number(second)
 
 
+def index_of(key: str) -> int:
+    """The index that a member's name is (6.1.7), or -1."""
+    return index if INDEX.fullmatch(key) and (index := int(key)) <= MOST_INDEX else -1
+
+
 def unit(value: str, index: int) -> Any:
     """One of the 16 bits that a text is made of for ECMAScript."""
     if value.isascii():
@@ -642,6 +746,14 @@ def well_formed(value: str) -> str:
     if SURROGATE.search(value) is None:
         return value
     return value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def escaped(value: str) -> str:
+    """Text in which halves of letters are whole again, or written as JSON escapes."""
+    if SURROGATE.search(value) is None:
+        return value
+    value = value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")
+    return SURROGATE.sub(lambda found: f"\\u{ord(found[0]):04x}", value)
 
 
 def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
@@ -678,18 +790,28 @@ def _quoted(value: str) -> str:
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
     """Names that are numbers stand before others, in their order (10.1.11.1)."""
-    index = pair[0].isdigit() and pair[0] == str(int(pair[0]))
-    return (not index, int(pair[0]) if index else 0)
+    index = index_of(pair[0])
+    return (index < 0, index)
 
 
-def inward(value: Json) -> Any:
-    """A value from outside as one of those here: a copy, in which numbers are ``float``."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
+def inward(value: Json, depth: int = 0) -> Any:
+    """A value from outside as one of those here: a copy, in which numbers are ``float``.
+
+    Raises:
+        ScriptError: it has lists or objects too deep inside each other.
+    """
+    if isinstance(value, str):
+        return value if type(value) is str else str.__str__(value)
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int | float):
+        return whole(value) if isinstance(value, int) else float(value)
+    if depth > DEEPEST:
+        raise ScriptError("it is nested too deep")
     if isinstance(value, list | tuple):
-        return [inward(one) for one in value]
+        return [inward(one, depth + 1) for one in value]
     if isinstance(value, Mapping):
-        return {str(key): inward(one) for key, one in value.items()}
+        return {str(key): inward(one, depth + 1) for key, one in value.items()}
     return value
 
 
@@ -710,10 +832,6 @@ def outward(value: Any) -> Json:
     return plain_number(value)
 
 
-FUNCTIONS: dict[str, Function] = {}
-"""What has been evaluated lately, by its code."""
-
-
 class PlainEngine:
     """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
 
@@ -724,7 +842,7 @@ class PlainEngine:
         self.now = 0
         """The time by the run's calendar: nothing here asks for it."""
         self.spent = 0.0
-        """Seconds of evaluations: nothing here can take long."""
+        """Seconds of work with long texts, by their lengths: nothing else here takes long."""
         self._long: WeakValueDictionary[int, Scope] | None = None
         """Scopes in which a long text has been put, by their id()."""
         self._added = 0
@@ -733,8 +851,6 @@ class PlainEngine:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        if len(FUNCTIONS) >= MOST_KEPT:
-            FUNCTIONS.clear()
         FUNCTIONS[code] = found.call
         return found.call
 
@@ -744,7 +860,20 @@ class PlainEngine:
 
     def named(self, name: str) -> Scope:
         """A new scope that its expressions know as ``application``, ``document`` or ``dialog``."""
-        return Named()
+        made = Named()
+        if name == "application":
+            made.evaluator = self
+        return made
+
+    def work(self, characters: int) -> None:
+        """Count work with so many characters.
+
+        Raises:
+            ScriptError: it is too much for one instant.
+        """
+        self.spent += characters * SECONDS
+        if self.spent > MOST_SECONDS:
+            raise ScriptError("it works too long on long texts")
 
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
@@ -781,9 +910,9 @@ class PlainEngine:
         value = (FUNCTIONS.get(code) or self._call(code))(scopes)
         if value is UNDEFINED:
             return "null"
-        return bounded(
-            well_formed(stringify(value) if isinstance(value, list | dict) else text(value))
-        )
+        if isinstance(value, list | dict):
+            return bounded(escaped(stringify(value)))
+        return bounded(well_formed(text(value)))
 
     def value(self, code: str, scopes: Scopes) -> Json:
         """Evaluate an expression and give its value as plain data."""
@@ -827,9 +956,10 @@ class PlainEngine:
                 scope = local if name in local else dialog if name in dialog else application
         if last not in scope:
             raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
-        scope[last] = value = (FUNCTIONS.get(code) or self._call(code))(scopes)
+        value = (FUNCTIONS.get(code) or self._call(code))(scopes)
         if type(value) is str and len(value) > LONG:
-            self._hold(scope, len(value))
+            self._hold(scope, value)
+        scope[last] = value
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the values that there are here.
@@ -837,16 +967,15 @@ class PlainEngine:
         Raises:
             ScriptError: the variables would hold too much.
         """
-        scope[name] = value
         if type(value) is str and len(value) > LONG:
-            self._hold(scope, len(value))
+            self._hold(scope, value)
+        scope[name] = value
 
-    def _hold(self, scope: Scope, length: int) -> None:
+    def _hold(self, scope: Scope, value: str) -> None:
         """Bound what all variables hold together; it is counted anew only now and then."""
         if self._long is None:
             self._long = WeakValueDictionary()
-        self._long[id(scope)] = scope
-        self._added += length
+        self._added += len(value)
         if self._added > MOST_HELD:
             held = {
                 id(one): len(one)
@@ -854,6 +983,9 @@ class PlainEngine:
                 for one in kept.values()
                 if isinstance(one, str)
             }
+            self.work(COUNTED * len(held))
+            held[id(value)] = len(value)
             self._added = sum(held.values())
             if self._added > MOST_HELD:
                 raise ScriptError("it used too much memory")
+        self._long[id(scope)] = scope
