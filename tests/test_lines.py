@@ -6,16 +6,17 @@ from collections.abc import Callable
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from prima.commands import TABLE_4_2
-from prima.messages import Command, Json, Record, Request, Step
+from prima.messages import Command, Json, Occurred, Record, Request, Step
 from prima.scheduler import selector
 from prima.scheduler.behavior import Behavior, Rank
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
-from tests.generated import Play, Run, Script, drive, perform, plays, scripts
+from tests.generated import Play, Run, Script, World, drive, perform, plays, scripts
 from tests.test_properties import examples
 
 
@@ -38,6 +39,32 @@ def test_documents_are_mediated_alike_however_many_are_looked_at(play: Play) -> 
 @examples(30)
 def test_requests_are_mediated_alike_however_many_are_looked_at(script: Script) -> None:
     assert decided(lambda: drive(script), 0) == decided(lambda: drive(script), 1000)
+
+
+TRACKING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ea">
+<form id="f"><on event="touch"><tracking-human/></on></form></prima>"""
+SPEAKING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="fa">
+<form id="f"><on event="message" reactive="false"><speak>Hello.</speak></on></form></prima>"""
+
+
+@pytest.mark.parametrize("few", [0, 8])
+def test_who_has_waited_too_many_loops_starts_in_the_same_instant(few: int) -> None:
+    """E4: the bound makes a reaction of what the floor keeps waiting, though nobody looked at it."""
+    events = ((10, Occurred("touch", "user")), (20, Occurred("message")))
+    play = Play((SPEAKING, TRACKING), (0, 0), events, World(1, endless=True))
+    found = decided(lambda: perform(play, bound=3), few)
+    loops = [one["time"] for one in found if one["phase"] == "start" and one["app"] == "ea"]
+    (spoken,) = (one["time"] for one in found if one["phase"] == "start" and one["app"] == "fa")
+    assert spoken == loops[3]
+
+
+@given(plays(), st.integers(1, 6))
+@examples(20)
+def test_bounded_loops_are_mediated_alike_however_many_are_looked_at(
+    play: Play, bound: int
+) -> None:
+    few, all_of_them = (decided(lambda: perform(play, bound=bound), n) for n in (0, 1000))
+    assert few == all_of_them
 
 
 class Crowd:

@@ -64,7 +64,7 @@ class Selector:
             again = self._pass(now)
 
     def _pass(self, now: int) -> bool:
-        """Go through the waiting ABs once; true when the floor changed on the way."""
+        """Go through the waiting ABs once; true when what ranks them changed on the way."""
         memory = self.memory
         held: dict[str, Behavior] = {}
         candidates = self._candidates(now)
@@ -284,7 +284,7 @@ class Selector:
     def _start(
         self, ab: Behavior, rank: Rank, lower: list[tuple[Rank, Behavior]], now: int
     ) -> bool:
-        """Start an AB and record why; true when its stream took the floor."""
+        """Start an AB and record why; true when others rank otherwise now, or may start."""
         memory, policy = self.memory, self.policy
         holder = memory.holder
         composed = policy.has("x5") and composes_with_floor(ab, memory)
@@ -334,7 +334,7 @@ class Selector:
         self._record_start(ab, rule, reaction)
         self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
-            self._count_starving(ab)
+            changed = self._count_starving(ab) or changed
         return changed
 
     def _run(self, ab: Behavior, now: int) -> bool:
@@ -423,8 +423,12 @@ class Selector:
                 self.memory.rank_anew(other)
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
 
-    def _count_starving(self, ab: Behavior) -> None:
-        """E4: count the loops that other applications' equal ABs have waited."""
+    def _count_starving(self, ab: Behavior) -> bool:
+        """E4: count the loops that other applications' equal ABs have waited.
+
+        True if one has waited so long that it counts as a reaction from now on.
+        """
+        bounded = False
         for other in list(self.memory.waiting):
             if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
                 continue
@@ -443,6 +447,8 @@ class Selector:
                 self._starved += 1
                 other.reaction = -self._starved
                 self.memory.waiting.moved(other)
+                bounded = True
+        return bounded
 
     # Units ------------------------------------------------------------------
 
