@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from prima.commands import DEVICES
+from prima.deferred import dataclass
 from prima.errors import MANY_LETTERS, MANY_WORDS, Place, Problem
 from prima.interpreter.elements import (
     Acts,
@@ -61,7 +61,8 @@ OWN = ("end", "cancel", "interrupted")
 """What begins an event of the application's own Commands."""
 
 
-class Raised(NamedTuple):
+@dataclass(slots=True)
+class Raised:
     """An event that a document raises itself: its name, and the attribute that names it."""
 
     name: str

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
 
-from prima.deferred import pattern
+from prima.deferred import dataclass, pattern
 
 RESERVED = frozenset(
     [
@@ -129,7 +128,8 @@ PAIRS = {"(": ")", "[": "]", "{": "}"}
 NO_METHOD = frozenset(["if", "for", "while", "switch", "with", "catch", "function"])
 
 
-class Token(NamedTuple):
+@dataclass(slots=True)
+class Token:
     """A piece of code: its text, where it begins, and whether a line begins before it."""
 
     text: str

@@ -14,10 +14,10 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from prima.deferred import pattern
+from prima.deferred import dataclass, pattern
 from prima.interpreter.elements import Document
 from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
 from prima.interpreter.names import GLOBALS, RESERVED
@@ -56,7 +56,8 @@ Scopes = tuple[Scope, Scope, Scope, Scope]
 Function = Callable[[Scopes], Any]
 
 
-class Compiled(NamedTuple):
+@dataclass(slots=True)
+class Compiled:
     """An expression's function, and the names that it uses with where each first stands."""
 
     call: Function
@@ -189,7 +190,8 @@ class _Beyond(Exception):
     """The code is none of what is compiled here."""
 
 
-class _Token(NamedTuple):
+@dataclass(slots=True)
+class _Token:
     kind: str
     text: str
     start: int

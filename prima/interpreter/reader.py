@@ -5,8 +5,8 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
 
+from prima.deferred import dataclass
 from prima.errors import Problem
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
@@ -25,7 +25,8 @@ LARGE = 20_000
 """Bytes from which on a document is so many objects that looking for garbage among them counts."""
 
 
-class _Read(NamedTuple):
+@dataclass(slots=True)
+class _Read:
     """What a file was when it was last read, and what was read."""
 
     data: bytes
