@@ -780,3 +780,53 @@ def test_a_watch_is_looked_at_only_when_its_sensor_changes(monkeypatch: pytest.M
     bench.step(Sensed({"battery.level": 10.0}))
     bench.step(Sensed({"front": 1.0}))
     assert bench.logs() == ["low"]
+
+
+def test_a_watch_knows_what_changed_while_a_subdialog_had_its_place() -> None:
+    bench = Bench(
+        """<form id="a"><watch name="near" when="sensor.x &gt; 1"/>
+          <on event="near"><log>near</log></on>
+          <block><speak>First.</speak></block><subdialog name="s" src="#b"/></form>
+        <form id="b"><block><speak>Inside.</speak></block>
+          <on event="touch"><return/></on></form>"""
+    )
+    bench.step(Sensed({"x": 0, "y": 0}))
+    bench.finish("First.")
+    bench.step(Sensed({"x": 5}))
+    bench.event("touch")
+    assert bench.logs() == []
+    bench.step(Sensed({"y": 1}))
+    assert bench.logs() == ["near"]
+
+
+@pytest.mark.parametrize(("name", "when"), [("sensor", "sensor.x"), ("Infinity", "Infinity")])
+def test_a_watch_sees_a_variable_that_hides_what_it_takes_for_granted(name: str, when: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><var name="{name}" expr="0"/>
+          <watch name="near" when="{when} &gt; 1 || sensor.x == 'no'"/>
+          <on event="near"><log>near</log></on>
+          <on event="message"><assign name="{name}" expr="event.data.it"/></on></form>"""
+    )
+    bench.step(Sensed({"x": 0}))
+    bench.event("message", it={"x": 3} if name == "sensor" else 3)
+    bench.step(Sensed({"y": 0}))
+    assert bench.logs() == ["near"]
+
+
+def test_handlers_that_wait_in_what_others_throw_are_counted() -> None:
+    bench = Bench(
+        """<form id="a"><on event="touch"><throw event="own.x"/></on>
+        <on event="own"><speak>So.</speak></on></form>"""
+    )
+    for _ in range(100):
+        bench.event("touch")
+    (end,) = bench.phases("unload")
+    assert "too many handlers under way" in end["outcome"]
+
+
+def test_code_that_is_text_knows_the_event() -> None:
+    bench = Bench(
+        """<form id="a"><on event="touch"><log expr="eval('eve' + 'nt.name')"/></on></form>"""
+    )
+    bench.event("touch")
+    assert bench.logs() == ["touch"]

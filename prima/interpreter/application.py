@@ -102,6 +102,10 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self._timer_serial = count(1)
         self.armed: dict[int, Armed] = {}
         self.sensors: dict[str, Json] = {}
+        self.reports = 0
+        """How often sensors have had new values."""
+        self.reported: dict[str, int] = {}
+        """Which of the reports was the latest, by the first part of a sensor's name."""
         self.cause: int | None = None
         self.serial = 0
         self._instant = -1
@@ -150,6 +154,9 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         """Sensor values changed: gives the events whose conditions turned true (C6)."""
         self._tick(now)
         self.sensors.update(values)
+        self.reports += 1
+        for name in values:
+            self.reported[name.partition(".")[0]] = self.reports
         if self.over:
             return []
         watches = self.handling.watches()
@@ -157,13 +164,12 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             return []
         self._guard(self.handling.tell_sensors)
         raised: list[str] = []
-        changed = {name.partition(".")[0] for name in values}
         for watch in watches:
-            self._guard(self._look, watch, changed, raised)
+            self._guard(self._look, watch, raised)
         return raised
 
-    def _look(self, watch: Watch, changed: set[str], raised: list[str]) -> None:
-        raised += self.handling.check_watches([watch], changed)
+    def _look(self, watch: Watch, raised: list[str]) -> None:
+        raised += self.handling.check_watches([watch])
 
     def listens_to(self, text: str) -> Link | None:
         """The link that takes what the user said, innermost scope first (V1)."""

@@ -11,6 +11,7 @@ from prima.commands import (
     excluding_arguments,
     missing_argument,
 )
+from prima.deferred import pattern
 from prima.errors import Problem, parted
 from prima.interpreter.elements import (
     Act,
@@ -75,6 +76,8 @@ PARTS = {
 }
 """What elements are for that others are for as well; the rest go by their tags."""
 COMMANDS = frozenset(ACTING)
+EVENT = pattern(r"event|_message|\beval\b")
+"""What code has that may look at the event that is being handled."""
 ONLY_NEXT = frozenset(["next"])
 
 
@@ -240,8 +243,7 @@ class Builder:
             expressions=self.expressions,
             scripted=self.scripted,
             counting=self.counting,
-            curious=self.scripted
-            or any("event" in one.code or "_message" in one.code for one in self.expressions),
+            curious=self.scripted or any(EVENT.search(one.code) for one in self.expressions),
         )
 
     def form(self, node: Node) -> Form:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Set
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -32,6 +32,8 @@ class Handling:
 
     def __init__(self, owner: Interpreter) -> None:
         self.owner = owner
+        self._hidden: bool | None = None
+        """Whether the document declares what conditions take for granted; None if nobody asked."""
 
     def handle_thrown(
         self, frame: Frame, fiber: Fiber, item: Item | None, thrown: Thrown, depth: int
@@ -89,10 +91,13 @@ class Handling:
         if not handler.waits:
             self._run_at_once(fiber, handler)
             return
-        if len(frame.fibers) >= MAX_FIBERS:
-            self.owner.give_up(handler.node, "too many handlers under way")
+        self._bound_fibers(frame, handler)
         self._enter_unit(fiber, handler)
         self._go_along(fiber, self._handler_content(fiber, handler))
+
+    def _bound_fibers(self, frame: Frame, handler: Handler) -> None:
+        if len(frame.fibers) >= MAX_FIBERS:
+            self.owner.give_up(handler.node, "too many handlers under way")
 
     @staticmethod
     def _enter_unit(fiber: Fiber, handler: Handler) -> None:
@@ -114,6 +119,7 @@ class Handling:
             transfer = owner.execute.run_at_once(handler.content, fiber)
         except (Thrown, ScriptError) as error:
             self._enter_unit(fiber, handler)
+            self._bound_fibers(frame, handler)
             thrown = self.owner.thrown(error)
             self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
             return
@@ -251,11 +257,10 @@ class Handling:
             held[last] = value
         self.owner.engine.set(self.owner.application, "sensor", tree)
 
-    def check_watches(self, watches: Iterable[Watch], changed: Set[str] | None = None) -> list[str]:
+    def check_watches(self, watches: Iterable[Watch]) -> list[str]:
         """C6: raised when the condition turns true, armed again when it turns false.
 
-        ``changed`` are the sensors that have new values, by the first part of their names;
-        a condition that looks at others alone is as it was.
+        A condition that looks at sensors alone is as it was while none of them has new values.
         """
         raised = []
         frame, armed = self.owner.frame, self.owner.armed
@@ -263,26 +268,39 @@ class Handling:
         fiber = Fiber(frame)
         for watch in watches:
             told = armed.setdefault(id(watch), Armed())
-            looked_at = sensors_of(watch.when.code) if told.sure else None
-            if not (changed is None or looked_at is None or looked_at & changed):
+            looked_at = self._sensors_of(watch) if told.report >= 0 else None
+            if looked_at is not None and all(
+                self.owner.reported.get(name, 0) <= told.report for name in looked_at
+            ):
                 continue
-            told.sure = False
+            told.report = -1
             true = self.owner.execute.condition(watch.when, fiber)
             if true and not told.true:
                 raised.append(watch.name)
-            told.true, told.sure = true, True
+            told.true, told.report = true, self.owner.reports
         return raised
+
+    def _sensors_of(self, watch: Watch) -> frozenset[str] | None:
+        """The sensors that a watch looks at alone; None where the document has such a name itself."""
+        if self._hidden is None:
+            self._hidden = HIDING.search(self.owner.document.node.source.text) is not None
+        return None if self._hidden else sensors_of(watch.when.code)
 
 
 class Armed:
     """What a watch's condition was when it was last looked at."""
 
     true = False
-    sure = False
-    """Whether it could be evaluated."""
+    report = -1
+    """After how many reports of sensors that was; -1 where it could not be evaluated."""
 
 
-SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*(\w+))?")
+SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
+HIDING = re.compile(
+    r"""\bname\s*=\s*["']\s*(?:sensor|undefined|NaN|Infinity)\s*["']"""
+    r"""|\bsensor\s*=[^=]|\b(?:var|let|const|function|class)\s+sensor\b"""
+)
+"""Where a document declares, or a script gives a value to, what conditions take for granted."""
 OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
 
 
