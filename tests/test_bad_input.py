@@ -7,6 +7,7 @@ eat memory or die runs in a process of its own with limits on both.
 from __future__ import annotations
 
 import json
+import math
 import os
 import pty
 import re
@@ -31,6 +32,8 @@ WORLD, ROBOT = DOCUMENTS / "worlds" / "office.xml", DOCUMENTS / "robots" / "pape
 GIGABYTE = 1 << 30
 SECONDS = 20
 """How long anything here may take at most; what is bounded takes a fraction of it."""
+SHARED = 5
+"""How many may share the processor: by the clock it may take so many times as long."""
 
 
 # Documents ----------------------------------------------------------------------
@@ -117,19 +120,24 @@ def prima(
 def process(
     tmp_path: Path, *args: object, seconds: float = SECONDS, memory: int = 2 * GIGABYTE, **more: Any
 ) -> Result:
-    """The command line as a process of its own, bounded in time and memory."""
+    """The command line as a process of its own, bounded in memory and in the processor's time."""
+    busy = math.ceil(seconds)
 
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        resource.setrlimit(resource.RLIMIT_CPU, (busy, busy + 1))
 
     command = [sys.executable, "-m", "prima", *map(str, args)]
     more = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **more}
     try:
         done = subprocess.run(
-            command, cwd=tmp_path, timeout=seconds, stdin=subprocess.DEVNULL, preexec_fn=limit, **more
+            command, cwd=tmp_path, timeout=SHARED * seconds, stdin=subprocess.DEVNULL,
+            preexec_fn=limit, **more,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        pytest.fail(f"it takes longer than {seconds} s")
+        pytest.fail(f"it takes longer than {SHARED * seconds} s")
+    if done.returncode == -signal.SIGXCPU:
+        pytest.fail(f"it takes longer than {seconds} s of the processor's time")
     out, err = done.stdout or b"", done.stderr or b""
     return Result(done.returncode, out.decode(errors="replace"), err.decode(errors="replace"))
 
@@ -685,13 +693,14 @@ def test_a_script_that_never_comes_back(tmp_path: Path) -> None:
         "from prima.cli import common\n"
         "common.WATCHDOG_SECONDS = 0.5\n"
         "made = expressions.Engine.__init__\n"
-        "def make(self):\n"
-        "    made(self)\n"
+        "def make(self, *given, **named):\n"
+        "    made(self, *given, **named)\n"
         "    self._help['text'] = lambda *values: time.sleep(60)\n"
         "expressions.Engine.__init__ = make\n"
         "cli.main()\n"
     )
-    path = stage(tmp_path, app(block('<speak>Well.</speak><log expr="1"/>')))
+    # A call is nothing that Python evaluates: the engine has to.
+    path = stage(tmp_path, app(block('<speak>Well.</speak><log expr="String(1)"/>')))
     done = subprocess.run(
         [sys.executable, "-c", code, "run", str(path), "-o", "t"],
         cwd=tmp_path, capture_output=True, text=True, timeout=30, check=False,
