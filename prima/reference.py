@@ -241,7 +241,7 @@ def limits() -> str:
         ),
         (
             "an application's scripts in one instant, all together",
-            f"{bounds.MAX_SCRIPT_SECONDS:g} s",
+            f"{evaluation.MAX_SCRIPT_SECONDS:g} s",
             "the application ends",
         ),
         ("steps of content in one instant", f"{bounds.MAX_STEPS:,}", "the application ends"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.interpreter import expressions
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
@@ -830,3 +831,13 @@ def test_code_that_is_text_knows_the_event() -> None:
     )
     bench.event("touch")
     assert bench.logs() == ["touch"]
+
+
+def test_many_pieces_of_code_in_one_place_take_no_longer_than_scripts_may(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(expressions, "MAX_SCRIPT_SECONDS", 0.05)
+    slow = '<value expr="(function () { for (var i = 0; i &lt; 1e4; i++); return 1 })()"/>'
+    bench = Bench(f'<form id="a"><block><log>{slow * 2000}</log></block></form>')
+    (end,) = bench.phases("unload")
+    assert "scripts take too long" in end["outcome"]

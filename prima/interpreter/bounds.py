@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
+from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.prelude import START
@@ -18,8 +19,6 @@ Evaluator = TypeVar("Evaluator", bound="Engine | PlainEngine")
 """What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
-MAX_SCRIPT_SECONDS = 3.0
-"""What an application's scripts may take in one instant, all together."""
 MAX_OUTPUT = 1_000_000
 """Characters that an application may say, log and send in one instant."""
 

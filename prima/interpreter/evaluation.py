@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 Scope = Any
 """A scope object, of whatever kind the evaluator has."""
 
+MAX_SCRIPT_SECONDS = 3.0
+"""What an application's code may take in one instant, all together."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves its application's scopes."""
 SCOPES = ("application", "document", "dialog", "local")

@@ -16,6 +16,7 @@ from typing import Any
 import _quickjs as quickjs
 
 from prima.interpreter.evaluation import (
+    MAX_SCRIPT_SECONDS,
     PULSE,
     SCOPES,
     Scope,
@@ -129,6 +130,12 @@ class Engine:
             # What the engine counts as its time is the processor's: on a busy machine less.
             self.spent += min(perf_counter() - began, TIME_LIMIT)
 
+    def _evaluate(self, function: Any, *args: Any) -> Any:
+        """Run code of a document, of which one piece of content may have very many pieces."""
+        if self.spent > MAX_SCRIPT_SECONDS:
+            raise ScriptError("scripts take too long without ever waiting")
+        return self._call(function, *args)
+
     def compile(self, code: str) -> Any:
         """Give the function of an expression, compiled the first time.
 
@@ -202,11 +209,11 @@ class Engine:
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
         """Evaluate an expression and give the engine's own value."""
-        return self._call(self.compile(code), *scopes)
+        return self._evaluate(self.compile(code), *scopes)
 
     def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
         """Evaluate an expression as a condition."""
-        return bool(self._call(self.compile(f"!!({code}\n)"), *scopes))
+        return bool(self._evaluate(self.compile(f"!!({code}\n)"), *scopes))
 
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
@@ -260,7 +267,7 @@ class Engine:
             body = f"{{$s[$n] = (\n{code}\n)}}"
             wrapped = f"(function({self._names},$s,$n){{{self._withs}{body}}})"
             function = self._compiled[key] = self._call(self._context.eval, wrapped)
-        self._call(function, *scopes, scope, name)
+        self._evaluate(function, *scopes, scope, name)
 
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
@@ -273,7 +280,7 @@ class Engine:
         if function is None:
             check_expression(self._context, code)
             function = self._compiled[key] = self._compile(_assignment(name, code, self._scopes))
-        self._call(function, *scopes)
+        self._evaluate(function, *scopes)
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the engine's own values."""
@@ -297,7 +304,7 @@ class Engine:
             body = f"(function({self._names},$$){{{self._withs}{{{loose}{inner}}}}})"
             function = self._compiled[key] = self._call(self._context.eval, body)
         try:
-            self._call(function, *scopes, scope)
+            self._evaluate(function, *scopes, scope)
         except ScriptError as error:
             if len(error.places) > 1:  # the outermost function is ours
                 error.line, error.column = error.places[-2]

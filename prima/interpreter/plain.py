@@ -19,7 +19,15 @@ from weakref import WeakValueDictionary
 
 from prima.deferred import dataclass, pattern
 from prima.interpreter.elements import Document
-from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
+from prima.interpreter.evaluation import (
+    LARGEST,
+    MAX_SCRIPT_SECONDS,
+    SCOPES,
+    ScriptError,
+    bounded,
+    plain_number,
+    whole,
+)
 from prima.interpreter.names import GLOBALS, RESERVED
 
 if TYPE_CHECKING:
@@ -80,8 +88,6 @@ SHORT = 200
 """Characters up to which a text is no work worth counting."""
 SECONDS = 4e-9
 """What a character takes at most to be compared, joined or read."""
-MOST_SECONDS = 3.0
-"""What the work with long texts may take in one instant, all together."""
 COUNTED = 10
 """As many characters is the work of counting a variable."""
 
@@ -874,7 +880,7 @@ class PlainEngine:
             ScriptError: it is too much for one instant.
         """
         self.spent += characters * SECONDS
-        if self.spent > MOST_SECONDS:
+        if self.spent > MAX_SCRIPT_SECONDS:
             raise ScriptError("it works too long on long texts")
 
     def event(self, name: str, message: str, data: Json) -> Scope:
