@@ -266,7 +266,7 @@ class _Reader:
                 remedy = (
                     did_you_mean(special, RESERVED) or 'Write uri="#name" for a rule of your own.'
                 )
-            self.note(node, "bad-value", message, remedy, "special")
+                self.note(node, "bad-value", message, remedy, "special")
             return [Special(special)]
         found = Reference(uri, _where(node, "uri"), node.get("type"))
         self.document.references.append(found)
