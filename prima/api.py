@@ -31,6 +31,8 @@ from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
     from prima.export import Exported
+    from prima.scheduler.behavior import Application
+    from prima.sim.rehearsal import Rehearsal
     from prima.sim.services import Web
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
@@ -52,6 +54,8 @@ class Transcript:
     """Applications that ended by an error, as ``NAME: what``."""
     outcome: str = ""
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+    unfinished: list[str] = field(default_factory=list)
+    """Of a run stopped at ``until``, what each application does that has not ended."""
     cut: str = ""
     """What is wrong with the line at which a partial transcript ends."""
     measure: Measure | None = None
@@ -178,7 +182,37 @@ def rehearse(
                 sink(line(record))
     made.failures = list(rehearsal.session.failures)
     made.outcome = rehearsal.outcome
+    if made.outcome == "until":
+        made.unfinished = _unfinished(rehearsal)
     return made
+
+
+def _unfinished(rehearsal: Rehearsal) -> list[str]:
+    """What each application that has not ended does as a run is stopped, as ``NAME is ...``."""
+    memory, owed = rehearsal.session.mediator.memory, rehearsal.services.owed
+    there = [name for name, app in rehearsal.session.apps.items() if not app.over]
+    return [
+        f"{name} is {_doing(memory.apps[name], name in owed)}"
+        for name in there
+        if name in memory.apps
+    ]
+
+
+def _doing(app: Application, owed: bool) -> str:
+    """What an application does that the mediator keeps; ``owed`` if a service has yet to answer."""
+    from prima.scheduler.behavior import State
+    from prima.transcript.table import describe
+
+    for behavior in app.members.values():
+        if behavior.state is State.RUNNING and behavior.unit is None:
+            command = behavior.command
+            if command is None:
+                return "in the middle of a unit"
+            what = describe(command.type, command.text, dict(command.args))
+            return f"asking {what}" if command.type == "q-and-a" else f"in the middle of {what}"
+    if any(behavior.state is State.WAITING for behavior in app.members.values()):
+        return "waiting for its turn"
+    return "waiting for a service's answer" if owed else "waiting for an event"
 
 
 def fetcher(hosts: list[str]) -> Web | None:

@@ -85,6 +85,11 @@ def parted(text: str) -> tuple[str, str]:
     return (f"{wrong}.", remedy) if stop else (text, "")
 
 
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: ``1 reaction``, ``2 reactions``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def one_of(words: Iterable[str]) -> str:
     """Join words for a message: ``a, b or c``."""
     *head, last = sorted(words) or [""]

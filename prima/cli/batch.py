@@ -27,7 +27,7 @@ from prima.batch import (
 )
 from prima.cli import common
 from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
-from prima.errors import UsageError
+from prima.errors import UsageError, counted
 from prima.pool import cores, warm_up
 
 MOST_LISTED = 50_000_000
@@ -94,7 +94,7 @@ def run_all(
     if form == "text":
         put(f"\n{format_counts(exits)}")
     if options.resume:
-        tell(f"{earlier} of {len(plan)} runs had been made before")
+        tell(f"{earlier} of {counted(len(plan), 'run')} had been made before")
     if any(exits[code] for code in exits if code):
         raise Exit(max(exits))
 

@@ -10,7 +10,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import check_output, tell
-from prima.errors import UsageError
+from prima.errors import UsageError, counted
 
 
 @click.command()
@@ -52,7 +52,7 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
         check_output(output, "export")
     made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
     if output:
-        amount = f"{made.tiers} tiers with {made.marks} intervals and points"
+        amount = f"{counted(made.tiers, 'tier')} with {made.marks} intervals and points"
         tell(f"{output}: {amount} of {made.seconds:.1f} s")
     else:
         sys.stdout.buffer.flush()

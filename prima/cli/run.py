@@ -21,7 +21,7 @@ from prima.cli.common import (
     tell,
     why_option,
 )
-from prima.errors import RunError, UsageError
+from prima.errors import RunError, UsageError, counted
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -178,6 +178,8 @@ def _run_one(
     else:
         transcript = api.rehearse(loaded, policy, bound, hosts=hosts)
         put(transcript.table(why))
+    if transcript.unfinished:
+        tell(f"{_stopped(transcript)} {'; '.join(transcript.unfinished)}.")
     if transcript.failures:
         from prima.batch import told_failure
 
@@ -189,10 +191,18 @@ def _run_one(
         raise Exit(3)
 
 
+def _stopped(transcript: Transcript) -> str:
+    seconds = transcript.summary().seconds
+    return f"The run was stopped at {seconds:g} s, the scenario's until:"
+
+
 def _outline(transcript: Transcript) -> str:
     summary = transcript.summary()
-    return (
-        f"{transcript.measure.records if transcript.measure else 0} records of {summary.seconds:.1f} s,"
-        f" {summary.streams_broken} streams broken, {summary.reactions} reactions"
-        f" after {summary.reaction_mean:.2f} s on average"
-    )
+    records = counted(transcript.measure.records if transcript.measure else 0, "record")
+    broken = counted(summary.streams_broken, "stream")
+    reactions = counted(summary.reactions, "reaction")
+    if summary.reactions:
+        reactions += f" after {summary.reaction_mean:.2f} s"
+    if summary.reactions > 1:
+        reactions += " on average"
+    return f"{records} of {summary.seconds:.1f} s, {broken} broken, {reactions}"

@@ -184,13 +184,13 @@ def _told(graph: Graph) -> str:
     """A description in sentences, for who cannot see the picture."""
     sentences = []
     for node in list(graph.nodes.values())[:40]:
-        ways = [
-            f"{graph.nodes[edge.target].title}" if edge.target else edge.words
-            for edge in graph.out(node.key)[:8]
-        ]
+        edges = graph.out(node.key)[:8]
         marks = f" ({', '.join(node.marks)})" if node.marks else ""
-        to = " leads to " if not node.group else " is followed by "
-        sentences.append(node.title + marks + (f"{to}{', '.join(ways)}." if ways else "."))
+        to = "leads to" if not node.group else "is followed by"
+        inside = [graph.nodes[edge.target].title for edge in edges if edge.target]
+        does = [f"{to} {', '.join(inside)}"] if inside else []
+        does += [edge.words for edge in edges if not edge.target]
+        sentences.append(f"{node.title}{marks} {'; '.join(does)}".rstrip() + ".")
     more = len(graph.nodes) - len(sentences)
     return " ".join(sentences) + (f" And {more} more." if more > 0 else "")
 

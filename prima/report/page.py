@@ -12,6 +12,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
+from prima.errors import counted
 from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
 from prima.report.view import View
@@ -222,7 +223,7 @@ def _table(view: View) -> str:
         )
         for row in view.rows
     ]
-    caption = f"What was done, by whom, and by which rule. {len(view.rows)} rows."
+    caption = f"What was done, by whom, and by which rule. {counted(len(view.rows), 'row')}."
     heads = [
         ("Row", "first"),
         ("Seconds", "time"),

@@ -24,7 +24,7 @@ class Services:
         self._services = {service.name: service for service in services}
         self._web = web
         self._asked: dict[str, int] = {}
-        self._pending: list[tuple[int, int, Inbound]] = []
+        self._pending: list[tuple[int, int, Occurred | Fetched]] = []
         self._serial = 0
 
     def order(self, now: int, order: Order) -> None:
@@ -66,9 +66,14 @@ class Services:
         answer.app, answer.serial = order.app, _serial(order)
         return answer
 
-    def _later(self, now: int, after: int, value: Inbound) -> None:
+    def _later(self, now: int, after: int, value: Occurred | Fetched) -> None:
         self._serial += 1
         heappush(self._pending, (now + after, self._serial, value))
+
+    @property
+    def owed(self) -> set[str]:
+        """The applications that an answer is under way to."""
+        return {value.app or "" for _, _, value in self._pending}
 
     def due(self) -> int | None:
         """When the next answer arrives, if any is under way."""

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from prima.commands import TABLE_4_2
+from prima.errors import counted
 from prima.messages import Record
 
 LONGEST_SHOWN = 5000
@@ -196,7 +197,8 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "starve":
             request = asked.get(record["behavior"].partition(".")[0], record)
             what = describe(request.get("command") or "", request.get("text"), request.get("args"))
-            return _plain(record, f"still waits after {record['loop']} loops: {what}", "starve")
+            loops = counted(record["loop"], "loop")
+            return _plain(record, f"still waits after {loops}: {what}", "starve")
         case "log":
             return _plain(record, f"log: {record['message']}", "log")
     return None

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from prima.commands import TABLE_4_2
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Problem, counted, did_you_mean, one_of
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import (
     check_expression,
@@ -128,7 +128,7 @@ def _most(problems: list[Problem]) -> list[Problem]:
         alike = problem[1:]
         told[alike] += 1
         if told[alike] == MOST_ALIKE and counts[alike] > MOST_ALIKE:
-            more = f"So it is at {counts[alike] - MOST_ALIKE} more places."
+            more = f"So it is at {counted(counts[alike] - MOST_ALIKE, 'more place')}."
             problem = problem._replace(remedy=f"{problem.remedy} {more}".strip())
         if told[alike] <= MOST_ALIKE:
             kept.append(problem)
