@@ -841,3 +841,14 @@ def test_many_pieces_of_code_in_one_place_take_no_longer_than_scripts_may(
     bench = Bench(f'<form id="a"><block><log>{slow * 2000}</log></block></form>')
     (end,) = bench.phases("unload")
     assert "scripts take too long" in end["outcome"]
+
+
+@pytest.mark.parametrize("head", ["", "<script>var own = 1</script>"])
+def test_a_subdialog_may_give_what_is_not_a_number(head: str) -> None:
+    bench = Bench(
+        f"""{head}<form id="a"><subdialog name="s" src="#b"/>
+          <block><log><value expr="s.p"/> <value expr="s.q.r"/></log></block></form>
+        <form id="b"><var name="p" expr="0 / 0"/><var name="q"/>
+          <block><var name="q" expr="{{r: 1}}"/><return namelist="p q"/></block></form>"""
+    )
+    assert bench.logs() == ["NaN 1"]

@@ -9,6 +9,7 @@ that do not look at the time limit are replaced by ones that bound their work.
 from __future__ import annotations
 
 import json
+import math
 import re
 from time import perf_counter
 from typing import Any
@@ -34,7 +35,9 @@ TIME_LIMIT = 0.5
 
 HELPERS = r"""
 (function () {
-const stringify = JSON.stringify, isArray = Array.isArray, text = String;
+const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
+const number = Number, own = Object.hasOwn;
+const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
   named: function (name) { const made = {}; made[name] = made; return made; },
@@ -49,6 +52,7 @@ return {
   defined: function (o, k) { return o[k] !== undefined; },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? stringify(v) : text(v); },
+  parse: function (v) { return parse(v, unmarked); },
   json: function (v) { return stringify(v); },
   items: function (v) { return isArray(v) ? v.length : -1; },
   item: function (v, i) { const x = v[i];
@@ -184,10 +188,11 @@ class Engine:
         """
         if isinstance(value, dict | list | tuple):
             try:
-                data = json.dumps(value)
+                return self._call(self._context.parse_json, json.dumps(value, allow_nan=False))
+            except ValueError:  # JSON has no such numbers
+                return self._call(self._help["parse"], json.dumps(_marked(value)))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
-            return self._call(self._context.parse_json, data)
         # The binding cuts whole numbers to 32 bits.
         return whole(value) if isinstance(value, int) and abs(value) >= 2**31 else value
 
@@ -313,6 +318,17 @@ class Engine:
     def _has(self, name: str) -> str:
         """Code that tells whether any scope has a variable."""
         return "||".join(f"{json.dumps(name)} in {_short(scope)}" for scope in self._scopes)
+
+
+def _marked(value: Json) -> Json:
+    """Plain data in which numbers that JSON lacks are objects with a strange name."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"\0": "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"}
+    if isinstance(value, list | tuple):
+        return [_marked(one) for one in value]
+    if isinstance(value, dict):
+        return {key: _marked(one) for key, one in value.items()}
+    return value
 
 
 def _short(scope: str) -> str:
