@@ -365,3 +365,50 @@ def test_a_voicexml_document_may_be_of_either_kind() -> None:
     pizza = ROOT / "documents" / "ea" / "pizza.vxml"
     for option in ("--fa", "--ea"):
         assert prima("run", option, pizza, "--say", "yes").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("prima run --policy f", ["fifo", "fair", "fixed"]),
+        ("prima diff --policy pri", ["prima"]),
+        ("prima export a.jsonl --to te", ["textgrid"]),
+        ("prima explain undec", ["undeclared-variable"]),
+    ],
+)
+def test_the_shell_completes_policies_formats_and_codes(line: str, expected: list[str]) -> None:
+    told = {
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(line.split()) - 1),
+        "_PRIMA_COMPLETE": "bash_complete",
+    }
+    script = "from prima.__main__ import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.argv[0] = 'prima'; {script}"],
+        env={**os.environ, **told},
+        capture_output=True,
+        encoding="utf-8",
+        timeout=60,
+    )
+    assert [one.partition(",")[2] for one in done.stdout.split()] == expected, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("until", "doing"),
+    [
+        ("1s", 'guide is in the middle of "Come on, let\'s go."'),
+        ("6s", 'follow is asking "What\'s the matter with you?"'),
+    ],
+)
+def test_a_run_that_is_stopped_says_what_was_going_on(
+    tmp_path: Path, until: str, doing: str
+) -> None:
+    source = (DEMO.parent / "touched-on-the-way.xml").read_text(encoding="utf-8")
+    path = tmp_path / "stopped.xml"
+    source = source.replace("../", f"{DEMO.parent.parent}/")
+    path.write_text(
+        source.replace("<scenario ", f'<scenario until="{until}" ', 1), encoding="utf-8"
+    )
+    done = prima("run", path, "-o", tmp_path / "s.jsonl")
+    assert f"The run was stopped at {until[:-1]} s, the scenario's until: " in done.stderr
+    assert doing in done.stderr and done.returncode == 0

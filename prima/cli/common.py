@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from prima.api import Transcript
 
 POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
+POLICY_NAMES = ("prima", "fifo", "fair", "fixed", "none")
 WATCHDOG_SECONDS = 5.0
 """How long one evaluation of a document's script may hold the process up."""
 INSTANT_SECONDS = 20.0
@@ -33,6 +34,11 @@ class Choice(click.Choice[str]):
             hint = did_you_mean(str(value), words) or f"Write {one_of(words)}."
             self.fail(f'There is no "{value}" here. {hint}', param, ctx)
         return str(value)
+
+
+def suggesting(*words: str) -> Callable[[click.Context, click.Parameter, str], list[str]]:
+    """What the shell completes an option to whose values are checked later."""
+    return lambda _context, _parameter, begun: [one for one in words if one.startswith(begun)]
 
 
 PROGRESS_SECONDS = 0.5

@@ -10,10 +10,12 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     POLICIES,
+    POLICY_NAMES,
     Choice,
     check_output,
     coloured,
     start_watchdog,
+    suggesting,
     tell_cut,
 )
 from prima.errors import UsageError
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     "--policy",
     "policies",
     multiple=True,
+    shell_complete=suggesting(*POLICY_NAMES),
     help=f"Run a scenario under this policy; twice, once for each run: {POLICIES}.",
 )
 @click.option(

@@ -4,18 +4,32 @@ from __future__ import annotations
 
 import os
 from textwrap import shorten
+from typing import TYPE_CHECKING
 
 import click
 
 from prima.cli.common import format_option, print_json, put, tell_cut
 from prima.errors import UsageError
 
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem as Completion
+
 LINE = 100
 """Letters of a line of the list of codes."""
 
 
+def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[Completion]:
+    """Codes that begin so, or else files."""
+    from click.shell_completion import CompletionItem
+
+    from prima.codes import CODES
+
+    found = [CompletionItem(code) for code in CODES if begun and code.startswith(begun)]
+    return found or [CompletionItem(begun, type="file")]
+
+
 @click.command()
-@click.argument("what", required=False)
+@click.argument("what", required=False, shell_complete=_codes)
 @click.argument("row", type=int, required=False)
 @format_option
 def explain(what: str | None, row: int | None, form: str) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, tell
+from prima.cli.common import check_output, suggesting, tell
 from prima.errors import UsageError, counted
 
 
@@ -18,6 +18,7 @@ from prima.errors import UsageError, counted
 @click.option(
     "--to",
     metavar="FORMAT",
+    shell_complete=suggesting("eaf", "textgrid", "vtt", "mcap", "csv"),
     help="eaf (ELAN), textgrid (Praat), vtt (captions), mcap (Foxglove) or csv;"
     " by default what OUTPUT's suffix tells.",
 )

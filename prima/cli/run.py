@@ -11,6 +11,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     POLICIES,
+    POLICY_NAMES,
     check_output,
     format_option,
     limit_option,
@@ -18,6 +19,7 @@ from prima.cli.common import (
     raise_limits,
     run_into,
     start_watchdog,
+    suggesting,
     tell,
     why_option,
 )
@@ -46,6 +48,7 @@ ENDS_OF_FOLDERS = ("/", os.sep)
     "--policy",
     "policies",
     multiple=True,
+    shell_complete=suggesting(*POLICY_NAMES),
     help=f"The mediator's policy: {POLICIES}. Several: a run under each.",
 )
 @click.option(

@@ -11,6 +11,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     POLICIES,
+    POLICY_NAMES,
     clean,
     coloured,
     format_option,
@@ -18,6 +19,7 @@ from prima.cli.common import (
     put,
     raise_limits,
     start_watchdog,
+    suggesting,
     tell,
     why_option,
 )
@@ -50,7 +52,11 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 @click.option(
     "--scripted", is_flag=True, help="Let the scenario's user do what it says as well as you."
 )
-@click.option("--policy", help=f"The mediator's policy: {POLICIES}.")
+@click.option(
+    "--policy",
+    shell_complete=suggesting(*POLICY_NAMES),
+    help=f"The mediator's policy: {POLICIES}.",
+)
 @why_option
 @click.option(
     "--allow-host",

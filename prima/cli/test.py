@@ -10,6 +10,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     POLICIES,
+    POLICY_NAMES,
     Choice,
     check_output,
     coloured,
@@ -20,6 +21,7 @@ from prima.cli.common import (
     raise_limits,
     same_file,
     start_watchdog,
+    suggesting,
     tell,
 )
 from prima.errors import UsageError
@@ -35,7 +37,11 @@ MOST_JOBS = 64
 @click.command()
 @click.argument("paths", nargs=-1, type=click.Path())
 @click.option("-k", "word", metavar="WORD", default="", help="Only scenarios with it in the path.")
-@click.option("--policy", help=f"Run under this policy: {POLICIES}.")
+@click.option(
+    "--policy",
+    shell_complete=suggesting(*POLICY_NAMES),
+    help=f"Run under this policy: {POLICIES}.",
+)
 @click.option(
     "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Run so many at once."
 )
