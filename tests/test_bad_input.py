@@ -960,7 +960,7 @@ USAGES: list[Any] = [
     ([], 2, "Usage:"),
     (["rn"], 2, 'Did you mean "run"?'),
     (["vaildate", "x"], 2, 'Did you mean "validate"?'),
-    (["zzz"], 2, 'There is no command "zzz"'),
+    (["zzz"], 2, 'There is no command "zzz". prima --help lists them.'),
     (["--verson"], 2, "--version"),
     (["run"], 2, "Name a scenario"),
     (["validate"], 2, "Missing argument"),

@@ -67,7 +67,7 @@ class Commands(click.Group):
         """Find a command, or say which one was probably meant."""
         name = args[0] if args else ""
         if name and not name.startswith("-") and self.get_command(ctx, name) is None:
-            hint = did_you_mean(name, self.list_commands(ctx))
+            hint = did_you_mean(name, self.list_commands(ctx)) or "prima --help lists them."
             raise click.UsageError(f'There is no command "{name}". {hint}'.rstrip(), ctx)
         return super().resolve_command(ctx, args)
 
