@@ -652,6 +652,14 @@ def test_fair_takes_turns() -> None:
     assert order == ["fa#1", "ea#1", "fa#2", "ea#2"]
 
 
+def test_fair_gives_the_other_its_turn_in_the_same_instant() -> None:
+    stage = Stage("fair")
+    facing = command("face-human-and-speak", "You.")
+    stage.request("fa", steps=[Step(command("turn", angle=3)), Step(facing)])
+    stage.request("ea", say())
+    assert stage.select() == ["fa#1", "ea#1"], "fa has had its turn: it holds nothing back from ea"
+
+
 @pytest.mark.parametrize(("policy", "first"), [("fixed", "fa#1"), ("fixed:ea", "ea#1")])
 def test_fixed_lets_one_application_always_go_first(policy: str, first: str) -> None:
     stage = Stage(policy)

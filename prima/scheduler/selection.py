@@ -84,6 +84,8 @@ class Policy:
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
     rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
     """The name of the rule behind each part of a rank."""
+    turning: bool = False
+    """Whether a start changes how other ABs rank."""
     extensions: frozenset[str] = frozenset()
     """Which of :data:`EXTENSIONS` are on."""
 
@@ -147,6 +149,7 @@ class Fair(Fifo):
     """Like ``fifo``, but the application goes first that has not had its turn."""
 
     name: str = "fair"
+    turning: bool = True
     rules: tuple[str, ...] = ("fair", "fifo", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:

@@ -335,7 +335,7 @@ class Selector:
         self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
             changed = self._count_starving(ab) or changed
-        return changed
+        return changed or policy.turning
 
     def _run(self, ab: Behavior, now: int) -> bool:
         """Let an AB run; true if its stream has resumed, so that its other ABs rank otherwise."""
