@@ -252,7 +252,7 @@ class Session:
         app.sensors.update(self._sensors)
         if not isinstance(app, Interpreter):
             app.connection = value.connection
-        self.mediator.load(name, app.kind)
+        self.mediator.load(name, app.kind, app.document.lang)
         app.start(self.chronicle.now)
         self._act(app)
         self._settle()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
@@ -10,7 +9,7 @@ from importlib.util import find_spec
 from typing import IO
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.export.timeline import Timeline, timeline
+from prima.export.timeline import TAG, Timeline, timeline
 from prima.messages import Record
 
 FORMATS = {
@@ -21,9 +20,6 @@ FORMATS = {
     "csv": "spreadsheets and statistics",
 }
 """The formats by their names, which are also the files' suffixes, and for what they are."""
-
-TAG = re.compile(r"[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*")
-"""A language tag (BCP 47), as far as its form goes."""
 
 
 @dataclass(frozen=True, slots=True)

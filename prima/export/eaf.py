@@ -37,8 +37,10 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The document, in pieces.
 
     ``languages`` has the language tag of each application that has one, and of
-    all others, and the user, under the empty name.
+    all others, and the user, under the empty name; what the transcript tells comes after them.
     """
+    told = {} if "" in languages else timeline.languages
+    languages = {**told, **languages}
     parts = timeline.parts()
     names = {part.name for part in parts}
     children = [

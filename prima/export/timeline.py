@@ -19,6 +19,8 @@ from prima.sim import voice
 from prima.transcript.table import describe
 from prima.values import LONGEST_MS
 
+TAG = re.compile(r"[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*")
+"""A language tag (BCP 47), as far as its form goes."""
 MOST_MARKS = 1_000_000
 """Intervals and points of one export."""
 MOST_LETTERS = 200_000_000
@@ -140,6 +142,8 @@ class Timeline:
     over: bool = False
     """Whether the transcript tells how the run ended."""
     _parts: list[Part] | None = None
+    languages: dict[str, str] = field(default_factory=dict)
+    """The language of each application of which the transcript tells it."""
 
     @property
     def marks(self) -> int:
@@ -254,6 +258,7 @@ class Builder:
         self._now = 0
         self._head: dict[str, Json] = {}
         self._over = False
+        self._languages: dict[str, str] = {}
         self._marks = self._letters = 0
         self._asked: dict[str, Record] = {}
         self._runs: dict[str, _Run] = {}
@@ -314,7 +319,9 @@ class Builder:
         for tier in tiers:
             tier.name = unused(tier.name, names)
             tier.marks.sort(key=lambda mark: mark.start)
-        return Timeline(tiers, self._now, self._head, self._name, self._over)
+        return Timeline(
+            tiers, self._now, self._head, self._name, self._over, languages=self._languages
+        )
 
     # Tiers ----------------------------------------------------------------------------------
 
@@ -578,6 +585,9 @@ class Builder:
         if record["actor"] == "mediator":
             outcome = f": {record['outcome']}" if record.get("outcome") else ""
             verb = "starts" if record["phase"] == "load" else "ends"
+            lang = (record.get("data") or {}).get("lang")
+            if isinstance(lang, str) and TAG.fullmatch(lang):
+                self._languages[record["app"]] = lang
             self._point(record, f"{record['app']} {verb}{outcome}")
 
     def _told(self, record: Record) -> None:

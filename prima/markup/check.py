@@ -169,7 +169,7 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
     unknown: list[str] = []
     for name, text in node.attributes.items():
         if root and name in EVERYWHERE:
-            if name == "xml:lang" and text:
+            if name == "xml:lang" and text.strip(XML_SPACE):
                 problems += _language_problem(node, text)
             continue
         entry = known.get(name)

@@ -40,7 +40,8 @@ def _element(vocabulary: Vocabulary, element: Element) -> str:
     parts = [_attribute(item) for item in element.attributes]
     if element.key == vocabulary.root:
         if all(item.name != "xml:lang" for item in element.attributes):
-            parts.append("attribute xml:lang { text }?")
+            tag = "[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"
+            parts.append(f'attribute xml:lang {{ "" | xsd:token {{ pattern = "{tag}" }} }}?')
         parts.append("attribute xsi:* { text }*")
     if element.key in vocabulary.free:
         parts.append("(text | element * { anything })*")

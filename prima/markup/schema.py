@@ -8,11 +8,16 @@ from html import escape
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.values import KINDS
 
-XML_SCHEMA = """<?xml version="1.0" encoding="UTF-8"?>
+XML_SCHEMA = r"""<?xml version="1.0" encoding="UTF-8"?>
 <xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"
            targetNamespace="http://www.w3.org/XML/1998/namespace">
-  <xs:attribute name="lang" type="xs:string">
+  <xs:attribute name="lang">
     <xs:annotation><xs:documentation>The language of the document, as in en or ja.</xs:documentation></xs:annotation>
+    <xs:simpleType>
+      <xs:restriction base="xs:string">
+        <xs:pattern value="\s*|[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"/>
+      </xs:restriction>
+    </xs:simpleType>
   </xs:attribute>
   <xs:attribute name="base" type="xs:string">
     <xs:annotation><xs:documentation>What relative addresses are relative to.</xs:documentation></xs:annotation>

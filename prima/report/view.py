@@ -79,7 +79,7 @@ def _view(transcript: Transcript, rows: list[Row], loaded: Loaded | None, walk: 
         _facts(records, head),
         _measures(records),
         rows,
-        _spoken(rows, asked, loaded),
+        _spoken(rows, asked, _languages(records)),
         whys,
         names,
         make_lanes(records, rows),
@@ -156,10 +156,9 @@ def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
 
 
 def _spoken(
-    rows: Iterable[Row], asked: dict[str, Record], loaded: Loaded | None
+    rows: Iterable[Row], asked: dict[str, Record], own: dict[str, str]
 ) -> dict[int, tuple[str, str]]:
-    """The words of each row that says something, with their language."""
-    own = {doc.id: doc.lang or "en" for doc in loaded.cast.documents} if loaded else {}
+    """The words of each row that says something, with their language; ``own`` are applications'."""
     alike = set(own.values())
     common = next(iter(alike)) if len(alike) == 1 else ""
     said: dict[int, tuple[str, str]] = {}
@@ -176,6 +175,13 @@ def _spoken(
         number: (shown(text), lang or language(text, japanese))
         for number, (text, lang) in said.items()
     }
+
+
+def _languages(records: Iterable[Record]) -> dict[str, str]:
+    """The languages of applications, as far as the transcript tells."""
+    loads = [r for r in records if r["phase"] == "load" and r["actor"] == "mediator"]
+    told = {record["app"]: (record.get("data") or {}).get("lang") for record in loads}
+    return {app: lang for app, lang in told.items() if isinstance(lang, str)}
 
 
 def language(text: str, japanese: bool = False) -> str:

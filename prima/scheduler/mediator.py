@@ -18,14 +18,17 @@ from prima.scheduler.intake import Refused, check_steps, link, parent_of, substi
 class Mediator(Failures):
     """Mediates the Commands of any number of applications by the rules of one policy."""
 
-    def load(self, name: str, kind: str) -> None:
-        """An application starts; its place in the declared order is that of its first call."""
+    def load(self, name: str, kind: str, lang: str = "") -> None:
+        """An application starts, which speaks a language if that is known.
+
+        Its place in the declared order is that of its first call.
+        """
         app = Application(name, kind, len(self.memory.apps))
         before = self.memory.apps.get(name)
         if before is not None:  # it was there before: its names are not given out twice
             app.order, app.streams, app.behaviors = before.order, before.streams, before.behaviors
         self.memory.apps[name] = app
-        self.chronicle.add("load", "mediator", app=name, data={"kind": kind})
+        self.chronicle.add("load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})})
 
     def unload(self, name: str, reason: str) -> None:
         """E2: an application has ended; what runs finishes, the rest is given back."""
