@@ -118,7 +118,6 @@ INSIDE = {
 ALONE = {
     "lxml": {"markup.reader"},
     "pymunk": {"sim.world"},
-    "networkx": {"sim.routes"},
     "lark": {"grammar.abnf"},
     "_quickjs": {"interpreter.expressions", "grammar.sandbox"},
     "pydantic": {"transcript.record", "transcript.lines"},
@@ -219,7 +218,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
     code = (
         "import sys\nfrom prima.cli import cli\n"
         "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'pymunk', 'networkx', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
+        "heavy = {'pymunk', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
         "assert not {one for one in sys.modules if one.startswith('prima.cli.')} - {'prima.cli.common'}"
     )
@@ -227,7 +226,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
 
 
 BESIDE_VALIDATE = (
-    *("pymunk", "networkx", "pydantic", "lxml", "_quickjs"),
+    *("pymunk", "pydantic", "lxml", "_quickjs"),
     *("json", "pathlib", "dataclasses", "urllib", "asyncio"),
     *("prima.api", "prima.messages", "prima.session", "prima.sim", "prima.interpreter.expressions"),
 )

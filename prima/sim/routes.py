@@ -3,47 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from heapq import heappop, heappush
 from math import inf
-from typing import Any
 
 from prima.sim.scenario import Map, Point
 from prima.sim.world import World, distance
 
 
 class Routes:
-    """Shortest ways between places; networkx is imported when the first one is asked for."""
+    """Shortest ways between places, each looked for once (Dijkstra).
+
+    No graph library: importing one takes longer than the demo's whole run.
+    """
 
     def __init__(self, plan: Map) -> None:
         self._map = plan
-        self._graph: Any = None
-        self._lengths: dict[str, dict[str, float]] = {}
-        """How far it is from places to each place that has been asked for (m)."""
-
-    def _built(self) -> Any:
-        if self._graph is None:
-            import networkx
-
-            self._graph = networkx.Graph()
-            self._graph.add_nodes_from(self._map.places)
-            for a, b in self._map.ways:
-                length = distance(self._map.places[a], self._map.places[b])
-                self._graph.add_edge(a, b, weight=length)
-        return self._graph
+        self._ways: dict[str, dict[str, float]] = {name: {} for name in plan.places}
+        for a, b in plan.ways:
+            self._ways[a][b] = self._ways[b][a] = distance(plan.places[a], plan.places[b])
+        self._leads: dict[str, dict[str, tuple[float, str]]] = {}
+        """By places that have been asked for: how far it is from others (m), and by which."""
 
     def route(self, world: World, to: str) -> list[Point] | None:
         """Points to go through from where the robot is to a place, or None if there is no way."""
-        import networkx
-
-        graph, here, places = self._built(), world.position, self._map.places
+        here, places = world.position, self._map.places
         if to not in places:
             return None
-        if to not in self._lengths:
-            self._lengths[to] = networkx.single_source_dijkstra_path_length(graph, to)
+        if to not in self._leads:
+            self._leads[to] = self._lead_to(to)
         first = self._first(world.passable, here, to) or self._first(world.clear, here, to)
         if first is None:
             return None
-        path = networkx.dijkstra_path(graph, first, to)
+        path = [first]
+        while path[-1] != to:
+            path.append(self._leads[to][path[-1]][1])
         return [places[name] for name in path]
+
+    def _lead_to(self, to: str) -> dict[str, tuple[float, str]]:
+        """How far it is to a place from all those that have a way to it, and which comes next."""
+        found: dict[str, tuple[float, str]] = {}
+        waiting = [(0.0, to, to)]
+        while waiting:
+            length, name, towards = heappop(waiting)
+            if name not in found:
+                found[name] = length, towards
+                for other, way in self._ways[name].items():
+                    heappush(waiting, (length + way, other, name))
+        return found
 
     def _first(self, free: Callable[[Point, Point], bool], here: Point, to: str) -> str | None:
         """The place from which the way to another is shortest, of those that are free to go to.
@@ -51,7 +57,7 @@ class Routes:
         Whether one is free takes longest to tell: it is asked only of those that are nearer.
         """
         found, shortest = None, inf
-        for name, length in sorted(self._lengths[to].items()):
+        for name, (length, _) in sorted(self._leads[to].items()):
             place = self._map.places[name]
             whole = distance(here, place) + length
             if whole < shortest - 1e-9 and free(here, place):
