@@ -17,7 +17,7 @@ LAYERS = [
     {"values"},
     {"commands", "prelude"},
     {"messages"},
-    {"markup", "transcript", "codes"},
+    {"markup", "transcript", "codes", "leads"},
     {"grammar"},
     {"interpreter", "scheduler"},
     {"voicexml"},

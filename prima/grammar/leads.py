@@ -1,9 +1,8 @@
-"""What expansions begin with: so that of many alternatives only those in question are tried."""
+"""What the expansions of an SRGS grammar begin with."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from prima.grammar.model import (
     Choice,
@@ -18,27 +17,7 @@ from prima.grammar.model import (
     Words,
 )
 from prima.grammar.text import join
-
-MOST_LEADS = 16
-"""How many beginnings of one expansion are told apart."""
-MOST_LETTERS = 200
-"""How long a beginning is that is still looked beyond."""
-MAX_DEPTH = 40
-"""How deep in expansions and rules beginnings are looked for."""
-
-
-class Lead(NamedTuple):
-    """One way in which an expansion begins."""
-
-    text: str
-    """Folded; every match that begins in this way begins with this text."""
-    whole: bool
-    """Whether the text is the whole match."""
-
-
-UNKNOWN = (Lead("", False),)
-NOTHING = (Lead("", True),)
-Leads = tuple[Lead, ...]
+from prima.leads import NOTHING, UNKNOWN, Finder, Lead, Leads
 
 
 def index_choices(documents: Iterable[Document]) -> None:
@@ -50,7 +29,9 @@ def index_choices(documents: Iterable[Document]) -> None:
             while todo:
                 part = todo.pop()
                 if isinstance(part, Choice):
-                    part.index = finder.index(part.parts)
+                    by_lead, others = finder.table(part.parts)
+                    lengths = sorted({len(text) for text in by_lead})
+                    part.index = LeadIndex(by_lead, lengths, others, sorted(by_lead))
                     todo += part.parts
                 elif isinstance(part, Sequence):
                     todo += part.parts
@@ -58,27 +39,12 @@ def index_choices(documents: Iterable[Document]) -> None:
                     todo.append(part.part)
 
 
-class _Finder:
-    """Finds the beginnings of expansions, each once."""
-
+class _Finder(Finder[Part]):
     def __init__(self, keys: bool) -> None:
+        super().__init__()
         self._keys = keys
-        self._known: dict[int, Leads] = {}
 
-    def index(self, parts: list[Part]) -> LeadIndex:
-        by_lead: dict[str, list[int]] = {}
-        others: list[int] = []
-        for number, part in enumerate(parts):
-            texts = {lead.text for lead in self.leads(part, 0)}
-            if "" in texts:
-                others.append(number)
-                continue
-            for text in texts:
-                by_lead.setdefault(text, []).append(number)
-        return LeadIndex(by_lead, sorted({len(text) for text in by_lead}), others, sorted(by_lead))
-
-    def leads(self, part: Part, depth: int) -> Leads:
-        """In which ways an expansion begins; none at all if nothing matches it."""
+    def simple(self, part: Part) -> Leads | None:
         match part:
             case Words(folded):
                 return (Lead(folded, True),)
@@ -86,58 +52,23 @@ class _Finder:
                 return NOTHING
             case Special("VOID"):
                 return ()
-        known = self._known.get(id(part))
-        if known is None:
-            self._known[id(part)] = UNKNOWN  # while it is looked for: it may refer to itself
-            known = self._known[id(part)] = self._leads(part, depth + 1)
-        return known
+        return None
 
-    def _leads(self, part: Part, depth: int) -> Leads:
-        if depth > MAX_DEPTH:
-            return UNKNOWN
+    def composed(self, part: Part, depth: int) -> Leads:
         match part:
             case Sequence(parts):
-                return self._sequence(parts, depth)
+                return self.in_turn(parts, depth)
             case Choice(parts):
-                return self._union(parts, depth)
+                return self.any_of(parts, depth)
             case Repeat(_, _, 0):
                 return NOTHING
             case Repeat(inner, low, high):
-                once = self.leads(inner, depth)
-                if high != 1:
-                    once = tuple(Lead(lead.text, False) for lead in once)
-                return once if low else (*NOTHING, *once)
+                return self.repeated(self.leads(inner, depth), low, high != 1)
             case Reference(rule=rule) if rule is not None:
                 return self.leads(rule.body, depth)
         return UNKNOWN
 
-    def _union(self, parts: list[Part], depth: int) -> Leads:
-        found: set[Lead] = set()
-        for part in parts:
-            found.update(self.leads(part, depth))
-            if len(found) > MOST_LEADS:
-                return UNKNOWN
-        return tuple(sorted(found))
-
-    def _sequence(self, parts: list[Part], depth: int) -> Leads:
-        found: set[Lead] = set(NOTHING)
-        for part in parts:
-            if isinstance(part, Tag):
-                continue
-            begun = [lead for lead in found if lead.whole]
-            if not begun:
-                break
-            longer = {lead for lead in found if not lead.whole}
-            for then in self.leads(part, depth):
-                for one in begun:
-                    text = self._join(one.text, then.text)
-                    longer.add(Lead(text, then.whole and len(text) < MOST_LETTERS))
-            if len(longer) > MOST_LEADS:
-                return tuple(sorted({Lead(lead.text, False) for lead in found}))
-            found = longer
-        return tuple(sorted(found))
-
-    def _join(self, one: str, two: str) -> str:
+    def join(self, one: str, two: str) -> str:
         if self._keys or not one or not two:
             return one + two
         return join((one, two))
