@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
 from prima.messages import Command, Data
-from prima.scheduler import selection, selector
+from prima.scheduler import selection, selector, waiting
 from prima.scheduler.behavior import Application, Behavior, Stream
 from prima.scheduler.effects import Body, Effects
 from prima.scheduler.mediator import Mediator
@@ -168,13 +168,14 @@ def ends_untold(patch: pytest.MonkeyPatch) -> None:
 
 def chance(patch: pytest.MonkeyPatch) -> None:
     """S5 is gone: what was before decides."""
-    calls = [0]
+    seen: list[Behavior] = []
 
     def rank(ab: Behavior) -> tuple[int, ...]:
-        calls[0] += 1
-        return (ab.serial * (-1 if calls[0] > 2 else 1),)
+        if not any(one is ab for one in seen):
+            seen.append(ab)
+        return (ab.serial * (-1 if len(seen) > 2 else 1),)
 
-    patch.setattr(selection, "rank_declared", rank)
+    patch.setattr(waiting, "rank_declared", rank)
 
 
 # The extensions, broken ------------------------------------------------------------
