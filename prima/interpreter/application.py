@@ -102,6 +102,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self._timer_serial = count(1)
         self.armed: dict[int, Armed] = {}
         self.sensors: dict[str, Json] = {}
+        self.untold = False
+        """Whether the variable ``sensor`` has old values: it is told the new ones when code runs."""
         self.reports = 0
         """How often sensors have had new values."""
         self.reported: dict[str, int] = {}
@@ -162,7 +164,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         watches = self.handling.watches()
         if not watches:
             return []
-        self._guard(self.handling.tell_sensors)
+        self.untold = True
         raised: list[str] = []
         for watch in watches:
             self._guard(self._look, watch, raised)
@@ -507,7 +509,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         for watch in frame.form.watches:
             self.armed.pop(id(watch), None)
         if frame.form.watches and self.sensors:
-            self.handling.tell_sensors()
+            self.untold = True
             names = self.handling.check_watches(frame.form.watches)
             self.actions += [Raise(name) for name in names]
 

@@ -66,6 +66,8 @@ class Executor:
     def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
         """The scopes that content sees, outermost first."""
         frame, local = fiber.frame, fiber.local
+        if self.owner.untold:
+            self.owner.handling.tell_sensors()
         if local is None:  # nothing has been declared in it
             local = self.engine.nothing
         return (self.owner.application, frame.document, frame.dialog, local)

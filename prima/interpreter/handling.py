@@ -245,6 +245,7 @@ class Handling:
 
     def tell_sensors(self) -> None:
         """Give the application's variable ``sensor`` the values that are known."""
+        self.owner.untold = False
         tree: dict[str, Json] = {}
         for name, value in self.owner.sensors.items():
             *path, last = name.split(".")
