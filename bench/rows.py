@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from bench import batch, matching, mediation, peers, processes, simulation, workloads
@@ -169,7 +169,7 @@ def many() -> list[Row]:
     ]
     memory = [
         Row(
-            f"{what.partition(',')[0]}: memory",
+            f"{what.removesuffix(', ten events each')}: memory",
             "MB",
             Call(workloads.many_memory, (kind, *given)),
             most=None if kind == "prima" else 60,
@@ -177,7 +177,6 @@ def many() -> list[Row]:
         )
         for kind, what in kinds.items()
     ]
-    memory[1] = replace(memory[1], what="W4: 10,000 with scripts: memory")
     return [*rows, *memory]
 
 

@@ -24,7 +24,7 @@ MAX_STEPS = 100_000
 """How many steps matching one utterance may take."""
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=512)
 def fold(text: str) -> str:
     """Give text without what speech does not carry: case, width, punctuation, CJK spaces."""
     folded = unicodedata.normalize("NFKC", text).casefold()
