@@ -661,6 +661,8 @@ class Checker:
         ]
         if wide:
             return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
+        if "${" in bare:
+            return "Write the expression alone, without ${ and }."
         if re.search(r"=\s+=", bare):
             return "Write == without a space."
         for word, right in (("and", "&amp;&amp;"), ("or", "||"), ("not", "!")):

@@ -214,6 +214,13 @@ def _unknown_attribute(
     wanted = [item.name for item in missing]
     if name == "xml:lang":
         remedy = "It stands on the root element alone."
+    elif name == "lang" and node.index == 0:
+        remedy = "Write xml:lang."
+    elif name.endswith("expr") and f"{name[:-4]}-expr" in known:
+        remedy = f"Write {name[:-4]}-expr."
+        missing[:] = [item for item in missing if item.name != name[:-4]]
+    elif name == "next" and "goto" in element.children:
+        remedy = f'Put a goto inside: <goto next="{node.get(name)}"/>.'
     elif near := did_you_mean(name, wanted):
         remedy = near
         missing[:] = [item for item in missing if f'"{item.name}"' not in near]

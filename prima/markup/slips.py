@@ -63,11 +63,15 @@ def meant(kind: str, text: str) -> str:
     return ""
 
 
+LONG_SECONDS = 100
+"""A time without a unit that is no less most likely means milliseconds."""
+
+
 def _guess(kind: str, text: str) -> str:
     if kind == "duration" and (match := re.fullmatch(MEASURE, text)):
         number, unit = match[1].replace(",", "."), match[2]
         if unit in ("", "s", "ms"):
-            return f"{number}{unit or 's'}"
+            return f"{number}{unit or ('s' if float(number) < LONG_SECONDS else 'ms')}"
         return f"{float(number) * UNITS[unit] / 1000:g}s" if unit in UNITS else ""
     if kind in ("number", "integer") and (match := re.fullmatch(NUMBER, text)):
         return match[1].replace(",", ".")
