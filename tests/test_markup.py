@@ -230,7 +230,9 @@ def test_other_documents_are_checked_alike(tmp_path: Path) -> None:
     world = b'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n<place id="a" x="0" y="0"/>\n<way from="a" to="b"/></world>'
     with pytest.raises(DocumentError) as wrong:
         read_world("w.xml", world)
-    assert str(wrong.value) == 'w.xml:3:19: error: There is no place "b". There is a. [no-such-name]'
+    assert (
+        str(wrong.value) == 'w.xml:3:19: error: There is no place "b". There is a. [no-such-name]'
+    )
     robot = b'<robot xmlns="urn:prima:robot:1" version="1.0" id="r" speed="99"/>'
     with pytest.raises(DocumentError, match="out of range"):
         read_robot("r.xml", robot)

@@ -28,7 +28,9 @@ class Mediator(Failures):
         if before is not None:  # it was there before: its names are not given out twice
             app.order, app.streams, app.behaviors = before.order, before.streams, before.behaviors
         self.memory.apps[name] = app
-        self.chronicle.add("load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})})
+        self.chronicle.add(
+            "load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})}
+        )
 
     def unload(self, name: str, reason: str) -> None:
         """E2: an application has ended; what runs finishes, the rest is given back."""
