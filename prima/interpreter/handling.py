@@ -65,21 +65,15 @@ class Handling:
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
-        owner, item = self.owner, frame.item
-        document = owner.document
-        if document.counting:
-            self.count_event(frame, item, event.name)
+        item = frame.item
+        self.count_event(frame, item, event.name)
         candidates = self._taking(frame, item, event.name)
         if candidates:
-            fiber = Fiber(frame, False, self._event_scope(event) if document.curious else None)
+            fiber = Fiber(frame, local=self._event_scope(event))
             handler = self._select(frame, fiber, item, candidates)
             if handler is not None:
-                reactive = event.reactive if handler.reactive is None else handler.reactive
-                owner.cause = event.serial if reactive else None  # C5
-                if handler.waits:
-                    self._launch(fiber, handler)
-                else:
-                    self._run_at_once(fiber, handler)
+                self._allow_reaction(handler, event)
+                self._launch(fiber, handler)
                 return
         if event.name.startswith("error."):
             unhandled = Thrown(event, place)
@@ -178,6 +172,9 @@ class Handling:
         self.owner.cause = event.serial if reactive else None
 
     def _event_scope(self, event: Event) -> Scope:
+        """The scope of an event's handler, if any code of the document may look at the event."""
+        if not self.owner.document.curious:
+            return None
         data = event.data
         message = str(data.get("message", "")) if data else ""
         return self.owner.engine.event(event.name, message, dict(data) if data else None)

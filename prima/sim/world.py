@@ -100,11 +100,6 @@ class World:
         """Send the person somewhere in a straight line; None lets him stay."""
         self._goal, self._walking = to, speed
 
-    @property
-    def walking(self) -> bool:
-        """Whether the person is on his way."""
-        return self._goal is not None
-
     # Seeing --------------------------------------------------------------------
 
     def clear(self, a: Point, b: Point) -> bool:
