@@ -119,13 +119,14 @@ class Session:
             else:
                 self._take(value)
         mediator = self.mediator
-        if self._due or mediator.timed:
+        if self._due or mediator.deadlines or mediator.holds:
             self._time_out(now)
         if mediator.told:
             self._settle()
-        if mediator.changed:
+        orders: list[Order] = []
+        if mediator.changed:  # else it has given no orders either
             mediator.select()
-        orders = mediator.drain_orders()
+            orders = mediator.drain_orders()
         if self._sends:
             orders += self._sends
             self._sends = []
@@ -168,8 +169,10 @@ class Session:
 
     def _in_order(self) -> list[App]:
         """V3: the applications in declared order, the one whose stream is active first."""
-        living = self._living()
-        active = self.mediator.memory.active if len(living) > 1 else None
+        living = self._living() if self._alive is None else self._alive
+        if len(living) == 1:
+            return living
+        active = self.mediator.memory.active
         if active is None:
             return living
         first = self.apps[active.name]
@@ -259,10 +262,12 @@ class Session:
 
     def _occurred(self, value: Occurred) -> None:
         name, app, data = value.name, value.app, value.data
-        self.chronicle.event(name, value.actor, app, data, self._serial + 1)
+        self._serial = serial = self._serial + 1
+        self.chronicle.event(name, value.actor, app, data, serial)
         if name in SEEING:
             self.mediator.sees_user(name == "human.found")
-        self._raise(name, data, self._in_order() if app is None else self._alone(app))
+        apps = self._in_order() if app is None else self._alone(app)
+        self._tell_all(apps, Event(name, serial, data, True))
 
     def _alone(self, name: str) -> list[App]:
         """The application of a name, if it is there."""
@@ -272,7 +277,9 @@ class Session:
     def _raise(self, name: str, data: Data, apps: list[App], reactive: bool = True) -> None:
         """V1: an event goes to every application; each one's handlers decide."""
         self._serial += 1
-        event = Event(name, self._serial, data, reactive)
+        self._tell_all(apps, Event(name, self._serial, data, reactive))
+
+    def _tell_all(self, apps: list[App], event: Event) -> None:
         now = self.chronicle.now
         for app in apps:
             app.event(now, event)

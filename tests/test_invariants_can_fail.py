@@ -317,7 +317,7 @@ def held_too_long(patch: pytest.MonkeyPatch) -> None:
 
     def longer(mediator: Mediator, stream: Stream) -> None:
         keep_open(mediator, stream)
-        mediator._holds[stream.name] += 1000
+        mediator.holds[stream.name] += 1000
 
     patch.setattr(Mediator, "_keep_open", longer)
 
@@ -362,9 +362,9 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
     def apart(
         mediator: Mediator, app: Application, reaction: int | None, unit: Behavior | None
     ) -> tuple[Stream, Behavior | None]:
-        holds, mediator._holds = mediator._holds, {}
+        holds, mediator.holds = mediator.holds, {}
         found = place(mediator, app, reaction, unit)
-        mediator._holds = holds
+        mediator.holds = holds
         return found
 
     patch.setattr(Mediator, "_place", apart)

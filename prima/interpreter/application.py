@@ -40,6 +40,7 @@ from prima.interpreter.frame import (
 from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
+from prima.interpreter.reactions import DONE, Hop
 from prima.messages import (
     Action,
     CloseUnit,
@@ -82,8 +83,10 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.kind = document.kind
         self.arguments = arguments or {}
         super().__init__(evaluator_of(document, engine))
+        self.quick = isinstance(self.engine, PlainEngine)
+        """Whether what an event does may be done by a function, where nobody can look into it."""
         self.actions: list[Action] = []
-        self.now = 0
+        self.now = -1
         self.over = False
         self.application = self.engine.named("application")
         self.execute = Executor(self)
@@ -110,7 +113,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         """Which of the reports was the latest, by the first part of a sensor's name."""
         self.cause: int | None = None
         self.serial = 0
-        self._instant = -1
         self._timed = "session" in document.node.source.text
         """Whether the document looks at the clock at all."""
 
@@ -122,13 +124,28 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def event(self, now: int, event: Event) -> None:
         """Something happened that every application is told of, or this one alone."""
-        if now != self._instant:
+        if now != self.now:
             self._tick(now)
         self.serial = event.serial
         frame = self.frame
         if frame is not None:
+            item = frame.item
+            reactions = frame.form.reactions
+            react = reactions.get(event.name if item is None else (item.name, event.name))
             try:
-                self.handling.dispatch(event, frame)
+                if react is None or not self.quick or frame.units:
+                    self.handling.dispatch(event, frame)
+                else:
+                    transfer = react(self, frame, event)
+                    if transfer is None:
+                        if frame.form.items:
+                            self.go_on(frame)
+                    elif type(transfer) is Hop and not (
+                        frame.asked or frame.fibers or frame.caller or self._timers
+                    ):  # there is nothing to leave and nothing to begin: the frame may stay
+                        frame.form, frame.state = transfer.target, next(self.states)
+                    elif transfer is not DONE:
+                        self.transfer(frame, transfer)
             except (Thrown, ScriptError, GoOut) as error:
                 self._rescue(error)
         self.cause = None
@@ -268,8 +285,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.deadline = min((timer[0] for timer in timers), default=None)
 
     def _tick(self, now: int) -> None:
-        if now != self._instant:
-            self._instant = self.now = now
+        if now != self.now:
+            self.now = now
             self.renew(now)
             if self._timed and not self.over:
                 self._guard(self.engine.clock, self.application, now / 1000)
@@ -376,7 +393,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         pending: tuple[Frame, Transfer] | None = (frame, transfer)
         while pending is not None:
             frame, transfer = pending
-            if type(transfer) is GoForm:
+            if isinstance(transfer, GoForm):
                 self.leave(frame)
                 form = self.document.forms[transfer.form]
                 self.count_step(form.node)

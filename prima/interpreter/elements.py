@@ -318,8 +318,12 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
-    taking: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False, compare=False)
+    taking: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
     """The handlers in scope by an item's and an event's name, as they have been looked for."""
+    seen: dict[Any, int] = field(default_factory=dict, repr=False, compare=False)
+    """How often each event has happened in it until now."""
+    reactions: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
+    """What events do in it that have happened often, as functions; None if that cannot be."""
 
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""
@@ -357,6 +361,8 @@ class Document:
     """Whether all its code can be evaluated without an engine; None until somebody has looked."""
     curious: bool = False
     """Whether any code may look at the event that is being handled."""
+    dialog_names: frozenset[str] | None = None
+    """The names that scopes of forms may have; None until somebody has looked."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
     def contents(self) -> list[Content]:

@@ -8,11 +8,12 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.elements import Expression, Handler, Item, Watch
+from prima.interpreter.elements import Expression, Form, Handler, Item, Watch
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
 from prima.interpreter.names import GLOBALS, free_names, tokens_of
 from prima.interpreter.plain import CONSTANTS
+from prima.interpreter.reactions import reaction_of
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.messages import Event, Json, Notice
 
@@ -21,10 +22,21 @@ if TYPE_CHECKING:
 
 MAX_FIBERS = 64
 """Handlers that may be under way at once in a state."""
+OFTEN = 4
+"""How often an event happens in a state until what it does is written as a function."""
 MOST_KEPT = 1_000
 """Names of events for which a form keeps its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a field asks again where nobody handles them (VoiceXML 5.2.5)."""
+
+
+Key = str | tuple[str, str]
+"""An event, by its name and that of the item, if any, that is being visited."""
+
+
+def key_of(item: Item | None, event: str) -> Key:
+    """By what a form keeps what an event does in it."""
+    return event if item is None else (item.name, event)
 
 
 class Handling:
@@ -50,7 +62,7 @@ class Handling:
                 return
             thrown.sought = True
             raise thrown
-        fiber.local = self._event_scope(event)
+        fiber.local = self.event_scope(event)
         fiber.commands = ()
         if handler.reactive is not None:  # else a throw keeps what it has (C5)
             self._allow_reaction(handler, event)
@@ -68,8 +80,10 @@ class Handling:
         item = frame.item
         self.count_event(frame, item, event.name)
         candidates = self._taking(frame, item, event.name)
+        if self.owner.quick and not frame.units:
+            self._count_reaction(frame.form, key_of(item, event.name), candidates)
         if candidates:
-            fiber = Fiber(frame, local=self._event_scope(event))
+            fiber = Fiber(frame, local=self.event_scope(event))
             handler = self._select(frame, fiber, item, candidates)
             if handler is not None:
                 self._allow_reaction(handler, event)
@@ -112,15 +126,20 @@ class Handling:
         try:
             transfer = owner.execute.run_at_once(handler.content, fiber)
         except (Thrown, ScriptError) as error:
-            self._enter_unit(fiber, handler)
-            self._bound_fibers(frame, handler)
-            thrown = self.owner.thrown(error)
-            self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
+            self.recover(frame, handler, error)
             return
         if transfer is not None:
             owner.transfer(frame, transfer)
         elif frame.form.items:
             owner.go_on(frame)
+
+    def recover(self, frame: Frame, handler: Handler, error: Thrown | ScriptError) -> None:
+        """Run the handler of what has failed in a handler that waits for nothing."""
+        fiber = Fiber(frame)
+        self._enter_unit(fiber, handler)
+        self._bound_fibers(frame, handler)
+        thrown = self.owner.thrown(error)
+        self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
         frame = fiber.frame
@@ -140,7 +159,7 @@ class Handling:
         candidates = self._candidates(frame, fiber, frame.item, name)
         if not candidates:
             return
-        fiber.local = self._event_scope(event)
+        fiber.local = self.event_scope(event)
         self.count_event(frame, frame.item, name)
         handler = self._select(frame, fiber, frame.item, candidates)
         if handler is not None:
@@ -163,7 +182,7 @@ class Handling:
         self.owner.close_units(frame)
         frame.item = unit
         event = self.owner.internal(notice.event, f"{source(unit.node)}: {notice.message}")
-        fiber = Fiber(frame, main=True, local=self._event_scope(event))
+        fiber = Fiber(frame, main=True, local=self.event_scope(event))
         self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, event))
 
     def _allow_reaction(self, handler: Handler, event: Event) -> None:
@@ -171,7 +190,7 @@ class Handling:
         reactive = event.reactive if handler.reactive is None else handler.reactive
         self.owner.cause = event.serial if reactive else None
 
-    def _event_scope(self, event: Event) -> Scope:
+    def event_scope(self, event: Event) -> Scope:
         """The scope of an event's handler, if any code of the document may look at the event."""
         if not self.owner.document.curious:
             return None
@@ -201,13 +220,23 @@ class Handling:
         if frame.units:
             return taking(self._in_scope(frame, item), event)
         kept = frame.form.taking
-        key = (item.name if item is not None else "", event)
+        key = key_of(item, event)
         found = kept.get(key)
         if found is None:
             if len(kept) >= MOST_KEPT:
                 kept.clear()
             found = kept[key] = taking(self._in_scope(frame, item), event)
         return found
+
+    def _count_reaction(self, form: Form, key: Key, candidates: Taking) -> None:
+        """Write what an event does here as a function, once it has happened often."""
+        seen = form.seen.get(key, 0) + 1
+        if len(form.seen) >= MOST_KEPT:
+            form.seen.clear()
+            form.reactions.clear()
+        form.seen[key] = seen
+        if seen == OFTEN:
+            form.reactions[key] = reaction_of(self.owner.document, form, candidates)
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""

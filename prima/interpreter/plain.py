@@ -62,13 +62,18 @@ class Named(Scope):
 Scopes = tuple[Scope, Scope, Scope, Scope]
 """The scopes that an expression sees: application, document, dialog and local."""
 Function = Callable[[Scopes], Any]
+Where = Callable[[str], tuple[str, ...]]
+Operation = Callable[[Any, Any, Scopes], Any]
 
 
 @dataclass(slots=True)
 class Compiled:
-    """An expression's function, and the names that it uses with where each first stands."""
+    """An expression as Python, and the names that it uses with where each first stands."""
 
-    call: Function
+    source: str
+    """A Python expression of ``scopes``, and of document, dialog and local among them."""
+    kind: str
+    """``number``, ``boolean`` or ``text`` where its value can be nothing else."""
     names: Mapping[str, int]
     pieces: int
     """Of how many pieces of code it was made."""
@@ -78,6 +83,8 @@ MOST_TOKENS = 200
 """Pieces of code beyond which an expression is left to the engine: functions nest so deep."""
 DEEPEST = 100
 """Brackets and operators before an operand that may stand inside each other."""
+DEEP, DEEPEST_BRACKETS = 60, 180
+"""Brackets in Python inside each other: from the one on fewer are written, the other is too many."""
 LONGEST = 100_000
 """Characters that a text may have; nothing longer could leave the scopes."""
 MOST_HELD = 4_000_000
@@ -99,6 +106,8 @@ MOST_KEPT = 100_000
 """Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
 MOST_PIECES = 50_000
 """Pieces of code that a document may have to be evaluated here."""
+SELDOM = 30
+"""Evaluations after which an expression is compiled to what takes less time."""
 WORDS = {"true": True, "false": False, "null": None}
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 INHERITED = frozenset(
@@ -192,6 +201,11 @@ def _are_plain(codes: Iterable[str]) -> bool:
     return True
 
 
+def anywhere(_name: str) -> tuple[str, ...]:
+    """The scopes in which most variables stand, of whatever document."""
+    return ("document", "dialog", "local")
+
+
 class _Beyond(Exception):
     """The code is none of what is compiled here."""
 
@@ -209,6 +223,20 @@ LEVELS: dict[str, int] = {
     "+": 5, "-": 5, "*": 6, "/": 6, "%": 6,
 }  # fmt: skip
 """How strongly operators bind."""
+EQUALITIES = {
+    "===": ("identical", ""), "!==": ("identical", "not "), "==": ("equal", ""), "!=": ("equal", "not "),
+}  # fmt: skip
+"""What compares two values in Python, and what stands before it."""
+OPERATIONS = {
+    "<": ("less", "boolean"), ">": ("more", "boolean"), "<=": ("at_most", "boolean"),
+    ">=": ("at_least", "boolean"), "+": ("add", ""), "-": ("subtract", "number"),
+    "*": ("multiply", "number"), "/": ("divided", "number"), "%": ("remaining", "number"),
+}  # fmt: skip
+"""What calculates with two values in Python, and what kind of value it gives."""
+PYTHON = {"number": "float", "text": "str"}
+"""Of which type a value is in Python."""
+MISSING = object()
+"""Stands for the value of what nothing declares."""
 
 
 def compiled(code: str) -> Compiled | None:
@@ -238,21 +266,77 @@ class _Kept:
     """Of all that is kept."""
 
 
-def _compile(code: str) -> Compiled | None:
+def quickly(code: str, scopes: str, where: Where) -> Compiled | None:
+    """An expression as Python that takes longer to be compiled, and less long to be evaluated.
+
+    ``scopes`` is what the tuple of all scopes is in Python where the expression will stand, and
+    ``where`` gives the scopes that may have a variable of a name, outermost first.
+    """
+    return _compile(code, scopes, where)
+
+
+def _compile(code: str, scopes: str = "scopes", where: Where | None = None) -> Compiled | None:
     try:
-        parser = _Parser(code)
-        call = parser.conditional()
+        parser = _Parser(code, scopes, where)
+        found = parser.conditional()
         parser.expect("")
     except _Beyond:
         return None
-    return Compiled(call, parser.names, len(parser.tokens))
+    return Compiled(found.source, found.kind, parser.names, len(parser.tokens))
+
+
+def function_of(source: str) -> Function:
+    """The function of the scopes that an expression's source is the value of."""
+    held: dict[str, Any] = {}
+    head = "def call(scopes):\n _, document, dialog, local = scopes\n return "
+    exec(head + source, HELPERS, held)
+    return held["call"]  # type: ignore[no-any-return]
+
+
+@dataclass(slots=True)
+class _Piece:
+    """Part of an expression in Python."""
+
+    source: str
+    kind: str = ""
+    """``number``, ``boolean`` or ``text`` where its value can be nothing else."""
+    depth: int = 0
+    """How deep brackets stand inside each other."""
+    literal: bool = False
+
+
+def _joined(kind: str, *parts: str | _Piece) -> _Piece:
+    """A piece made of code and other pieces.
+
+    Raises:
+        _Beyond: more brackets stand inside each other than Python reads.
+    """
+    source, opened, depth = [], 0, 0
+    for part in parts:
+        if isinstance(part, str):
+            source.append(part)
+            opened += part.count("(") - part.count(")")
+        else:
+            source.append(part.source)
+        depth = max(depth, opened + (part.depth if isinstance(part, _Piece) else 0))
+    if depth > DEEPEST_BRACKETS:
+        raise _Beyond
+    return _Piece("".join(source), kind, depth)
 
 
 class _Parser:
-    """Reads an expression by the strength of its operators, and gives its function."""
+    """Reads an expression by the strength of its operators, and writes it in Python.
 
-    def __init__(self, code: str) -> None:
+    Nothing of the code gets there but by ``repr``: names, texts and numbers.
+    """
+
+    def __init__(self, code: str, scopes: str = "scopes", where: Where | None = None) -> None:
         self.code = code
+        self.scopes = f", {scopes}"
+        """The last argument of what an expression calls."""
+        self.where = where
+        self.quick = where is not None
+        """Whether it is worth more Python that takes less time."""
         self.names: dict[str, int] = {}
         self.tokens: list[_Token] = []
         position = 0
@@ -264,7 +348,7 @@ class _Parser:
             if match.lastgroup != "space":
                 self.tokens.append(_Token(match.lastgroup or "", match[0], match.start()))
         self.tokens.append(END)
-        self.at = self.depth = 0
+        self.at = self.depth = self.held = 0
 
     def take(self) -> _Token:
         """The next piece."""
@@ -286,12 +370,18 @@ class _Parser:
         if token.text != text or token.kind not in ("mark", "end"):
             raise _Beyond
 
-    def place(self, start: int) -> tuple[int, int]:
-        """Line and column of a piece of the code."""
+    def place(self, start: int) -> str:
+        """Line and column of a piece of the code, as two arguments."""
         before = self.code[:start]
-        return before.count("\n") + 1, start - before.rfind("\n")
+        line_start = before.rfind("\n")
+        return f"{before.count(chr(10)) + 1}, {start - line_start}"
 
-    def conditional(self) -> Function:
+    def holder(self) -> str:
+        """A variable of the function, for a value that is looked at more than once."""
+        self.held += 1
+        return f"v{self.held}"
+
+    def conditional(self) -> _Piece:
         """``a ? b : c``, and what binds more strongly."""
         test = self.binary(1)
         if not self.comes("?"):
@@ -299,9 +389,10 @@ class _Parser:
         first = self.conditional()
         self.expect(":")
         second = self.conditional()
-        return lambda scopes: first(scopes) if truth(test(scopes)) else second(scopes)
+        kind = first.kind if first.kind == second.kind else ""
+        return _joined(kind, "(", first, " if ", _truth(test), " else ", second, ")")
 
-    def binary(self, level: int) -> Function:
+    def binary(self, level: int) -> _Piece:
         """Operators of a level or above, those of one level from the left."""
         left = self.unary()
         while True:
@@ -310,9 +401,62 @@ class _Parser:
             if strength < level:
                 return left
             self.at += 1
-            left = _operation(token.text, left, self.binary(strength + 1))
+            right = self.binary(strength + 1)
+            if token.text in ("&&", "||"):
+                left = self.logical(token.text, left, right)
+            elif token.text in EQUALITIES:
+                left = self.equality(token.text, left, right)
+            else:
+                left = self.operation(token.text, left, right)
 
-    def unary(self) -> Function:
+    def logical(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
+        """``a && b`` or ``a || b``: one of the two values."""
+        kind = left.kind if left.kind == right.kind else ""
+        if left.kind == "boolean":
+            return _joined(kind, "(", left, " and " if mark == "&&" else " or ", right, ")")
+        held = self.holder()
+        if mark == "&&":
+            return _joined(kind, "(", right, f" if truth({held} := ", left, f") else {held})")
+        return _joined(kind, f"({held} if truth({held} := ", left, ") else ", right, ")")
+
+    def equality(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
+        """``a == b`` and the like; a text or number that is written out is compared at once."""
+        name, no = EQUALITIES[mark]
+        plain = PYTHON.get(right.kind) if right.literal else None
+        if plain is None or not self.quick or left.depth > DEEP:
+            return _joined("boolean", f"({no}{name}(", left, ", ", right, f"{self.scopes}))")
+        held = self.holder()
+        return _joined(
+            "boolean",
+            *(f"({no}({held} == ", right, f" if type({held} := ", left, f") is {plain}"),
+            *(f" else {name}({held}, ", right, f"{self.scopes})))"),
+        )
+
+    def operation(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
+        """What is calculated or compared; with numbers, as mostly, at once."""
+        name, kind = OPERATIONS[mark]
+        kinds = left.kind, right.kind
+        if kinds == ("number", "number") and mark not in "/%":
+            return _joined(kind or "number", "(", left, f" {mark} ", right, ")")
+        known = "text" in kinds or "boolean" in kinds or mark in "/%"
+        if known or not self.quick or max(left.depth, right.depth) > DEEP:
+            return _joined(kind, f"{name}(", left, ", ", right, f"{self.scopes})")
+        first = self.holder()
+        if right.literal:
+            return _joined(
+                kind,
+                *(f"({first} {mark} ", right, f" if type({first} := ", left, ") is float"),
+                *(f" else {name}({first}, ", right, f"{self.scopes}))"),
+            )
+        second = self.holder()
+        return _joined(
+            kind,
+            *(f"({first} {mark} {second} if (type({first} := ", left, ") is float)"),
+            *(f" & (type({second} := ", right, ") is float)"),
+            f" else {name}({first}, {second}{self.scopes}))",
+        )
+
+    def unary(self) -> _Piece:
         """``!a``, ``-a``, ``+a``, ``typeof a``, and what binds more strongly."""
         self.depth += 1
         if self.depth > DEEPEST:
@@ -321,39 +465,36 @@ class _Parser:
         self.depth -= 1
         return found
 
-    def operand(self) -> Function:
+    def operand(self) -> _Piece:
         """What an operator before it, if any, makes of a member."""
         token = self.tokens[self.at]
         if token.kind == "mark" and token.text in "!-+":
             self.at += 1
             inner = self.unary()
             if token.text == "!":
-                return lambda scopes: not truth(inner(scopes))
+                return _joined("boolean", "(not ", _truth(inner), ")")
+            if inner.kind != "number":
+                inner = _joined("number", "numeric(", inner, f"{self.scopes})")
             if token.text == "-":
-                return lambda scopes: -_numeric(inner(scopes), scopes)
-            return lambda scopes: _numeric(inner(scopes), scopes)
+                negative = _joined("number", "(-", inner, ")")
+                negative.literal = inner.literal
+                return negative
+            return inner
         if token.kind == "name" and token.text == "typeof":
             self.at += 1
             return self.type_of()
         return self.member()
 
-    def type_of(self) -> Function:
+    def type_of(self) -> _Piece:
         """``typeof a``; a name that nothing declares is no error here."""
         start = self.at
         inner = self.unary()
         read = [token for token in self.tokens[start : self.at] if token.text not in "()"]
         if len(read) > 1 or read[0].kind != "name" or read[0].text in WORDS:
-            return lambda scopes: kind_of(inner(scopes))
+            return _joined("text", "kind_of(", inner, ")")
+        return _Piece(f"kind_of(found({read[0].text!r}{self.scopes}))", "text", 3)
 
-        def declared(scopes: Scopes) -> str:
-            try:
-                return kind_of(inner(scopes))
-            except ScriptError:
-                return "undefined"
-
-        return declared
-
-    def member(self) -> Function:
+    def member(self) -> _Piece:
         """``a.b`` and ``a["b"]``; which member it is must be written out."""
         start = self.place(self.tokens[self.at].start)
         value = self.primary()
@@ -362,30 +503,45 @@ class _Parser:
                 token = self.take()
                 if token.kind != "name":
                     raise _Beyond
-                value = _member(value, token.text, start)
+                value = self.part(value, token.text, start)
             elif self.comes("["):
                 token = self.take()
                 if token.kind == "number":
-                    value = _member(value, number_text(float(token.text)), start)
+                    value = self.part(value, number_text(float(token.text)), start)
                 elif token.kind == "text":
-                    value = _member(value, token.text[1:-1], start)
+                    value = self.part(value, token.text[1:-1], start)
                 else:
                     raise _Beyond
                 self.expect("]")
             else:
                 return value
 
-    def primary(self) -> Function:
+    def part(self, value: _Piece, key: str, start: str) -> _Piece:
+        """A member of a value, which mostly is an object that has it."""
+        if key in INHERITED or key in METHODS:
+            raise _Beyond
+        held, name = self.holder(), _Piece(repr(key))
+        more = f", {index_of(key)}, {start}{self.scopes})"
+        if not self.quick or value.depth > DEEP:
+            return _joined("", "member(", value, ", ", name, more)
+        return _joined(
+            "",
+            *(f"({held}[", name, f"] if type({held} := ", value, ") is dict and ", name),
+            *(f" in {held} else member({held}, ", name, f"{more})"),
+        )
+
+    def primary(self) -> _Piece:
         """A literal, a name, or an expression in brackets."""
         token = self.take()
         match token.kind:
             case "number":
-                return _constant(float(token.text))
+                return _Piece(_number_source(float(token.text)), "number", literal=True)
             case "text":
-                return _constant(token.text[1:-1])
+                return _Piece(repr(token.text[1:-1]), "text", literal=True)
             case "escaped":
                 unescape = lambda match: ESCAPES.get(match[1], match[1])  # noqa: E731
-                return _constant(re.sub(r"\\(.)", unescape, token.text[1:-1]))
+                value = re.sub(r"\\(.)", unescape, token.text[1:-1])
+                return _Piece(repr(value), "text", literal=True)
             case "name":
                 return self.name(token)
         if token.text == "(":
@@ -398,125 +554,129 @@ class _Parser:
             return self.object()
         raise _Beyond
 
-    def name(self, token: _Token) -> Function:
+    def name(self, token: _Token) -> _Piece:
         """A variable or a word that stands for a value."""
         name = token.text
         if name in WORDS:
-            return _constant(WORDS[name])
+            return _Piece(repr(WORDS[name]), "" if name == "null" else "boolean")
         if name in RESERVED or name in INHERITED or name in BUILT_IN:
             raise _Beyond
         if name not in CONSTANTS and name not in VARIABLES:
             self.names.setdefault(name, token.start)
-        return _variable(name, self.place(token.start))
+        where = f"sought({name!r}, {self.place(token.start)}{self.scopes})"
+        if self.where is None:
+            return _Piece(where, "", 2)
+        for scope in self.where(name):
+            where = f"{scope}[{name!r}] if {name!r} in {scope} else {where}"
+        return _Piece(f"({where})", "", 3)
 
-    def literal(self) -> Any:
+    def literal(self) -> str:
         """A number, text or word in an array or object: nothing that is computed."""
         token = self.take()
         sign = token.text == "-" and token.kind == "mark"
         token = self.take() if sign else token
         if token.kind == "number":
-            return -float(token.text) if sign else float(token.text)
+            return "-" * sign + _number_source(float(token.text))
         if sign or token.kind not in ("text", "name"):
             raise _Beyond
         if token.kind == "text":
-            return token.text[1:-1]
+            return repr(token.text[1:-1])
         if token.text not in WORDS:
             raise _Beyond
-        return WORDS[token.text]
+        return repr(WORDS[token.text])
 
-    def array(self) -> Function:
+    def array(self) -> _Piece:
         """An array of literals: a new one at every evaluation."""
-        values: list[Any] = []
+        values: list[str] = []
         while not self.comes("]"):
             values.append(self.literal())
             if not self.comes(","):
                 self.expect("]")
                 break
-        return lambda scopes: values.copy()
+        return _Piece(f"[{', '.join(values)}]", "", 1)
 
-    def object(self) -> Function:
+    def object(self) -> _Piece:
         """An object of literals: a new one at every evaluation."""
-        values: dict[str, Any] = {}
+        values: list[str] = []
         while not self.comes("}"):
             token = self.take()
             key = token.text[1:-1] if token.kind == "text" else token.text
             if token.kind not in ("text", "name") or key.isdigit() or key == "__proto__":
                 raise _Beyond
             self.expect(":")
-            values[key] = self.literal()
+            values.append(f"{key!r}: {self.literal()}")
             if not self.comes(","):
                 self.expect("}")
                 break
-        return lambda scopes: values.copy()
+        return _Piece(f"{{{', '.join(values)}}}", "", 1)
 
 
-# The functions of which expressions are made ----------------------------------------------
+def _truth(piece: _Piece) -> _Piece:
+    """A piece as a condition."""
+    return piece if piece.kind == "boolean" else _joined("boolean", "truth(", piece, ")")
 
 
-def _constant(value: Any) -> Function:
-    return lambda scopes: value
+def _number_source(value: float) -> str:
+    return repr(value) if value < math.inf else "infinity"
 
 
-def _variable(name: str, place: tuple[int, int]) -> Function:
-    def read(scopes: Scopes) -> Any:
-        application, document, dialog, local = scopes
-        if name in local:
-            return local[name]
-        if name in dialog:
-            return dialog[name]
-        if name in document:
-            return document[name]
-        if name in application:
-            return application[name]
-        if name in CONSTANTS:
-            return CONSTANTS[name]
-        if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
+# What an expression in Python calls --------------------------------------------------------
+
+
+def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
+    """A variable that stands in none of the scopes in which most stand.
+
+    Raises:
+        ScriptError: nothing declares it.
+    """
+    value = found(name, scopes, MISSING)
+    if value is MISSING:
+        raise ScriptError(f"ReferenceError: {name} is not defined", [(line, column)])
+    return value
+
+
+def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
+    """A variable's value, or what stands for one that nothing declares."""
+    for scope in reversed(scopes):
+        if name in scope:
+            return scope[name]
+    if name in CONSTANTS:
+        return CONSTANTS[name]
+    if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
+        return scope
+    return otherwise
+
+
+def holder_of(name: str, scopes: Scopes) -> Scope:
+    """The innermost scope that has a variable, by its name as written.
+
+    Raises:
+        ScriptError: no scope declares it.
+    """
+    inner, _, last = name.rpartition(".")
+    for scope in (scopes[SCOPES.index(inner)],) if inner else reversed(scopes):
+        if last in scope:
             return scope
-        raise ScriptError(f"ReferenceError: {name} is not defined", [place])
-
-    return read
+    raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
 
 
-def _member(value: Function, key: str, place: tuple[int, int]) -> Function:
-    if key in INHERITED or key in METHODS:
-        raise _Beyond
-    index = index_of(key)
-
-    def read(scopes: Scopes) -> Any:
-        found = value(scopes)
-        if isinstance(found, dict):
-            return found.get(key, UNDEFINED)
-        if found is None or found is UNDEFINED:
-            what = "null" if found is None else "undefined"
-            raise ScriptError(f"TypeError: cannot read property '{key}' of {what}", [place])
-        if not isinstance(found, list | str):
-            return UNDEFINED
-        if len(found) > SHORT and isinstance(found, str):
-            work(scopes, found)
-        if key == "length":
-            return float(len(found) if isinstance(found, list) else units(found))
-        if isinstance(found, str):
-            return unit(found, index)
-        return found[index] if 0 <= index < len(found) else UNDEFINED
-
-    return read
-
-
-def _operation(mark: str, left: Function, right: Function) -> Function:
-    match mark:
-        case "&&":
-            return lambda scopes: right(scopes) if truth(value := left(scopes)) else value
-        case "||":
-            return lambda scopes: value if truth(value := left(scopes)) else right(scopes)
-        case "===" | "!==":
-            return _equality(same, left, right, mark == "===")
-        case "==" | "!=":
-            return _equality(alike, left, right, mark == "==")
-        case "+":
-            return _sum(left, right)
-        case "-" | "*" | "/" | "%":
-            return _arithmetic(ARITHMETIC[mark], left, right)
-    return _comparison(COMPARISONS[mark], left, right)
+def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
+    """A member of a value, by its name and the index that the name is."""
+    if isinstance(value, dict):
+        return value.get(key, UNDEFINED)
+    if value is None or value is UNDEFINED:
+        what = "null" if value is None else "undefined"
+        message = f"TypeError: cannot read property '{key}' of {what}"
+        raise ScriptError(message, [(line, column)])
+    if not isinstance(value, list | str):
+        return UNDEFINED
+    if len(value) > SHORT and isinstance(value, str):
+        work(scopes, value)
+    if key == "length":
+        return float(len(value) if isinstance(value, list) else units(value))
+    if isinstance(value, str):
+        return unit(value, index)
+    return value[index] if 0 <= index < len(value) else UNDEFINED
 
 
 def work(scopes: Scopes, value: Any) -> None:
@@ -531,62 +691,50 @@ def work(scopes: Scopes, value: Any) -> None:
             evaluator.work(len(value))
 
 
-def _equality(
-    act: Callable[[Any, Any], bool], left: Function, right: Function, wanted: bool
-) -> Function:
-    def compare(scopes: Scopes) -> bool:
-        first, second = left(scopes), right(scopes)
-        if type(first) is not float:
-            if type(first) is not str or len(first) > SHORT:
-                work(scopes, first)
-                work(scopes, second)
-        elif type(second) is not float:
-            work(scopes, second)
-        return act(first, second) is wanted
-
-    return compare
+def equal(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``==``, with the work counted."""
+    work(scopes, first)
+    work(scopes, second)
+    return alike(first, second)
 
 
-def _numeric(value: Any, scopes: Scopes) -> float:
+def identical(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``===``, with the work counted."""
+    work(scopes, first)
+    work(scopes, second)
+    return same(first, second)
+
+
+def numeric(value: Any, scopes: Scopes) -> float:
+    """A value as a number, with the work counted."""
     if type(value) is float:
         return value
     work(scopes, value)
     return number(value)
 
 
-def _sum(left: Function, right: Function) -> Function:
-    def add(scopes: Scopes) -> Any:
-        first, second = left(scopes), right(scopes)
-        if type(first) is float and type(second) is float:
-            return first + second
-        first, second = primitive(first), primitive(second)
-        if not isinstance(first, str) and not isinstance(second, str):
-            return number(first) + number(second)
-        joined = text(first) + text(second)
-        if len(joined) > SHORT:
-            if len(joined) > LONGEST:
-                raise ScriptError("it used too much memory")
-            work(scopes, joined)
-        return joined
-
-    return add
+def add(first: Any, second: Any, scopes: Scopes) -> Any:
+    """``+``, which joins texts as well."""
+    first, second = primitive(first), primitive(second)
+    if not isinstance(first, str) and not isinstance(second, str):
+        return number(first) + number(second)
+    joined = text(first) + text(second)
+    if len(joined) > SHORT:
+        if len(joined) > LONGEST:
+            raise ScriptError("it used too much memory")
+        work(scopes, joined)
+    return joined
 
 
-def _arithmetic(act: Callable[[float, float], float], left: Function, right: Function) -> Function:
-    def calculate(scopes: Scopes) -> float:
-        first, second = left(scopes), right(scopes)
-        if type(first) is float and type(second) is float:
-            return act(first, second)
-        return act(_numeric(first, scopes), _numeric(second, scopes))
+def _arithmetic(act: Callable[[float, float], float]) -> Operation:
+    def calculate(first: Any, second: Any, scopes: Scopes) -> float:
+        return act(numeric(first, scopes), numeric(second, scopes))
 
     return calculate
 
 
-def _comparison(act: Callable[[Any, Any], bool], left: Function, right: Function) -> Function:
-    def compare(scopes: Scopes) -> bool:
-        first, second = left(scopes), right(scopes)
-        if type(first) is float and type(second) is float:
-            return act(first, second)
+def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
+    def compare(first: Any, second: Any, scopes: Scopes) -> bool:
         first, second = primitive(first), primitive(second)
         if isinstance(first, str) and isinstance(second, str):
             if first.isascii() and second.isascii():
@@ -594,7 +742,7 @@ def _comparison(act: Callable[[Any, Any], bool], left: Function, right: Function
             work(scopes, first)
             work(scopes, second)
             return act(order(first), order(second))
-        return act(_numeric(first, scopes), _numeric(second, scopes))
+        return act(numeric(first, scopes), numeric(second, scopes))
 
     return compare
 
@@ -613,20 +761,6 @@ def remainder(first: float, second: float) -> float:
     if second == 0 or math.isinf(first):
         return math.nan
     return math.fmod(first, second)
-
-
-ARITHMETIC: dict[str, Callable[[float, float], float]] = {
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": divide,
-    "%": remainder,
-}
-COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
-    "<": operator.lt,
-    ">": operator.gt,
-    "<=": operator.le,
-    ">=": operator.ge,
-}
 
 
 # Values (ECMAScript 2024, chapter 7) --------------------------------------------------------
@@ -840,6 +974,17 @@ def outward(value: Any) -> Json:
     return plain_number(value)
 
 
+HELPERS: dict[str, Any] = {
+    "infinity": math.inf, "sought": sought, "found": found, "member": member, "truth": truth,
+    "kind_of": kind_of, "equal": equal, "identical": identical, "numeric": numeric, "add": add,
+    "subtract": _arithmetic(operator.sub), "multiply": _arithmetic(operator.mul),
+    "divided": _arithmetic(divide), "remaining": _arithmetic(remainder),
+    "less": _comparison(operator.lt), "more": _comparison(operator.gt),
+    "at_most": _comparison(operator.le), "at_least": _comparison(operator.ge),
+}  # fmt: skip
+"""What expressions in Python know."""
+
+
 class PlainEngine:
     """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
 
@@ -859,8 +1004,18 @@ class PlainEngine:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        FUNCTIONS[code] = found.call
-        return found.call
+        call = function_of(found.source)
+        left = SELDOM
+
+        def counted(scopes: Scopes) -> Any:
+            nonlocal left
+            left -= 1
+            if left == 0:
+                FUNCTIONS[code] = function_of((quickly(code, "scopes", anywhere) or found).source)
+            return call(scopes)
+
+        FUNCTIONS[code] = counted
+        return counted
 
     def scope(self, **values: Json) -> Scope:
         """A new scope."""
@@ -953,21 +1108,8 @@ class PlainEngine:
         Raises:
             ScriptError: no scope declares it, or the expression fails.
         """
-        application, document, dialog, local = scopes
-        if "." in name:
-            scope, last = scopes[SCOPES.index(name.partition(".")[0])], name.rpartition(".")[2]
-        else:
-            last = name
-            if name in document:  # where most variables are
-                scope = local if name in local else dialog if name in dialog else document
-            else:
-                scope = local if name in local else dialog if name in dialog else application
-        if last not in scope:
-            raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
-        value = (FUNCTIONS.get(code) or self._call(code))(scopes)
-        if type(value) is str and len(value) > LONG:
-            self._hold(scope, value)
-        scope[last] = value
+        scope = holder_of(name, scopes)
+        self.put(scope, name.rpartition(".")[2], (FUNCTIONS.get(code) or self._call(code))(scopes))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the values that there are here.
@@ -976,10 +1118,10 @@ class PlainEngine:
             ScriptError: the variables would hold too much.
         """
         if type(value) is str and len(value) > LONG:
-            self._hold(scope, value)
+            self.hold(scope, value)
         scope[name] = value
 
-    def _hold(self, scope: Scope, value: str) -> None:
+    def hold(self, scope: Scope, value: str) -> None:
         """Bound what all variables hold together; it is counted anew only now and then."""
         if self._long is None:
             self._long = WeakValueDictionary()

@@ -35,8 +35,9 @@ class Endings:
         self.told: deque[Told] = deque()
         self._maker = Maker(table)
         self._selector = Selector(self.memory, policy, self._maker, chronicle, bound)
-        self._deadlines: dict[str, int] = {}
-        self._holds: dict[str, int] = {}
+        self.deadlines: dict[str, int] = {}
+        """When ABs will have run for longer than they may (U5, E1), by name."""
+        self.holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
         self._rolling: Behavior | None = None
         self._continuing: list[Application] = []
@@ -112,7 +113,7 @@ class Endings:
     def _remove(self, ab: Behavior) -> None:
         unit = ab.unit
         self.memory.remove(ab)
-        self._deadlines.pop(ab.name, None)
+        self.deadlines.pop(ab.name, None)
         self._touched[ab.stream.name] = ab.stream
         for child in ab.children:
             child.waits_for.discard(ab.name)
@@ -196,7 +197,7 @@ class Endings:
             self._finish(ab, data)
         else:
             self.memory.release(ab)
-            self._deadlines.pop(ab.name, None)
+            self.deadlines.pop(ab.name, None)
             ab.freed = self._now()
             self.memory.wait(ab)
         return True

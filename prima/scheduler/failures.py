@@ -59,24 +59,19 @@ class Failures(Endings):
 
     def deadline(self) -> int | None:
         """The next instant at which a unit, a device or an event waited for is too late."""
-        return min((*self._deadlines.values(), *self._holds.values()), default=None)
-
-    @property
-    def timed(self) -> bool:
-        """Whether anything has a deadline."""
-        return bool(self._deadlines or self._holds)
+        return min((*self.deadlines.values(), *self.holds.values()), default=None)
 
     def expire(self) -> bool:
         """U5, E1: end what has run longer than it may; tells whether there was any such."""
         now = self._now()
-        if not self.timed or min((*self._deadlines.values(), *self._holds.values())) > now:
+        if min((*self.deadlines.values(), *self.holds.values()), default=now + 1) > now:
             return False
         self.changed = True
-        for name in [name for name, due in self._holds.items() if due <= now]:
+        for name in [name for name, due in self.holds.items() if due <= now]:
             self._let_go(self.memory.streams[name], "over")
-        late = [name for name, due in self._deadlines.items() if due <= now]
+        late = [name for name, due in self.deadlines.items() if due <= now]
         for name in late:
-            self._deadlines.pop(name, None)
+            self.deadlines.pop(name, None)
             ab = self.memory.running.get(name)
             if ab is not None and ab.group is not None:
                 self._unit_timeout(ab)
@@ -89,7 +84,7 @@ class Failures(Endings):
     def _let_go(self, stream: Stream, outcome: str) -> None:
         """X3: the stream is held no longer."""
         stream.hold = stream.held_until = None
-        del self._holds[stream.name]
+        del self.holds[stream.name]
         self._touched[stream.name] = stream
         self.chronicle.stream("held", stream, "X3", outcome=outcome)
 
@@ -146,7 +141,7 @@ class Failures(Endings):
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
         self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")
         self.memory.release(ab)
-        self._deadlines.pop(ab.name, None)
+        self.deadlines.pop(ab.name, None)
         if given_up:
             self._remove(ab)
         else:

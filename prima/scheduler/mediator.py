@@ -178,7 +178,7 @@ class Mediator(Failures):
         parent = parent_of(app, None) if reaction is None else None
         if parent is not None:
             return parent.stream, parent
-        held = [self.memory.streams[name] for name in self._holds]
+        held = [self.memory.streams[name] for name in self.holds]
         continuing = app.continuing
         if any(one.app is app for one in held):
             stream = next(one for one in reversed(held) if one.app is app)
@@ -245,7 +245,7 @@ class Mediator(Failures):
         self._close_streams()
         if not self.halted:
             self._selector.select(self._now())
-            self._set_deadlines()
+            self._setdeadlines()
         if self._rolling is not None and "locomotion" not in self.memory.occupied:
             ab = self._rolling
             self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
@@ -280,16 +280,16 @@ class Mediator(Failures):
     def _keep_open(self, stream: Stream) -> None:
         """X3: the stream stays open, with the floor unless another has it, and waits."""
         assert stream.hold is not None
-        until = self._holds[stream.name] = stream.held_until = self._now() + stream.hold
+        until = self.holds[stream.name] = stream.held_until = self._now() + stream.hold
         self.chronicle.stream("held", stream, "X3", outcome="begun", data={"until": until / 1000})
         if not self.memory.floor:
             self._selector.take_floor(stream, "X3")
 
-    def _set_deadlines(self) -> None:
+    def _setdeadlines(self) -> None:
         for name in self._selector.given_up:
-            self._deadlines.pop(name, None)
+            self.deadlines.pop(name, None)
         for ab in self._selector.started:
             if ab.command is not None:
-                self._deadlines[ab.name] = self._now() + allowance(ab)
+                self.deadlines[ab.name] = self._now() + allowance(ab)
             elif ab.longest is not None:
-                self._deadlines[ab.name] = self._now() + ab.longest
+                self.deadlines[ab.name] = self._now() + ab.longest

@@ -1,0 +1,325 @@
+"""What an event does in a state, as one Python function, where it happens often.
+
+:func:`reaction_of` writes what :meth:`~prima.interpreter.handling.Handling.dispatch` does for the
+handlers in scope whose names take an event: their conditions, their content, and where it leads.
+It does so only for documents whose code is evaluated in Python (:mod:`prima.interpreter.plain`) and
+for handlers in which no Command stands; all else stays with ``dispatch``. What differs from one
+handler to the next is given to its function, so that handlers alike have their Python compiled once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from prima.interpreter.bounds import MAX_STEPS
+from prima.interpreter.content import SIMPLE
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Declare,
+    Document,
+    Expression,
+    Foreach,
+    Form,
+    Goto,
+    Handler,
+    If,
+    Script,
+    Subdialog,
+    all_acts,
+    all_items,
+)
+from prima.interpreter.evaluation import ScriptError
+from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
+from prima.interpreter.plain import (
+    HELPERS,
+    LONG,
+    UNDEFINED,
+    Compiled,
+    PlainEngine,
+    Scope,
+    holder_of,
+    quickly,
+)
+from prima.interpreter.selection import Taking
+from prima.messages import Event
+
+if TYPE_CHECKING:
+    from prima.interpreter.application import Interpreter
+
+Reaction = Callable[["Interpreter", Frame, Event], Transfer | None]
+"""What an event does: gives the transfer of control in which it ends, or :data:`DONE`."""
+Place = tuple[Handler | None, Expression | None]
+"""Where something may fail: in a handler or a condition before it, and in which expression."""
+
+DONE = Transfer()
+"""There is nothing left to do: no handler takes the event, or its error has been handled."""
+SCOPES = "(owner.application, document, dialog, local)"
+"""The scopes in a reaction, for those who need all of them: few do."""
+DEEPEST = 30
+"""Columns at which content may stand: how deep ``if`` may be inside each other."""
+MOST_ACTS = 300
+"""Pieces of content that are written out for one event."""
+
+
+class Hop(GoForm):
+    """A goto from a form to another, where neither has anything to do but to wait for events."""
+
+    def __init__(self, target: Form) -> None:
+        super().__init__(target.id)
+        self.target = target
+
+
+class _Beyond(Exception):
+    """There is something in it that only ``dispatch`` does."""
+
+
+def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction | None:
+    """What an event does in a form where these handlers take it; None if ``dispatch`` does it."""
+    handlers = [handler for handler, _ in candidates]
+    acts = [act for handler in handlers for act in all_acts(handler.content)]
+    if document.counting or len(acts) > MOST_ACTS or any(one.waits for one in handlers):
+        return None
+    if any(handler.count != 1 for handler in handlers):
+        return None
+    has_local = document.curious or any(isinstance(act, Declare | Foreach) for act in acts)
+    writer = _Writer(document, form, has_local)
+    try:
+        writer.reaction(handlers)
+    except _Beyond:
+        return None
+    return _maker("\n".join(writer.lines), len(writer.given))(*writer.given)
+
+
+@lru_cache(maxsize=1_000)
+def _maker(code: str, given: int) -> Callable[..., Reaction]:
+    """What makes a reaction of what is given to it."""
+    held: dict[str, Any] = {}
+    names = ", ".join(f"c{index}" for index in range(given))
+    exec(f"def make({names}):\n{code}\n return react", NAMES, held)
+    return held["make"]  # type: ignore[no-any-return]
+
+
+class _Writer:
+    """Writes a function line by line."""
+
+    def __init__(self, document: Document, form: Form, has_local: bool) -> None:
+        self.document = document
+        self.form = form
+        self.has_local = has_local
+        """Whether anything can stand in the handlers' own scope."""
+        self.lines: list[str] = []
+        self.given: list[Any] = []
+        """What the function is made with, as ``c0``, ``c1``, ..."""
+        self.places: list[Place] = [(None, None)]
+        self.with_fiber = False
+        """Whether the handler that is being written calls anything that needs its fiber."""
+
+    def reaction(self, handlers: list[Handler]) -> None:
+        """The whole function."""
+        local = "nothing"
+        if self.has_local:
+            curious = self.document.curious
+            local = "owner.handling.event_scope(event)" if curious else "Scope()"
+        places = self.give(self.places)
+        self.write(1, "def react(owner, frame, event):")
+        self.write(2, "if owner.untold: owner.handling.tell_sensors()")
+        self.write(2, f"document, dialog, local = frame.document, frame.dialog, {local}")
+        self.write(2, "try:")
+        self.handlers(handlers)
+        self.write(2, "except failures as error:")
+        self.write(3, f"return failed(owner, frame, error, {places}[at])")
+        self.write(2, "return untaken(event)")
+
+    def write(self, depth: int, line: str) -> None:
+        """A line of the function."""
+        self.lines.append(" " * depth + line)
+
+    def give(self, value: Any) -> str:
+        """The name of something that the function is made with."""
+        self.given.append(value)
+        return f"c{len(self.given) - 1}"
+
+    def at(self, handler: Handler | None, expr: Expression | None) -> str:
+        """The place, by its number, where something may fail from here on."""
+        self.places.append((handler, expr))
+        return str(len(self.places) - 1)
+
+    def where(self, name: str) -> tuple[str, ...]:
+        """The scopes that may have a variable, outermost first."""
+        dialog = ("dialog",) if name in dialog_names(self.document) else ()
+        return ("document", *dialog, *(("local",) if self.has_local else ()))
+
+    def expression(self, expr: Expression) -> Compiled:
+        """An expression in Python."""
+        found = quickly(expr.code, SCOPES, self.where)
+        if found is None:
+            raise _Beyond
+        return found
+
+    def condition(self, expr: Expression) -> str:
+        """An expression in Python, as a condition."""
+        found = self.expression(expr)
+        return found.source if found.kind == "boolean" else f"truth({found.source})"
+
+    def handlers(self, handlers: list[Handler]) -> None:
+        """The first handler whose condition holds; all of them are evaluated (VoiceXML 5.2.4)."""
+        names: list[str] = []
+        for index, handler in enumerate(handlers):
+            names.append("True")
+            if handler.cond is not None:
+                names[-1] = f"h{index}"
+                self.write(3, f"at = {self.at(None, handler.cond)}")
+                self.write(3, f"h{index} = {self.condition(handler.cond)}")
+        for name, handler in zip(names, handlers, strict=True):
+            self.write(3, f"if {name}:")
+            self.handler(handler)
+        self.write(3, "pass")
+
+    def handler(self, handler: Handler) -> None:
+        """A handler whose turn it is."""
+        causes = {None: "event.serial if event.reactive else None", True: "event.serial"}
+        self.write(4, f"owner.cause = {causes.get(handler.reactive)}")
+        self.write(4, f"at = {self.at(handler, None)}")
+        before, self.with_fiber = len(self.lines), False
+        self.block(4, handler, handler.content)
+        if self.with_fiber:
+            local = "local" if self.has_local else "None"
+            self.lines.insert(before, f"    fiber = Fiber(frame, False, {local})")
+        self.write(4, "return None")
+
+    def block(self, depth: int, handler: Handler, content: list[Act]) -> None:
+        """Content, piece by piece; too much of it in one instant ends the application."""
+        if depth > DEEPEST:
+            raise _Beyond
+        self.write(depth, f"owner.steps += {len(content)}")
+        if content:
+            over = f"owner.count_step({self.give(content[0].node)}, 0)"
+            self.write(depth, f"if owner.steps > {MAX_STEPS}: {over}")
+        for act in content:
+            match act:
+                case Assign() if "." not in act.name:
+                    self.assign(depth, handler, act)
+                case Declare():
+                    self.declare(depth, handler, act)
+                case If():
+                    self.branches(depth, handler, act)
+                case Goto(form=str(form), item=None) if form in self.document.forms:
+                    self.write(depth, f"return {self.give(self.way(form))}")
+                case Foreach():
+                    self.repeat(depth, act)
+                case _:
+                    self.call(depth, handler, act)
+
+    def assign(self, depth: int, handler: Handler, act: Assign) -> None:
+        """A declared variable has a new value; innermost scope first, mostly the document's."""
+        name = repr(act.name)
+        inner = "".join(f" and {name} not in {scope}" for scope in self.where(act.name)[1:])
+        holder = f"document if {name} in document{inner} else holder_of({name}, {SCOPES})"
+        self.write(depth, f"at = {self.at(handler, act.expr)}")
+        self.write(depth, f"scope = {holder}")
+        self.value(depth, act.expr, "scope")
+        self.write(depth, f"scope[{name}] = value")
+
+    def declare(self, depth: int, handler: Handler, act: Declare) -> None:
+        """A variable of the handler's own."""
+        if act.expr is None:
+            self.write(depth, f"local[{act.name!r}] = undefined")
+            return
+        self.write(depth, f"at = {self.at(handler, act.expr)}")
+        self.value(depth, act.expr, "local")
+        self.write(depth, f"local[{act.name!r}] = value")
+
+    def value(self, depth: int, expr: Expression, scope: str) -> None:
+        """The value that a variable of a scope gets; what long texts there are is bounded."""
+        found = self.expression(expr)
+        self.write(depth, f"value = {found.source}")
+        if found.kind not in ("number", "boolean"):
+            hold = f"owner.engine.hold({scope}, value)"
+            self.write(depth, f"if type(value) is str and len(value) > {LONG}: {hold}")
+
+    def branches(self, depth: int, handler: Handler, act: If) -> None:
+        """The first branch whose condition holds."""
+        word = "if"
+        for cond, content in act.branches:
+            test = "True"
+            if cond is not None:
+                test = f"(at := {self.at(handler, cond)}) and {self.condition(cond)}"
+            self.write(depth, f"{word} {test}:")
+            self.block(depth + 1, handler, content)
+            word = "elif"
+
+    def way(self, form: str) -> Transfer:
+        """The way to a form."""
+        target = self.document.forms[form]
+        return Hop(target) if self.form.bare and target.bare else GoForm(form)
+
+    def repeat(self, depth: int, act: Foreach) -> None:
+        """Content for each element of an array."""
+        self.with_fiber = True
+        self.write(depth, f"for part in owner.execute.foreach({self.give(act)}, fiber):")
+        self.write(depth + 1, "transfer = owner.execute.run_at_once(part, fiber)")
+        self.write(depth + 1, "if transfer is not None: return transfer")
+
+    def call(self, depth: int, handler: Handler, act: Act) -> None:
+        """What has a method of its own, which tells where it fails."""
+        method = SIMPLE.get(type(act))
+        if method is None or isinstance(act, Script):
+            raise _Beyond
+        self.with_fiber = True
+        self.write(depth, f"at = {self.at(handler, None)}")
+        call = f"{self.give(method)}(owner.execute, {self.give(act)}, fiber)"
+        self.write(depth, f"transfer = {call}")
+        self.write(depth, "if transfer is not None: return transfer")
+
+
+def dialog_names(document: Document) -> frozenset[str]:
+    """The names of all variables that any form's scope may ever have."""
+    if document.dialog_names is None:
+        names: set[str] = set()
+        for form in document.forms.values():
+            names.update(act.name for act in form.setup if isinstance(act, Declare))
+            for item in all_items(form.items):
+                names |= {item.name, f"{item.name}$"}
+                if isinstance(item, Subdialog):
+                    names.update(name for name, _ in item.params)
+        document.dialog_names = frozenset(names)
+    return document.dialog_names
+
+
+def failed(owner: Interpreter, frame: Frame, error: Thrown | ScriptError, place: Place) -> Transfer:
+    """Something has failed: an event that the handler's own state may handle.
+
+    Raises:
+        Thrown: it failed in a condition, before any handler had its turn.
+    """
+    handler, expr = place
+    if expr is not None and isinstance(error, ScriptError):
+        error = owner.execute.failure(error, expr)
+    if handler is None:
+        raise error from None
+    owner.handling.recover(frame, handler, error)
+    return DONE
+
+
+def untaken(event: Event) -> Transfer:
+    """No handler takes an event.
+
+    Raises:
+        Thrown: it is an error.
+    """
+    if event.name.startswith("error."):
+        unhandled = Thrown(event)
+        unhandled.sought = True
+        raise unhandled
+    return DONE
+
+
+NAMES: dict[str, Any] = {
+    **HELPERS, "undefined": UNDEFINED, "nothing": PlainEngine.nothing, "Scope": Scope,
+    "Fiber": Fiber, "failures": (Thrown, ScriptError), "failed": failed, "untaken": untaken,
+    "holder_of": holder_of,
+}  # fmt: skip
+"""What reactions know."""

@@ -1,0 +1,248 @@
+"""What an event does is the same, whether it is written as a function or found anew each time."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from prima.commands import TABLE_4_2
+from prima.interpreter import handling, reactions
+from prima.interpreter.application import Interpreter
+from prima.interpreter.reader import read_document
+from prima.messages import Loaded, Occurred, Sensed
+from prima.scheduler.selection import Policy
+from prima.session import Session
+
+HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">'
+NAMES = ["n", "n", "t", "d", "l", "i", "dialog.d"]
+CODES = [
+    *("n + 1", "n - d", "t + n", "d", "'x'", "missing", "t.x.y", "!n", "n / 0", "[1, 2]", "l", "i"),
+    *("typeof l", "n &lt; 3", "t == 'x'", "d === 2", "n % 2 == 0", "event.name", "event.data.k"),
+    *("t + t + t + t + t + t", "sensor.touch.head", "undefined", "{k: 1}", "-n * 2", "n ? d : t"),
+]
+CONDITIONS = [
+    *(
+        "true",
+        "n % 2 == 0",
+        "d &lt; 3",
+        "t == 'x'",
+        "l",
+        "n != 1 &amp;&amp; t",
+        "!l || d",
+        "n &gt; d",
+    ),
+    *("typeof l != 'number'", "event.name == 'go'", "l.x.y"),
+]
+SHOWN = '<log>{}<value expr="n"/> <value expr="t"/> <value expr="d"/> <value expr="l"/></log>'
+LEAVES = [
+    *(f'<goto next="#f{form}"/>' for form in "abc"),
+    *(f'<var name="{name}" expr="{code}"/>' for name in "lt" for code in CODES[:4]),
+    '<var name="l"/>', '<throw event="own.one"/>', '<throw event="error.own" message="m"/>',
+    "<reprompt/>", '<clear namelist="q"/>', '<clear namelist="d"/>', '<goto nextitem="q"/>',
+    '<send event="later" delay="1s"/>', '<goto next-expr="\'#f\' + t"/>', SHOWN.format("here: "),
+    '<if cond="n &gt; 9"><exit/></if>', '<if cond="n &gt; 7"><return namelist="n"/></if>',
+]  # fmt: skip
+
+
+def contents(some: Random, depth: int = 0) -> str:
+    """Content in which no Command stands."""
+    made = []
+    for _ in range(some.randint(1, 4 - depth)):
+        kind = some.random() if depth < 2 else 1
+        inner = [contents(some, depth + 1) for _ in range(3)] if kind < 0.4 else []
+        conds = some.sample(CONDITIONS, 2)
+        if kind < 0.1:
+            made.append(f'<foreach item="i" array="[1, \'b\']">{inner[0]}</foreach>')
+        elif kind < 0.25:
+            made.append(f'<if cond="{conds[0]}">{inner[0]}<else/>{inner[1]}</if>')
+        elif kind < 0.4:
+            more = f'<elseif cond="{conds[1]}"/>{inner[1]}<else/>{inner[2]}'
+            made.append(f'<if cond="{conds[0]}">{inner[0]}{more}</if>')
+        elif kind < 0.8 or depth == 2:
+            made.append(f'<assign name="{some.choice(NAMES)}" expr="{some.choice(CODES)}"/>')
+        else:
+            made.append(some.choice(LEAVES))
+    return "".join(made)
+
+
+def handler(some: Random) -> str:
+    """A handler of one of a few events."""
+    event = some.choice(["go", "go", "go", "go.on", "own", "error", "go own.one"])
+    cond = f' cond="{some.choice(CONDITIONS)}"' if some.random() < 0.5 else ""
+    reactive = ' reactive="false"' if some.random() < 0.1 else ""
+    shown = SHOWN.format("")
+    return f'<on event="{event}"{cond}{reactive}>{contents(some)}{shown}{contents(some)}</on>'
+
+
+ITEMS = [
+    *("", "", '<var name="d" expr="2"/>', '<var name="l" expr="\'y\'"/>'),
+    '<field name="q"><prompt>Well?</prompt><option>yes</option></field>',
+    "<block><speak>Hello.</speak></block>",
+]
+
+
+def document_text(some: Random) -> str:
+    """A document with three forms, of which some only wait."""
+    own = handler(some) if some.random() < 0.5 else ""
+    own += f'<on event="error">{SHOWN.format("failed: ")}</on>'
+    forms = "".join(
+        f'<form id="f{form}">{some.choice(ITEMS)}'
+        f"{''.join(handler(some) for _ in range(some.randint(1, 3)))}</form>"
+        for form in "abc"
+    )
+    variables = "".join(
+        f'<var name="{name}" expr="{code}"/>'
+        for name, code in (("n", "0"), ("t", "'x'"), ("d", "1"), ("l", "undefined"))
+    )
+    return f"{HEAD}{variables}{own}{forms}</prima>"
+
+
+EVENTS = ["go", "go.on", "own", "go", "go", "error.outside", "go", "go.on", "go.on", "own", "go"]
+
+
+def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
+    """The records of a run in which events occur, the variables after it, and how many functions."""
+    document, problems = read_document("a.xml", f"<!-- {quick} -->{text}".encode())
+    errors = {one.code for one in problems if one.severity == "error"}
+    assert errors <= {"undeclared-variable", "no-such-item"}, "only what can be run is of interest"
+    session = Session([document], Policy(), TABLE_4_2)
+    app = session.apps["a"]
+    assert isinstance(app, Interpreter)
+    assume(app.quick)
+    app.quick = quick
+    session.step(0, [Loaded("a")])
+    session.step(1, [Sensed({"touch.head": True})])
+    for now, name in enumerate(EVENTS, 2):
+        session.step(now * 100, [Occurred(name, data={"k": now})])
+        due = session.deadline()
+        if due is not None and due <= now * 100 + 50:
+            session.step(max(due, now * 100), [])
+    scopes = [dict(frame) for frame in (app.frame.document, app.frame.dialog)] if app.frame else []
+    kept = sum(
+        one is not None for form in document.forms.values() for one in form.reactions.values()
+    )
+    return session.drain(), scopes, kept
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.integers(0, 2**32))
+def test_an_event_does_the_same_as_a_function(seed: int) -> None:
+    text = document_text(Random(seed))
+    often, handling.OFTEN = handling.OFTEN, 1
+    try:
+        quick, slow = run(text, True), run(text, False)
+    finally:
+        handling.OFTEN = often
+    assert quick[0] == slow[0]
+    assert repr(quick[1]) == repr(slow[1])
+    assert slow[2] == 0
+
+
+def reaction(content: str, form: str = "", before: str = "") -> Any:
+    """What an event has become that has happened often."""
+    text = f'{HEAD}<var name="n" expr="0"/>{before}<form id="f">{form}<on event="go">{content}</on></form></prima>'
+    document, problems = read_document("a.xml", text.encode())
+    assert not [one for one in problems if one.severity == "error"]
+    session = Session([document], Policy(), TABLE_4_2)
+    session.step(0, [Loaded("a")])
+    for now in range(1, handling.OFTEN):
+        session.step(now, [Occurred("go")])
+    assert not document.forms["f"].reactions
+    session.step(handling.OFTEN, [Occurred("go")])
+    return document.forms["f"].reactions["go"]
+
+
+def test_what_happens_often_becomes_a_function() -> None:
+    assert callable(reaction('<assign name="n" expr="n + 1"/>'))
+
+
+@pytest.mark.parametrize(
+    ("content", "before"),
+    [
+        ("<speak>Hello.</speak>", ""),
+        ('<assign name="n" expr="n + 1"/>' * (reactions.MOST_ACTS + 1), ""),
+        ('<if cond="n">' * 40 + "</if>" * 40, ""),
+        ('<assign name="n" expr="n + 1"/>', '<on event="go" count="2"/>'),
+    ],
+    ids=["Commands", "much", "deep", "counts"],
+)
+def test_what_is_beyond_it_stays_as_it_is(content: str, before: str) -> None:
+    assert reaction(content, before=before) is None
+
+
+def test_handlers_alike_are_compiled_once() -> None:
+    reactions._maker.cache_clear()
+    for name in "abc":
+        assert callable(reaction(f'<log>{name}</log><assign name="n" expr="n + 1"/>'))
+    assert reactions._maker.cache_info().misses == 1
+
+
+def test_what_many_events_do_is_not_all_kept() -> None:
+    text = f'{HEAD}<form id="f"><on event=""><log>it</log></on></form></prima>'
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    session.step(0, [Loaded("a")])
+    for now in range(1, 3 * handling.MOST_KEPT):
+        session.step(now, [Occurred(f"e{now // 2}")])
+    form = document.forms["f"]
+    assert max(len(form.seen), len(form.reactions), len(form.taking)) <= handling.MOST_KEPT
+
+
+def test_a_state_that_is_left_for_one_alike_is_another_state() -> None:
+    text = (
+        f'{HEAD}<var name="n" expr="0"/><form id="f"><on event="go"><goto next="#g"/></on></form>'
+        '<form id="g"><on event="go"><goto next="#f"/></on><on event="say"><speak>Yes.</speak></on>'
+        "</form></prima>"
+    )
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    session.step(0, [Loaded("a")])
+    for now in range(1, 12):
+        session.step(now, [Occurred("go")])
+    assert document.forms["f"].reactions and document.forms["g"].reactions
+    session.step(20, [Occurred("say")])
+    session.step(21, [Occurred("say")])
+    asked = [one["state"] for one in session.drain() if one["phase"] == "request"]
+    assert len(asked) == 2 and asked[0] == asked[1]
+    session.step(30, [Occurred("go")])
+    session.step(31, [Occurred("go")])
+    session.step(32, [Occurred("say")])
+    records = session.drain()
+    assert [one["behavior"] for one in records if one["phase"] == "cancel"], "O3: what waits goes"
+    assert [one["state"] for one in records if one["phase"] == "request"] == [asked[0] + 2]
+
+
+def test_an_error_in_it_is_told_with_its_place() -> None:
+    text = f"""{HEAD}<var name="n" expr="0"/><form id="f">
+<on event="go"><assign name="n" expr="n + 1"/>
+<if cond="n &gt; 6"><log>now</log>
+<assign name="n" expr="n.x.y"/></if></on>
+<on event="error"><log><value expr="event.data.message"/></log></on></form></prima>"""
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    session.step(0, [Loaded("a")])
+    for now in range(1, 8):
+        session.step(now, [Occurred("go")])
+    assert callable(document.forms["f"].reactions["go"])
+    logs = [one["message"] for one in session.drain() if one["phase"] == "log"]
+    assert logs == ["now", "a.xml:4: n.x.y: TypeError: cannot read property 'y' of undefined"]
+
+
+def test_a_loop_of_ever_more_content_ends() -> None:
+    inner = (
+        '<foreach item="i" array="l">' * 4 + '<assign name="n" expr="n + 1"/>' + "</foreach>" * 4
+    )
+    elements = ", ".join(["1"] * 60)
+    text = f'{HEAD}<var name="n" expr="0"/><var name="l" expr="[{elements}]"/><form id="f">'
+    text += f'<on event="go"><if cond="n &gt; 5">{inner}</if><assign name="n" expr="n + 1"/></on></form></prima>'
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    session.step(0, [Loaded("a")])
+    for now in range(1, 9):
+        session.step(now, [Occurred("go")])
+    assert callable(document.forms["f"].reactions["go"])
+    assert "loops without ever waiting" in session.failures[0]
