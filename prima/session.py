@@ -266,8 +266,14 @@ class Session:
         self.chronicle.event(name, value.actor, app, data, serial)
         if name in SEEING:
             self.mediator.sees_user(name == "human.found")
-        apps = self._in_order() if app is None else self._alone(app)
-        self._tell_all(apps, Event(name, serial, data, True))
+        apps = self._alive if app is None else self._alone(app)
+        if apps is None or len(apps) > 1:
+            apps = self._in_order()
+        event = Event(name, serial, data, True)
+        for one in apps:
+            one.event(self.chronicle.now, event)
+            if one.actions or self._due or one.deadline is not None:
+                self._act(one)
 
     def _alone(self, name: str) -> list[App]:
         """The application of a name, if it is there."""
@@ -277,14 +283,10 @@ class Session:
     def _raise(self, name: str, data: Data, apps: list[App], reactive: bool = True) -> None:
         """V1: an event goes to every application; each one's handlers decide."""
         self._serial += 1
-        self._tell_all(apps, Event(name, self._serial, data, reactive))
-
-    def _tell_all(self, apps: list[App], event: Event) -> None:
-        now = self.chronicle.now
+        event = Event(name, self._serial, data, reactive)
         for app in apps:
-            app.event(now, event)
-            if app.actions or app.deadline is not None or self._due:
-                self._act(app)
+            app.event(self.chronicle.now, event)
+            self._act(app)
 
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""

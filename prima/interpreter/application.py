@@ -86,7 +86,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.quick = isinstance(self.engine, PlainEngine)
         """Whether what an event does may be done by a function, where nobody can look into it."""
         self.actions: list[Action] = []
-        self.now = -1
         self.over = False
         self.application = self.engine.named("application")
         self.execute = Executor(self)
@@ -125,7 +124,10 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def event(self, now: int, event: Event) -> None:
         """Something happened that every application is told of, or this one alone."""
         if now != self.now:
-            self._tick(now)
+            if self._timed:
+                self._tick(now)
+            else:
+                self.renew(now)
         self.serial = event.serial
         frame = self.frame
         if frame is not None:
@@ -286,7 +288,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
 
     def _tick(self, now: int) -> None:
         if now != self.now:
-            self.now = now
             self.renew(now)
             if self._timed and not self.over:
                 self._guard(self.engine.clock, self.application, now / 1000)
@@ -396,7 +397,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             if isinstance(transfer, GoForm):
                 self.leave(frame)
                 form = self.document.forms[transfer.form]
-                self.count_step(form.node)
+                if not form.bare:  # else nothing more can happen until the next event
+                    self.count_step(form.node)
                 pending = self.begin(self.frame_for(form, frame))
             elif isinstance(transfer, GoOut):
                 raise transfer

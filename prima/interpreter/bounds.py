@@ -30,6 +30,8 @@ class Bounds(Generic[Evaluator]):
         self.engine = engine
         self.began = moment(START)
         """When the run began by its own calendar (ms since 1970, UTC)."""
+        self.now = -1
+        """The instant: so many ms after the run began."""
         self.written = 0
         """Characters said, logged and sent since the start."""
         self.steps = 0
@@ -38,6 +40,7 @@ class Bounds(Generic[Evaluator]):
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
+        self.now = now
         self.steps = self._output = 0
         engine = self.engine
         engine.now = self.began + now

@@ -31,7 +31,7 @@ from prima.interpreter.elements import (
     all_acts,
     all_items,
 )
-from prima.interpreter.evaluation import ScriptError
+from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS, ScriptError
 from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
 from prima.interpreter.plain import (
     HELPERS,
@@ -130,7 +130,7 @@ class _Writer:
         self.write(2, "try:")
         self.handlers(handlers)
         self.write(2, "except failures as error:")
-        self.write(3, f"return failed(owner, frame, error, {places}[at])")
+        self.write(3, f"return failed(owner, frame, event, error, {places}[at])")
         self.write(2, "return untaken(event)")
 
     def write(self, depth: int, line: str) -> None:
@@ -180,8 +180,9 @@ class _Writer:
 
     def handler(self, handler: Handler) -> None:
         """A handler whose turn it is."""
-        causes = {None: "event.serial if event.reactive else None", True: "event.serial"}
-        self.write(4, f"owner.cause = {causes.get(handler.reactive)}")
+        if not self.form.bare or any(not self.stays(act) for act in all_acts(handler.content)):
+            causes = {None: "event.serial if event.reactive else None", True: "event.serial"}
+            self.write(4, f"owner.cause = {causes.get(handler.reactive)}")
         self.write(4, f"at = {self.at(handler, None)}")
         before, self.with_fiber = len(self.lines), False
         self.block(4, handler, handler.content)
@@ -196,8 +197,8 @@ class _Writer:
             raise _Beyond
         self.write(depth, f"owner.steps += {len(content)}")
         if content:
-            over = f"owner.count_step({self.give(content[0].node)}, 0)"
-            self.write(depth, f"if owner.steps > {MAX_STEPS}: {over}")
+            over = f"owner.steps > {MAX_STEPS} or owner.engine.spent > {MAX_SCRIPT_SECONDS}"
+            self.write(depth, f"if {over}: owner.count_step({self.give(content[0].node)}, 0)")
         for act in content:
             match act:
                 case Assign() if "." not in act.name:
@@ -251,6 +252,15 @@ class _Writer:
             self.block(depth + 1, handler, content)
             word = "elif"
 
+    def stays(self, act: Act) -> bool:
+        """Whether nothing can be asked for because of content: no reaction comes of it (C5)."""
+        match act:
+            case Assign() | Declare() | If():
+                return True
+            case Goto(form=str(form), item=None) if form in self.document.forms:
+                return isinstance(self.way(form), Hop)
+        return False
+
     def way(self, form: str) -> Transfer:
         """The way to a form."""
         target = self.document.forms[form]
@@ -289,13 +299,18 @@ def dialog_names(document: Document) -> frozenset[str]:
     return document.dialog_names
 
 
-def failed(owner: Interpreter, frame: Frame, error: Thrown | ScriptError, place: Place) -> Transfer:
+def failed(
+    owner: Interpreter, frame: Frame, event: Event, error: Thrown | ScriptError, place: Place
+) -> Transfer:
     """Something has failed: an event that the handler's own state may handle.
 
     Raises:
         Thrown: it failed in a condition, before any handler had its turn.
     """
     handler, expr = place
+    if handler is not None:
+        reactive = event.reactive if handler.reactive is None else handler.reactive
+        owner.cause = event.serial if reactive else None
     if expr is not None and isinstance(error, ScriptError):
         error = owner.execute.failure(error, expr)
     if handler is None:

@@ -33,7 +33,7 @@ class Chronicle:
             "actor": actor,
             "app": app,
             "event": name,
-            "data": dict(data) or None,
+            "data": dict(data) if data else None,
             "serial": serial,
             "inbound": True,
         }

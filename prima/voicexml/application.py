@@ -58,7 +58,6 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._state = 0
         self._cause: int | None = None
         self._marked: str | None = None
-        self._instant = -1
         self._sends = count(1)
         self.connection: Data = {}
         """What is known of the user's connection (5.1.4)."""
@@ -201,11 +200,6 @@ class VoiceInterpreter(Bounds["Engine"]):
         self.actions.append(Send(service, data, serial, source(node)))
         return serial
 
-    @property
-    def now(self) -> int:
-        """The instant (ms)."""
-        return self._instant
-
     def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
         """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
         late.serial = self.send(uri, data, node)
@@ -215,7 +209,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         """Wait for an answer to what has been asked; without a timeout, for ever."""
         self._asked, self._answer, self._late = late.serial, None, late
         self._calling = isinstance(late, Transferred)
-        self.deadline = None if timeout is None else self._instant + timeout
+        self.deadline = None if timeout is None else self.now + timeout
 
     @property
     def overdue(self) -> bool:
@@ -256,8 +250,7 @@ class VoiceInterpreter(Bounds["Engine"]):
             self._happened(self._missed.popleft())
 
     def _tick(self, now: int) -> None:
-        if now != self._instant:
-            self._instant = now
+        if now != self.now:
             self.renew(now)
 
     def _drive(self, resume: Resume | None) -> None:
