@@ -4,7 +4,7 @@ The standard library writes and compiles all methods of a dataclass where the cl
 takes longer than all else in the import of most modules, and a command uses few of the classes
 and few of their methods. :func:`dataclass` and :func:`field` mean what they mean there, and type
 checkers take them for the standard library's; only the moment is another one: ``__init__`` is made
-for the first object, and the rest, by the standard library itself, when it is first asked for.
+when there are some objects, and the rest, by the standard library itself, when it is first asked for.
 :func:`pattern` means :func:`re.compile` in the same way: most commands use few of the patterns of
 the modules that they import.
 """
@@ -25,6 +25,8 @@ __all__ = ["dataclass", "field", "field_names", "pattern"]
 
 NONE = object()
 """Stands for a default that is not there."""
+FEW = 15
+"""Objects of a class that are filled field by field, before its ``__init__`` is compiled."""
 
 
 class _Field:
@@ -95,7 +97,13 @@ def _dataclass(
                 if name not in own and name not in names and name not in KEPT:
                     setattr(made, name, value)
 
+        made_until_now = 0
+
         def first(self: Any, *args: Any, **named: Any) -> None:
+            nonlocal made_until_now
+            made_until_now += 1
+            if made_until_now <= FEW and _fill(self, fields, args, named):
+                return
             init = _init(made, fields, frozen)
             setattr(made, "__init__", init)  # noqa: B010
             init(self, *args, **named)
@@ -127,6 +135,29 @@ def _dataclass(
 
 KEPT = ("__slots__", "__init__", "__match_args__")
 """What the class has already when the standard library's methods are made."""
+
+
+def _fill(self: Any, fields: dict[str, Any], args: tuple[Any, ...], named: dict[str, Any]) -> bool:
+    """Do what the ``__init__`` of a class with such fields does; False if the arguments are wrong.
+
+    It takes longer than a function of its own, and less long than to compile one.
+    """
+    given = dict(zip(fields, args, strict=False))
+    if len(args) > len(fields) or given.keys() & named.keys() or named.keys() - fields.keys():
+        return False
+    given |= named
+    for name, default in fields.items():
+        if name not in given:
+            if isinstance(default, _Field):
+                default = default.factory() if default.factory is not None else default.default
+            if default is NONE:
+                return False
+            given[name] = default
+    for name, value in given.items():
+        object.__setattr__(self, name, value)
+    if hasattr(self, "__post_init__"):
+        self.__post_init__()
+    return True
 
 
 def _init(made: type, fields: dict[str, Any], frozen: bool) -> Any:

@@ -616,7 +616,10 @@ class Checker:
 
     def _assigns(self, expr: Expression) -> None:
         """A condition that gives a variable a value, where a comparison was meant."""
-        if "=" not in expr.code or expr.attribute not in ("cond", "when"):
+        code = expr.code
+        for comparison in ("==", "!=", "<=", ">=", "=>"):
+            code = code.replace(comparison, "")
+        if "=" not in code or expr.attribute not in ("cond", "when"):
             return
         found = ASSIGNMENT.search(STRINGS.sub(lambda text: "_" * len(text[0]), expr.code))
         if found:
@@ -692,7 +695,7 @@ class Checker:
 
     def _literal(self, node: Node, text: Text | None, form: Form | None) -> None:
         for part in text or ():
-            found = BRACES.search(part) if isinstance(part, str) else None
+            found = BRACES.search(part) if isinstance(part, str) and "{" in part else None
             if found and found[1] in (self.known_in(form) if form else self.shared):
                 message = f'"{found[0]}" is said as it stands.'
                 remedy = f'Write <value expr="{found[1]}"/>.'

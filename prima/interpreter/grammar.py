@@ -30,7 +30,8 @@ def fold(text: str) -> str:
     folded = unicodedata.normalize("NFKC", text).casefold()
     for quote in "'\u2019\u2018`\u00b4":
         folded = folded.replace(quote, "")
-    pieces = _NUMBER.split(folded)  # separators inside numbers and times are kept
+    # Separators inside numbers and times are kept.
+    pieces = _NUMBER.split(folded) if any(map(str.isdecimal, folded)) else [folded]
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
     said = " ".join("".join(pieces).split())
     return said if said.isascii() else re.sub(_BETWEEN_CJK, "", said)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from prima.errors import did_you_mean
@@ -86,7 +85,10 @@ def _repeat(note: Note, node: Node) -> tuple[int, int]:
     """The repeat attribute of an item: n, m-n or m-."""
     text = node.get("repeat", "1") or "1"
     low, dash, high = text.partition("-")
-    fits = all(re.fullmatch("[0-9]{1,3}", part) for part in (low, *([high] if high else [])))
+    fits = all(
+        part.isascii() and part.isdecimal() and len(part) <= 3
+        for part in (low, *([high] if high else []))
+    )
     if not fits or (high and int(low) > int(high)):
         note(
             node,
