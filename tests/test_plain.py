@@ -104,7 +104,22 @@ LITERALS = [
     *("'four'", '"x"', "''", "' 0x1F '", "'1e2'", "'Infinity'", r"'it\'s\n\\'", "true", "false"),
     *("null", "[]", "[1, -2, 'a', null]", "{}", "{a: 1, 'b': 'c', n: true}", "'😀'"),
 ]
-MEMBERS = [".t", ".n", ".length", "[0]", "[1]", "[3]", "['t']", "['2']", '["10"]', "[1.5]", ".deep"]
+MEMBERS = [
+    ".t",
+    ".n",
+    ".length",
+    "[0]",
+    "[1]",
+    "[3]",
+    "?.t",
+    "?.[1]",
+    "?.n",
+    "['t']",
+    "['2']",
+    '["10"]',
+    "[1.5]",
+    ".deep",
+]
 OPERATORS = [
     *("+", "-", "*", "/", "%", "<", ">", "<=", ">=", "==", "!=", "===", "!==", "&&", "||"),
 ]
@@ -145,7 +160,8 @@ def test_both_evaluators_agree(code: str) -> None:
     "code",
     [
         "typeof missing", "typeof missing.x", "typeof sensor", "typeof NaN", "typeof undefined", "typeof event", "typeof true", "typeof (missing)", "typeof u", "typeof nil", "typeof o", "typeof yes", "typeof typeof n", "smile.length", "smile[1]", "smile[2]",
-        "smile[1] + smile[2]", "smile[1] + 'x'", "'a' < smile", "'\uff61' < smile", "o", "document", "list", "list + list", "o + 1",
+        "smile[1] + smile[2]", "o?.t", "nil?.x", "u?.x.y.z", "o.q?.x", "o?.q.x", "missing?.x", "o?.['t']", "list?.[0]", "u?.['t'].x", "o.q?.x?.y.z",
+        "o?.['2'].deep[0]", "(u?.x).y", "typeof u?.x", "o.n?.length < 3", "o?.t?.length + 1", "!o?.q?.x", "nil?.x ? 1 : 2", "smile[1] + 'x'", "'a' < smile", "'\uff61' < smile", "o", "document", "list", "list + list", "o + 1",
         "o == '[object Object]'", "list == '1,b,,2,3'", "nil == u", "nil == 0", "u == 0", "nil >= 0", "'10' < '9'", "'10' < 9", "digits * 1",
         "' ' == 0", "'abc' * 1", "-digits", "+nil", "+u", "+list", "+[]", "+[7]", "n % 0", "-n % 3", "n / 0", "-n / 0", "0 / 0",
         "n / -0", "-0", "0 * -1", "1e308 * 10", "9007199254740993", "0.1 + 0.2", "event.name", "event.data.n + 1", "_event", "_message", "session.time",
@@ -162,7 +178,7 @@ def test_an_expression_means_the_same(code: str) -> None:
     "code",
     [
         *("f()", "n = 1", "n += 1", "n++", "--n", "a, b", "x => x", "`${n}`", "/a/", "n & 1", "n | 1"),
-        *("n ** 2", "n << 1", "n >> 1", "~n", "a ?? b", "a?.b", "new X", "this", "n in o", "[...a]"),
+        *("n ** 2", "n << 1", "n >> 1", "~n", "a ?? b", "n?.5:1", "a?.()", "a?.b()", "a?.[n]", "a?.", "a?.toString", "new X", "this", "n in o", "[...a]"),
         *("o.toString", "o.constructor", "o['__proto__']", "list.map", "t.trim", "toString", "Math"),
         *("Math.max", "list[n]", "[n]", "{a: n}", "{n}", "{2: 1}", "'\\u0041'", "'\\x41'", "08", "0x1F"),
         *("1_000", "10n", "1.toString", "n // x", "n /* x */", "n <!-- x", "(n", "n)", "", " ", "n n"),

@@ -171,7 +171,7 @@ TOKEN = pattern(
     r"""|(?P<name>[A-Za-z_$][\w$]*)|(?P<text>"[^"\\\n\r]*"|'[^'\\\n\r]*')"""
     r"""|(?P<escaped>"(?:\\[^ux0-9\n\r\u2028\u2029]|[^"\\\n\r])*"|'(?:\\[^ux0-9\n\r\u2028\u2029]|[^'\\\n\r])*')"""
     r"""|(?P<mark>[=!]==?|[<>]=|&&|\|\||\+(?![+=])|-(?![-=])|\*(?![*=])|/(?![/*=])|%(?!=)|[<>](?![<>])"""
-    r"""|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
+    r"""|\?\.(?![0-9])|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
     re.ASCII,
 )
 NUMERIC = pattern(
@@ -303,6 +303,8 @@ class _Piece:
     depth: int = 0
     """How deep brackets stand inside each other."""
     literal: bool = False
+    place: str = ""
+    """Line and column of the operator that it comes from, if any, as two arguments."""
 
 
 def _joined(kind: str, *parts: str | _Piece) -> _Piece:
@@ -408,6 +410,7 @@ class _Parser:
                 left = self.equality(token.text, left, right)
             else:
                 left = self.operation(token.text, left, right)
+            left.place = self.place(token.start)
 
     def logical(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
         """``a && b`` or ``a || b``: one of the two values."""
@@ -495,26 +498,39 @@ class _Parser:
         return _Piece(f"kind_of(found({read[0].text!r}{self.scopes}))", "text", 3)
 
     def member(self) -> _Piece:
-        """``a.b`` and ``a["b"]``; which member it is must be written out."""
+        """``a.b``, ``a["b"]`` and ``a?.b``; which member it is must be written out."""
         start = self.place(self.tokens[self.at].start)
         value = self.primary()
+        found = self.chain(value, value.place or start)
+        found.place = value.place
+        return found
+
+    def chain(self, value: _Piece, start: str) -> _Piece:
+        """Members of members of a value; ``?.`` ends the chain where there is no value."""
         while True:
-            if self.comes("."):
-                token = self.take()
-                if token.kind != "name":
-                    raise _Beyond
-                value = self.part(value, token.text, start)
-            elif self.comes("["):
-                token = self.take()
-                if token.kind == "number":
-                    value = self.part(value, number_text(float(token.text)), start)
-                elif token.kind == "text":
-                    value = self.part(value, token.text[1:-1], start)
-                else:
-                    raise _Beyond
-                self.expect("]")
-            else:
+            if self.comes("?."):
+                held = self.holder()
+                bracket = self.comes("[")
+                rest = self.chain(self.one(_Piece(held), start, bracket), start)
+                absent = f") is None or {held} is undefined else "
+                return _joined("", f"(undefined if ({held} := ", value, absent, rest, ")")
+            bracket = self.comes("[")
+            if not bracket and not self.comes("."):
                 return value
+            value = self.one(value, start, bracket)
+
+    def one(self, value: _Piece, start: str, bracket: bool) -> _Piece:
+        """The member of a value whose name comes next, perhaps in brackets."""
+        token = self.take()
+        if bracket and token.kind in ("number", "text"):
+            self.expect("]")
+            number = token.kind == "number"
+            key = number_text(float(token.text)) if number else token.text[1:-1]
+        elif not bracket and token.kind == "name":
+            key = token.text
+        else:
+            raise _Beyond
+        return self.part(value, key, start)
 
     def part(self, value: _Piece, key: str, start: str) -> _Piece:
         """A member of a value, which mostly is an object that has it."""
@@ -975,7 +991,7 @@ def outward(value: Any) -> Json:
 
 
 HELPERS: dict[str, Any] = {
-    "infinity": math.inf, "sought": sought, "found": found, "member": member, "truth": truth,
+    "infinity": math.inf, "undefined": UNDEFINED, "sought": sought, "found": found, "member": member, "truth": truth,
     "kind_of": kind_of, "equal": equal, "identical": identical, "numeric": numeric, "add": add,
     "subtract": _arithmetic(operator.sub), "multiply": _arithmetic(operator.mul),
     "divided": _arithmetic(divide), "remaining": _arithmetic(remainder),

@@ -36,7 +36,6 @@ from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
 from prima.interpreter.plain import (
     HELPERS,
     LONG,
-    UNDEFINED,
     Compiled,
     PlainEngine,
     Scope,
@@ -333,7 +332,7 @@ def untaken(event: Event) -> Transfer:
 
 
 NAMES: dict[str, Any] = {
-    **HELPERS, "undefined": UNDEFINED, "nothing": PlainEngine.nothing, "Scope": Scope,
+    **HELPERS, "nothing": PlainEngine.nothing, "Scope": Scope,
     "Fiber": Fiber, "failures": (Thrown, ScriptError), "failed": failed, "untaken": untaken,
     "holder_of": holder_of,
 }  # fmt: skip
