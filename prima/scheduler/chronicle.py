@@ -92,15 +92,17 @@ class Chronicle:
 
     def decision(self, winner: Behavior, rule: str, losers: list[Behavior], count: int) -> None:
         """Record a selection: the rule, who won, who lost, and how many did."""
-        self.add(
-            "decision",
-            "mediator",
-            app=winner.app.name,
-            winner=winner.id,
-            rule=rule,
-            losers=[ab.id for ab in losers],
-            losers_count=count,
-        )
+        record: Record = {
+            "time": self.now,
+            "phase": "decision",
+            "actor": "mediator",
+            "app": winner.app.name,
+            "winner": winner.id,
+            "rule": rule,
+            "losers": [ab.id for ab in losers],
+            "losers_count": count,
+        }
+        self.records.append(record)
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:

@@ -245,7 +245,7 @@ class Mediator(Failures):
         self._close_streams()
         if not self.halted:
             self._selector.select(self._now())
-            self._setdeadlines()
+            self._set_deadlines()
         if self._rolling is not None and "locomotion" not in self.memory.occupied:
             ab = self._rolling
             self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
@@ -285,7 +285,7 @@ class Mediator(Failures):
         if not self.memory.floor:
             self._selector.take_floor(stream, "X3")
 
-    def _setdeadlines(self) -> None:
+    def _set_deadlines(self) -> None:
         for name in self._selector.given_up:
             self.deadlines.pop(name, None)
         for ab in self._selector.started:

@@ -38,6 +38,10 @@ class Selector:
         self.chronicle = chronicle
         self.bound = bound
         self.few = FEW
+        self._lining = policy.lined
+        """What the policy's extensions ask of every AB that is looked at."""
+        self._preparing = policy.has("x1") or policy.has("x4")
+        self._composing = policy.has("x5")
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
@@ -71,7 +75,7 @@ class Selector:
         for index, (rank, ab) in enumerate(candidates):
             refusal = self.policy.refusal(ab, memory)
             if refusal is None:
-                if self._prepare(ab, now):
+                if self._preparing and self._prepare(ab, now):
                     return True
                 refusal = self._refused_by_devices(ab, held)
                 if refusal is not None and self.policy.holds_back(ab):
@@ -103,7 +107,7 @@ class Selector:
 
     def _lined(self) -> bool:
         """Whether so many wait that not each of them is looked at."""
-        return len(self.memory.waiting) > self.few and self.policy.lined
+        return self._lining and len(self.memory.waiting.all) > self.few
 
     def _ranked(self, found: Iterable[Behavior], now: int) -> list[tuple[Rank, Behavior]]:
         ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
@@ -129,13 +133,17 @@ class Selector:
         together = ((-line.priority,), (1,), (1,))
         free = line.devices.isdisjoint(winner.devices)
         let = self._let(line) if free else NOBODY
-        if together < rank[:3] or let is EVERYBODY:
+        ahead = rank[:3]
+        if together < ahead or let is EVERYBODY:
             return [], 0
-        place = rank[3:] if together == rank[:3] else LEAST
+        place = rank[3:] if together == ahead else LEAST
         start = line.below(place)
         apart = {ab.name for ab in waiting.fresh(now)}  # ranked one by one
         if isinstance(let, Application):
             apart |= {ab.name for ab in waiting.of(let)}
+        if not apart:
+            first = line.entries[start : start + LOSERS_NAMED]
+            return [(together + place, ab) for place, ab in first], len(line.entries) - start
         count = len(line.entries) - start - sum(waiting.stands(name, line, place) for name in apart)
         first = line.entries[start : start + LOSERS_NAMED + len(apart)]
         named = [(together + place, ab) for place, ab in first if ab.name not in apart]
@@ -144,6 +152,8 @@ class Selector:
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
+            return None
+        if not held and self.memory.occupied.keys().isdisjoint(ab.devices):
             return None
         kept = min(ab.devices & held.keys(), default="")
         other = self._occupant(ab)
@@ -156,7 +166,7 @@ class Selector:
     def _occupant(self, ab: Behavior) -> Behavior | None:
         """Who occupies one of the AB's devices, but for a motion to be composed with (X5)."""
         other = self.memory.conflict(ab)
-        if other is None or not self.policy.has("x5") or not ab.motion:
+        if other is None or not self._composing or not ab.motion:
             return other
         return next(iter(self._in_the_way(ab)), None)
 
@@ -165,7 +175,7 @@ class Selector:
         return [
             other
             for other in self.memory.conflicts(ab)
-            if not self.policy.has("x5") or {ab.motion, other.motion} != COMPOSED
+            if not self._composing or {ab.motion, other.motion} != COMPOSED
         ]
 
     # Extensions -------------------------------------------------------------
@@ -287,7 +297,7 @@ class Selector:
         """Start an AB and record why; true when others rank otherwise now, or may start."""
         memory, policy = self.memory, self.policy
         holder = memory.holder
-        composed = policy.has("x5") and composes_with_floor(ab, memory)
+        composed = self._composing and composes_with_floor(ab, memory)
         by_floor_rule = holder is not None and holder.app is not ab.app and not composed
         others = bool(memory.running)
         # Where the floor changes, all others are suspended: then each is looked at anyway.
@@ -332,7 +342,8 @@ class Selector:
             rule = "S4" if others else "S1"
         self.chronicle.decision(ab, rule, [other for _, other in losers[:LOSERS_NAMED]], count)
         self._record_start(ab, rule, reaction)
-        self._advance(ab, now)
+        if ab.inner:
+            self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
             changed = self._count_starving(ab) or changed
         return changed or policy.turning
@@ -349,7 +360,7 @@ class Selector:
         if ab.feedback:
             ab.next_loop()
         self.started.append(ab)
-        beside = self.policy.has("x5") and self.memory.conflict(ab) is not None
+        beside = self._composing and self.memory.conflict(ab) is not None
         first = ab.started < 0 or ab.restarting
         ab.resumed = ab.resumed or ab.restarting
         ab.restarting = False
