@@ -63,7 +63,7 @@ AnyDocument: TypeAlias = "Document | VoiceDocument"
 App: TypeAlias = "Interpreter | VoiceInterpreter"
 
 
-SEEING = ("human.found", "human.lost")
+SEEING = frozenset(["human.found", "human.lost"])
 """Events by which the camera tells whether it sees the user (V4)."""
 watchers: list[Callable[[App], None]] = []
 """Told of every interpreter that is made: what tests are covered by is seen from here."""

@@ -190,6 +190,42 @@ def test_what_may_mean_more_is_left_to_the_engine(code: str) -> None:
     assert compiled(code) is None
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("it's", '"""', "'''", "{}", "{0}", "%s", "\\", "x\\", "\\'", "', __import__('os'), '"),
+        *(
+            "#",
+            "v1",
+            "scopes",
+            "\u2028",
+            "\ud800",
+            "😀",
+            "\\n",
+            "{v1}",
+            "\x00",
+            "\x7f",
+            "a\tb",
+            '"',
+        ),
+    ],
+)
+def test_no_text_becomes_code(text: str) -> None:
+    """A text means itself, whatever it would be in the Python in which expressions are written."""
+    inside = text.replace("\\", "\\\\").replace('"', '\\"')
+    literals = (f'"{inside}"', f't + "{inside}"', f'["{inside}"]', f'{{"k": "{inside}"}}')
+    for code in literals:
+        for found in (compiled(code), quick(code)):
+            if found is None:
+                assert "\\" in inside, "only what is escaped may be left to the engine"
+                continue
+            value = plain.function_of(found.source)(scopes_of(PlainEngine()))
+            assert value in (text, f"hidden{text}", [text], {"k": text})
+    scopes = scopes_of(PlainEngine())
+    scopes[1]["s"] = text
+    assert plain.function_of(quick("s + ''").source)(scopes) == text
+
+
 def test_the_engines_own_names_are_known() -> None:
     scopes = scopes_of(ENGINE)
     own = set(ENGINE.value("Object.getOwnPropertyNames(globalThis)", scopes))

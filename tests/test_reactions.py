@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+from copy import deepcopy
 from random import Random
 from typing import Any
 
@@ -190,6 +192,19 @@ def test_what_many_events_do_is_not_all_kept() -> None:
         session.step(now, [Occurred(f"e{now // 2}")])
     form = document.forms["f"]
     assert max(len(form.seen), len(form.reactions), len(form.taking)) <= handling.MOST_KEPT
+
+
+def test_a_document_that_has_run_can_be_given_to_another_process() -> None:
+    text = f'{HEAD}<form id="f"><on event="go"><log>it</log></on></form></prima>'
+    document, _ = read_document("a.xml", text.encode())
+    for copy in (document, pickle.loads(pickle.dumps(document)), deepcopy(document)):
+        session = Session([copy], Policy(), TABLE_4_2)
+        session.step(0, [Loaded("a")])
+        for now in range(1, 8):
+            session.step(now, [Occurred("go")])
+        assert copy.forms["f"].reactions
+        assert len([one for one in session.drain() if one["phase"] == "log"]) == 7
+    assert not pickle.loads(pickle.dumps(document)).forms["f"].reactions
 
 
 def test_a_state_that_is_left_for_one_alike_is_another_state() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from prima.deferred import dataclass, field
+from prima.deferred import dataclass, field, field_names
 from prima.interpreter.grammar import Answers, Grammar
 from prima.markup.tree import Node
 
@@ -330,6 +330,11 @@ class Form:
 
     def __post_init__(self) -> None:
         self.bare = not (self.items or self.setup or self.watches)
+
+    def __getstate__(self) -> tuple[None, dict[str, Any]]:
+        """What of it can be copied to another process: functions are written anew there."""
+        kept = {name: getattr(self, name) for name in field_names(type(self))}
+        return None, {**kept, "seen": {}, "reactions": {}}
 
 
 Content = tuple[Form | None, list[Act], Node]

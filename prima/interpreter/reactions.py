@@ -36,6 +36,7 @@ from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
 from prima.interpreter.plain import (
     HELPERS,
     LONG,
+    VARIABLES,
     Compiled,
     PlainEngine,
     Scope,
@@ -115,6 +116,8 @@ class _Writer:
         self.places: list[Place] = [(None, None)]
         self.with_fiber = False
         """Whether the handler that is being written calls anything that needs its fiber."""
+        self.with_sensors = False
+        """Whether any code may look at sensors."""
 
     def reaction(self, handlers: list[Handler]) -> None:
         """The whole function."""
@@ -124,13 +127,16 @@ class _Writer:
             local = "owner.handling.event_scope(event)" if curious else "Scope()"
         places = self.give(self.places)
         self.write(1, "def react(owner, frame, event):")
-        self.write(2, "if owner.untold: owner.handling.tell_sensors()")
+        before = len(self.lines)
         self.write(2, f"document, dialog, local = frame.document, frame.dialog, {local}")
         self.write(2, "try:")
         self.handlers(handlers)
         self.write(2, "except failures as error:")
         self.write(3, f"return failed(owner, frame, event, error, {places}[at])")
         self.write(2, "return untaken(event)")
+        if self.with_sensors:
+            line = "  if owner.untold: owner.handling.tell_sensors()"
+            self.lines.insert(before, line)
 
     def write(self, depth: int, line: str) -> None:
         """A line of the function."""
@@ -156,6 +162,8 @@ class _Writer:
         found = quickly(expr.code, SCOPES, self.where)
         if found is None:
             raise _Beyond
+        if "sensor" in expr.code or "application" in expr.code:
+            self.with_sensors = True
         return found
 
     def condition(self, expr: Expression) -> str:
@@ -215,13 +223,17 @@ class _Writer:
 
     def assign(self, depth: int, handler: Handler, act: Assign) -> None:
         """A declared variable has a new value; innermost scope first, mostly the document's."""
-        name = repr(act.name)
-        inner = "".join(f" and {name} not in {scope}" for scope in self.where(act.name)[1:])
-        holder = f"document if {name} in document{inner} else holder_of({name}, {SCOPES})"
+        name, inner = repr(act.name), self.where(act.name)[1:]
+        several = inner or act.name in VARIABLES
+        scope, holder = "scope" if several else "document", f"holder_of({name}, {SCOPES})"
         self.write(depth, f"at = {self.at(handler, act.expr)}")
-        self.write(depth, f"scope = {holder}")
-        self.value(depth, act.expr, "scope")
-        self.write(depth, f"scope[{name}] = value")
+        if several:
+            hidden = "".join(f" and {name} not in {one}" for one in inner)
+            self.write(depth, f"scope = document if {name} in document{hidden} else {holder}")
+        else:
+            self.write(depth, f"if {name} not in document: {holder}")
+        self.value(depth, act.expr, scope)
+        self.write(depth, f"{scope}[{name}] = value")
 
     def declare(self, depth: int, handler: Handler, act: Declare) -> None:
         """A variable of the handler's own."""

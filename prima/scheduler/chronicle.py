@@ -9,6 +9,10 @@ LOSERS_NAMED = 8
 """How many losers of a decision are named; all are counted."""
 
 
+Occurrence = tuple[int, str, str | None, str, dict[str, Json] | None, int]
+"""An event that has come in: when, whose, for which application, its name, data and number."""
+
+
 class Chronicle:
     """Collects the records of a run; ``now`` is the instant, in milliseconds."""
 
@@ -16,7 +20,7 @@ class Chronicle:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
         """Which of X1 to X6 are on: what they rest on is recorded with a request."""
-        self.records: list[Record] = []
+        self.records: list[Record | Occurrence] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
         """Record something. Fields that are None are left out when it is written."""
@@ -26,23 +30,13 @@ class Chronicle:
         self.records.append(fields)
 
     def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
-        """Record an event that has come in."""
-        record: Record = {
-            "time": self.now,
-            "phase": "event",
-            "actor": actor,
-            "app": app,
-            "event": name,
-            "data": dict(data) if data else None,
-            "serial": serial,
-            "inbound": True,
-        }
-        self.records.append(record)
+        """Record an event that has come in: there are many, so it becomes a record when drained."""
+        self.records.append((self.now, actor, app, name, dict(data) if data else None, serial))
 
     def drain(self) -> list[Record]:
         """Give what was recorded since the last time."""
         records, self.records = self.records, []
-        return records
+        return [one if type(one) is dict else occurred(*one) for one in records]
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
@@ -103,6 +97,22 @@ class Chronicle:
             "losers_count": count,
         }
         self.records.append(record)
+
+
+def occurred(
+    time: int, actor: str, app: str | None, event: str, data: dict[str, Json] | None, serial: int
+) -> Record:
+    """The record of an event that has come in."""
+    return {
+        "time": time,
+        "phase": "event",
+        "actor": actor,
+        "app": app,
+        "event": event,
+        "data": data,
+        "serial": serial,
+        "inbound": True,
+    }
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
