@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from prima.commands import TABLE_4_2
 from prima.interpreter import handling, reactions
 from prima.interpreter.application import Interpreter
+from prima.interpreter.handling import known_of
 from prima.interpreter.reader import read_document
 from prima.messages import Loaded, Occurred, Sensed
 from prima.scheduler.selection import Policy
@@ -125,7 +126,10 @@ def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
             session.step(max(due, now * 100), [])
     scopes = [dict(frame) for frame in (app.frame.document, app.frame.dialog)] if app.frame else []
     kept = sum(
-        one is not None for form in document.forms.values() for one in form.reactions.values()
+        one is not None
+        for form in document.forms.values()
+        if form.known
+        for one in form.known.reactions.values()
     )
     return session.drain(), scopes, kept
 
@@ -153,9 +157,9 @@ def reaction(content: str, form: str = "", before: str = "") -> Any:
     session.step(0, [Loaded("a")])
     for now in range(1, handling.OFTEN):
         session.step(now, [Occurred("go")])
-    assert not document.forms["f"].reactions
+    assert not known_of(document.forms["f"]).reactions
     session.step(handling.OFTEN, [Occurred("go")])
-    return document.forms["f"].reactions["go"]
+    return known_of(document.forms["f"]).reactions["go"]
 
 
 def test_what_happens_often_becomes_a_function() -> None:
@@ -190,8 +194,8 @@ def test_what_many_events_do_is_not_all_kept() -> None:
     session.step(0, [Loaded("a")])
     for now in range(1, 3 * handling.MOST_KEPT):
         session.step(now, [Occurred(f"e{now // 2}")])
-    form = document.forms["f"]
-    assert max(len(form.seen), len(form.reactions), len(form.taking)) <= handling.MOST_KEPT
+    known = known_of(document.forms["f"])
+    assert max(len(known.seen), len(known.reactions), len(known.taking)) <= handling.MOST_KEPT
 
 
 def test_a_document_that_has_run_can_be_given_to_another_process() -> None:
@@ -202,9 +206,9 @@ def test_a_document_that_has_run_can_be_given_to_another_process() -> None:
         session.step(0, [Loaded("a")])
         for now in range(1, 8):
             session.step(now, [Occurred("go")])
-        assert copy.forms["f"].reactions
+        assert known_of(copy.forms["f"]).reactions
         assert len([one for one in session.drain() if one["phase"] == "log"]) == 7
-    assert not pickle.loads(pickle.dumps(document)).forms["f"].reactions
+    assert not known_of(pickle.loads(pickle.dumps(document)).forms["f"]).reactions
 
 
 def test_a_state_that_is_left_for_one_alike_is_another_state() -> None:
@@ -218,7 +222,7 @@ def test_a_state_that_is_left_for_one_alike_is_another_state() -> None:
     session.step(0, [Loaded("a")])
     for now in range(1, 12):
         session.step(now, [Occurred("go")])
-    assert document.forms["f"].reactions and document.forms["g"].reactions
+    assert known_of(document.forms["f"]).reactions and known_of(document.forms["g"]).reactions
     session.step(20, [Occurred("say")])
     session.step(21, [Occurred("say")])
     asked = [one["state"] for one in session.drain() if one["phase"] == "request"]
@@ -242,7 +246,7 @@ def test_an_error_in_it_is_told_with_its_place() -> None:
     session.step(0, [Loaded("a")])
     for now in range(1, 8):
         session.step(now, [Occurred("go")])
-    assert callable(document.forms["f"].reactions["go"])
+    assert callable(known_of(document.forms["f"]).reactions["go"])
     logs = [one["message"] for one in session.drain() if one["phase"] == "log"]
     assert logs == ["now", "a.xml:4: n.x.y: TypeError: cannot read property 'y' of undefined"]
 
@@ -259,5 +263,5 @@ def test_a_loop_of_ever_more_content_ends() -> None:
     session.step(0, [Loaded("a")])
     for now in range(1, 9):
         session.step(now, [Occurred("go")])
-    assert callable(document.forms["f"].reactions["go"])
+    assert callable(known_of(document.forms["f"]).reactions["go"])
     assert "loops without ever waiting" in session.failures[0]

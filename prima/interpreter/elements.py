@@ -303,6 +303,23 @@ class Unit(Item):
     longest: int = 60000
 
 
+class Known:
+    """What has been found out of the events that have happened in a form.
+
+    Each is kept by its name, or by that of the item that was being visited and its own.
+    """
+
+    __slots__ = ("reactions", "seen", "taking")
+
+    def __init__(self) -> None:
+        self.taking: dict[Any, Any] = {}
+        """The handlers in scope that take it."""
+        self.seen: dict[Any, int] = {}
+        """How often it has happened until now."""
+        self.reactions: dict[Any, Any] = {}
+        """What it does, as a function, if it has happened often; None if that cannot be."""
+
+
 @dataclass(slots=True)
 class Form:
     """A state of the application."""
@@ -318,12 +335,8 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
-    taking: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
-    """The handlers in scope by an item's and an event's name, as they have been looked for."""
-    seen: dict[Any, int] = field(default_factory=dict, repr=False, compare=False)
-    """How often each event has happened in it until now."""
-    reactions: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
-    """What events do in it that have happened often, as functions; None if that cannot be."""
+    known: Known | None = field(default=None, repr=False, compare=False)
+    """What has been found out of the events that have happened in it."""
 
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""
@@ -334,7 +347,7 @@ class Form:
     def __getstate__(self) -> tuple[None, dict[str, Any]]:
         """What of it can be copied to another process: functions are written anew there."""
         kept = {name: getattr(self, name) for name in field_names(type(self))}
-        return None, {**kept, "seen": {}, "reactions": {}}
+        return None, {**kept, "known": None}
 
 
 Content = tuple[Form | None, list[Act], Node]

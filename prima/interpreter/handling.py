@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.elements import Expression, Form, Handler, Item, Watch
+from prima.interpreter.elements import Expression, Form, Handler, Item, Known, Watch
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
 from prima.interpreter.names import GLOBALS, free_names, tokens_of
@@ -37,6 +37,13 @@ Key = str | tuple[str, str]
 def key_of(item: Item | None, event: str) -> Key:
     """By what a form keeps what an event does in it."""
     return event if item is None else (item.name, event)
+
+
+def known_of(form: Form) -> Known:
+    """What has been found out of the events of a form."""
+    if form.known is None:
+        form.known = Known()
+    return form.known
 
 
 class Handling:
@@ -219,7 +226,7 @@ class Handling:
         """The handlers in scope whose names take an event; a form keeps what has been found."""
         if frame.units:
             return taking(self._in_scope(frame, item), event)
-        kept = frame.form.taking
+        kept = known_of(frame.form).taking
         key = key_of(item, event)
         found = kept.get(key)
         if found is None:
@@ -230,13 +237,14 @@ class Handling:
 
     def _count_reaction(self, form: Form, key: Key, candidates: Taking) -> None:
         """Write what an event does here as a function, once it has happened often."""
-        seen = form.seen.get(key, 0) + 1
-        if len(form.seen) >= MOST_KEPT:
-            form.seen.clear()
-            form.reactions.clear()
-        form.seen[key] = seen
+        known = known_of(form)
+        seen = known.seen.get(key, 0) + 1
+        if len(known.seen) >= MOST_KEPT:
+            known.seen.clear()
+            known.reactions.clear()
+        known.seen[key] = seen
         if seen == OFTEN:
-            form.reactions[key] = reaction_of(self.owner.document, form, candidates)
+            known.reactions[key] = reaction_of(self.owner.document, form, candidates)
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""
