@@ -304,7 +304,8 @@ class _Piece:
     """How deep brackets stand inside each other."""
     literal: bool = False
     place: str = ""
-    """Line and column of the operator that it comes from, if any, as two arguments."""
+    """Line and column, as two arguments, of the last operator or name in it: an error of a member
+    of it is told there, as the engine tells it."""
 
 
 def _joined(kind: str, *parts: str | _Piece) -> _Piece:
@@ -323,7 +324,9 @@ def _joined(kind: str, *parts: str | _Piece) -> _Piece:
         depth = max(depth, opened + (part.depth if isinstance(part, _Piece) else 0))
     if depth > DEEPEST_BRACKETS:
         raise _Beyond
-    return _Piece("".join(source), kind, depth)
+    places = [part.place for part in parts if isinstance(part, _Piece) and part.place]
+    place = places[-1] if places else ""
+    return _Piece("".join(source), kind, depth, False, place)
 
 
 class _Parser:
@@ -392,7 +395,9 @@ class _Parser:
         self.expect(":")
         second = self.conditional()
         kind = first.kind if first.kind == second.kind else ""
-        return _joined(kind, "(", first, " if ", _truth(test), " else ", second, ")")
+        made = _joined(kind, "(", first, " if ", _truth(test), " else ", second, ")")
+        made.place = second.place or first.place or test.place
+        return made
 
     def binary(self, level: int) -> _Piece:
         """Operators of a level or above, those of one level from the left."""
@@ -406,11 +411,10 @@ class _Parser:
             right = self.binary(strength + 1)
             if token.text in ("&&", "||"):
                 left = self.logical(token.text, left, right)
-            elif token.text in EQUALITIES:
-                left = self.equality(token.text, left, right)
             else:
-                left = self.operation(token.text, left, right)
-            left.place = self.place(token.start)
+                equal = token.text in EQUALITIES
+                left = (self.equality if equal else self.operation)(token.text, left, right)
+                left.place = self.place(token.start)
 
     def logical(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
         """``a && b`` or ``a || b``: one of the two values."""
@@ -419,8 +423,11 @@ class _Parser:
             return _joined(kind, "(", left, " and " if mark == "&&" else " or ", right, ")")
         held = self.holder()
         if mark == "&&":
-            return _joined(kind, "(", right, f" if truth({held} := ", left, f") else {held})")
-        return _joined(kind, f"({held} if truth({held} := ", left, ") else ", right, ")")
+            made = _joined(kind, "(", right, f" if truth({held} := ", left, f") else {held})")
+        else:
+            made = _joined(kind, f"({held} if truth({held} := ", left, ") else ", right, ")")
+        made.place = right.place or left.place
+        return made
 
     def equality(self, mark: str, left: _Piece, right: _Piece) -> _Piece:
         """``a == b`` and the like; a text or number that is written out is compared at once."""
@@ -579,12 +586,13 @@ class _Parser:
             raise _Beyond
         if name not in CONSTANTS and name not in VARIABLES:
             self.names.setdefault(name, token.start)
-        where = f"sought({name!r}, {self.place(token.start)}{self.scopes})"
+        place = self.place(token.start)
+        where = f"sought({name!r}, {place}{self.scopes})"
         if self.where is None:
-            return _Piece(where, "", 2)
+            return _Piece(where, "", 2, False, place)
         for scope in self.where(name):
             where = f"{scope}[{name!r}] if {name!r} in {scope} else {where}"
-        return _Piece(f"({where})", "", 3)
+        return _Piece(f"({where})", "", 3, False, place)
 
     def literal(self) -> str:
         """A number, text or word in an array or object: nothing that is computed."""
