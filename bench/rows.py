@@ -41,6 +41,8 @@ class Row:
 
 SECONDS = 0.7
 """How long events are counted."""
+MORE = 9
+"""Pairs of rows that are quickly measured and have a target."""
 MANY_SECONDS = 6.0
 """After how long no more machines are made."""
 TITLES = {
@@ -65,7 +67,11 @@ def events() -> list[Row]:
                     title,
                     Call(workloads.rate, (system, 2, SECONDS, guards)),
                     least=bounds.get(system),
-                    rounds=3 if system in peers.PEERS else None,
+                    rounds=3
+                    if system in peers.PEERS
+                    else MORE
+                    if system == "transitions"
+                    else None,
                     needs=system,
                 )
             )
@@ -89,7 +95,7 @@ def events() -> list[Row]:
                 "its two states",
                 Call(workloads.rate, (system, 2, SECONDS)),
                 least=0.95 if ours else None,
-                rounds=None if ours else 1,
+                rounds=MORE if ours else 1,
                 needs=system,
             )
         )
@@ -244,6 +250,7 @@ def starts() -> list[Row]:
             "Python + click",
             Call(processes.floor, ("click",)),
             most=1.2,
+            rounds=MORE,
         ),
         Row(
             "`prima validate`, one file",
@@ -252,6 +259,7 @@ def starts() -> list[Row]:
             "Python + its imports",
             Call(processes.floor, ("validate",)),
             most=1.3,
+            rounds=MORE,
         ),
         Row(
             "W5: `prima run` of the demo",
@@ -260,6 +268,7 @@ def starts() -> list[Row]:
             "Python + its imports",
             Call(processes.floor, ("run",)),
             most=3,
+            rounds=MORE,
         ),
         *(
             Row(

@@ -32,7 +32,7 @@ BATCH = 200
 """Events between two looks at the clock."""
 ROUNDS_BEFORE = 8
 """How often a ring is gone round before the clock is looked at: PRIMA compiles what happens often."""
-MOST_EVENTS = 100_000
+MOST_EVENTS = 200_000
 """Events of one measurement: the trace of all of them is kept."""
 MOST_TICKS = 1_000
 """Events that show that a loaded machine works: once round, if it is not too far."""

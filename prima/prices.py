@@ -7,9 +7,9 @@ the same device waits for the end. The times are those of the simulator's voice 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from prima.commands import TABLE_4_2, CommandType
+from prima.deferred import dataclass
 from prima.errors import Place, Problem
 from prima.interpreter.elements import (
     Act,

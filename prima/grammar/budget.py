@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from prima.deferred import dataclass
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that the tags of one utterance may take."""

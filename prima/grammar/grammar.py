@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
+from prima.deferred import dataclass
 from prima.grammar.budget import Budget
 from prima.grammar.chart import GARBAGE_COST, Chart
 from prima.grammar.errors import GrammarError, Where, refuse

@@ -8,10 +8,10 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 
 from prima.commands import CommandType
+from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group
 from prima.scheduler.effects import Effects
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from prima.commands import CommandType
+from prima.deferred import dataclass, field
 from prima.messages import Command, Data
 
 FAR = 0.5

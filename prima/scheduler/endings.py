@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
 
+from prima.deferred import dataclass
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import Application, Behavior, Run, State, Stream
 from prima.scheduler.chronicle import Chronicle

@@ -8,8 +8,7 @@ devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from prima.deferred import dataclass
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.scheduler.behavior import Behavior, Rank, State, Stream
 from prima.scheduler.memory import Memory

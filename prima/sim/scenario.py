@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 from prima.commands import DEVICES, TABLE_4_2, Argument, CommandType
+from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
 from prima.interpreter.surroundings import nearest as nearest_name

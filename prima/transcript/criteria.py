@@ -8,8 +8,9 @@ measured alike. Times in seconds.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from prima.deferred import dataclass, field
 from prima.messages import Record
 
 

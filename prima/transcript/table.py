@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from prima.commands import TABLE_4_2
+from prima.deferred import dataclass
 from prima.errors import counted
 from prima.messages import Record
 
