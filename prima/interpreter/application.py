@@ -131,10 +131,10 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.serial = event.serial
         frame = self.frame
         if frame is not None:
-            item, known, react = frame.item, frame.form.known, None
-            if known is not None:
+            item, reactions, react = frame.item, frame.form.reactions, None
+            if reactions is not None:
                 key = event.name if item is None else (item.name, event.name)
-                react = known.reactions.get(key)
+                react = reactions.get(key)
             try:
                 if react is None or not self.quick or frame.units:
                     self.handling.dispatch(event, frame)

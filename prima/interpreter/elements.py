@@ -309,15 +309,13 @@ class Known:
     Each is kept by its name, or by that of the item that was being visited and its own.
     """
 
-    __slots__ = ("reactions", "seen", "taking")
+    __slots__ = ("seen", "taking")
 
     def __init__(self) -> None:
         self.taking: dict[Any, Any] = {}
         """The handlers in scope that take it."""
         self.seen: dict[Any, int] = {}
         """How often it has happened until now."""
-        self.reactions: dict[Any, Any] = {}
-        """What it does, as a function, if it has happened often; None if that cannot be."""
 
 
 @dataclass(slots=True)
@@ -337,6 +335,9 @@ class Form:
     connect: bool = False
     known: Known | None = field(default=None, repr=False, compare=False)
     """What has been found out of the events that have happened in it."""
+    reactions: dict[Any, Any] | None = field(default=None, repr=False, compare=False)
+    """What events do in it that have happened often, as functions; None if that cannot be. They
+    are kept by their names, or by the name of the item that was being visited and theirs."""
 
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""
@@ -347,7 +348,7 @@ class Form:
     def __getstate__(self) -> tuple[None, dict[str, Any]]:
         """What of it can be copied to another process: functions are written anew there."""
         kept = {name: getattr(self, name) for name in field_names(type(self))}
-        return None, {**kept, "known": None}
+        return None, {**kept, "known": None, "reactions": None}
 
 
 Content = tuple[Form | None, list[Act], Node]

@@ -241,10 +241,12 @@ class Handling:
         seen = known.seen.get(key, 0) + 1
         if len(known.seen) >= MOST_KEPT:
             known.seen.clear()
-            known.reactions.clear()
+            form.reactions = None
         known.seen[key] = seen
         if seen == OFTEN:
-            known.reactions[key] = reaction_of(self.owner.document, form, candidates)
+            if form.reactions is None:
+                form.reactions = {}
+            form.reactions[key] = reaction_of(self.owner.document, form, candidates)
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""

@@ -67,6 +67,8 @@ MOST_ACTS = 300
 class Hop(GoForm):
     """A goto from a form to another, where neither has anything to do but to wait for events."""
 
+    __slots__ = ("target",)
+
     def __init__(self, target: Form) -> None:
         super().__init__(target.id)
         self.target = target
