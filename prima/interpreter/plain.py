@@ -1,8 +1,8 @@
 """Expressions that need no engine: names, members, literals and operators, as functions.
 
 Most expressions of documents are of this kind, and an application that has no others
-(:func:`is_plain`) is evaluated here: each expression is compiled once to nested functions of
-the scopes that it sees, and the values are Python's: ``float``, ``str``, ``bool``, ``None``
+(:func:`is_plain`) is evaluated here: each expression is written once in Python, as a
+function of the scopes that it sees, and the values are Python's: ``float``, ``str``, ``bool``, ``None``
 (null), :data:`UNDEFINED`, ``list`` and ``dict``. They mean what ECMAScript 2024 says of them.
 Whatever could mean more (calls, functions, assignments, members that prototypes have) is
 beyond it, and its whole application runs in an :class:`~prima.interpreter.expressions.Engine`.
@@ -80,7 +80,7 @@ class Compiled:
 
 
 MOST_TOKENS = 200
-"""Pieces of code beyond which an expression is left to the engine: functions nest so deep."""
+"""Pieces of code beyond which an expression is left to the engine: brackets nest so deep."""
 DEEPEST = 100
 """Brackets and operators before an operand that may stand inside each other."""
 DEEP, DEEPEST_BRACKETS = 60, 180

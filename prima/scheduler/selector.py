@@ -38,8 +38,8 @@ class Selector:
         self.chronicle = chronicle
         self.bound = bound
         self.few = FEW
+        # Of the policy, what is asked for every AB that is looked at.
         self._lining = policy.lined
-        """What the policy's extensions ask of every AB that is looked at."""
         self._preparing = policy.has("x1") or policy.has("x4")
         self._composing = policy.has("x5")
         self.orders: list[Order] = []
