@@ -65,8 +65,8 @@ INSIDE = {
     ],
     "interpreter": [
         {"vocabulary", "names", "grammar", "evaluation"},
-        {"expressions", "leads"},
-        {"elements", "srgs"},
+        {"expressions", "leads", "ecmascript"},
+        {"elements", "srgs", "compiling"},
         {"events", "plain"},
         {"surroundings"},
         {"build", "checks", "frame", "selection"},

@@ -12,22 +12,20 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.commands import TABLE_4_2
-from prima.interpreter import application, plain
-from prima.interpreter.evaluation import ScriptError
-from prima.interpreter.expressions import Engine
-from prima.interpreter.plain import (
+from prima.interpreter import application, compiling
+from prima.interpreter.compiling import (
     BUILT_IN,
-    CONSTANTS,
     INHERITED,
     METHODS,
-    MOST_HELD,
     VARIABLES,
-    PlainEngine,
     anywhere,
     compiled,
-    is_plain,
     quickly,
 )
+from prima.interpreter.ecmascript import CONSTANTS
+from prima.interpreter.evaluation import ScriptError
+from prima.interpreter.expressions import Engine
+from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
 from prima.interpreter.reader import read_document
 from prima.messages import Loaded, Occurred
 from prima.prelude import MEMORY_LIMIT
@@ -93,7 +91,7 @@ def both(code: str) -> None:
         for engine, way in ((PlainEngine(), compiled), (PlainEngine(), quick), (ENGINE, None)):
             scopes = scopes_of(engine)
             if way is not None and (one := way(code)) is not None:
-                plain.FUNCTIONS[code] = plain.function_of(one.source)
+                compiling.FUNCTIONS[code] = compiling.function_of(one.source)
             found.append(outcome(lambda: getattr(engine, method)(code, scopes)))  # noqa: B023
         assert found[0] == found[1] == found[2], (code, method)
 
@@ -219,11 +217,11 @@ def test_no_text_becomes_code(text: str) -> None:
             if found is None:
                 assert "\\" in inside, "only what is escaped may be left to the engine"
                 continue
-            value = plain.function_of(found.source)(scopes_of(PlainEngine()))
+            value = compiling.function_of(found.source)(scopes_of(PlainEngine()))
             assert value in (text, f"hidden{text}", [text], {"k": text})
     scopes = scopes_of(PlainEngine())
     scopes[1]["s"] = text
-    assert plain.function_of(quick("s + ''").source)(scopes) == text
+    assert compiling.function_of(quick("s + ''").source)(scopes) == text
 
 
 def test_the_engines_own_names_are_known() -> None:
@@ -452,7 +450,9 @@ def test_a_variable_that_would_be_too_much_is_not_kept() -> None:
 def test_compiled_code_does_not_grow_without_end() -> None:
     for index in range(1000):
         assert compiled("+".join(["a", *["b"] * 98, str(index)])) is not None
-    assert sum(one.pieces for one in plain.KEPT.values() if one is not None) <= plain.MOST_KEPT
+    assert (
+        sum(one.pieces for one in compiling.KEPT.values() if one is not None) <= compiling.MOST_KEPT
+    )
     head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><var name="b"/><form id="f">'
     logs = "".join(f'<log><value expr="{"b+" * 98}{index}"/></log>' for index in range(600))
     text = f"{head}<block>{logs}</block></form></prima>"

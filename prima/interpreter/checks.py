@@ -10,6 +10,7 @@ from typing import Any
 from prima.commands import TABLE_4_2, CommandType
 from prima.deferred import pattern
 from prima.errors import Place, Problem, Severity, did_you_mean
+from prima.interpreter.compiling import compiled
 from prima.interpreter.elements import (
     Act,
     Acts,
@@ -49,7 +50,6 @@ from prima.interpreter.elements import (
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.names import IDENTIFIER, declared_names, free_names
-from prima.interpreter.plain import compiled
 from prima.markup.tree import Node
 from prima.values import read_value
 

@@ -8,11 +8,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
+from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Expression, Form, Handler, Item, Known, Watch
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
 from prima.interpreter.names import GLOBALS, free_names, tokens_of
-from prima.interpreter.plain import CONSTANTS
 from prima.interpreter.reactions import reaction_of
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.messages import Event, Json, Notice

@@ -14,7 +14,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.bounds import MAX_STEPS
+from prima.interpreter.compiling import VARIABLES, Compiled, quickly
 from prima.interpreter.content import SIMPLE
+from prima.interpreter.ecmascript import HELPERS, Scope, holder_of
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -33,16 +35,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS, ScriptError
 from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
-from prima.interpreter.plain import (
-    HELPERS,
-    LONG,
-    VARIABLES,
-    Compiled,
-    PlainEngine,
-    Scope,
-    holder_of,
-    quickly,
-)
+from prima.interpreter.plain import LONG, PlainEngine
 from prima.interpreter.selection import Taking
 from prima.messages import Event
 

@@ -1,0 +1,431 @@
+"""ECMAScript's values in Python, and what expressions do with them.
+
+The values are Python's: ``float``, ``str``, ``bool``, ``None`` (null), :data:`UNDEFINED`, ``list``
+and ``dict``. They mean what ECMAScript 2024 says of them. Work with long texts is counted.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from prima.deferred import pattern
+from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
+
+if TYPE_CHECKING:
+    from prima.messages import Json
+
+
+class Undefined:
+    """The type of :data:`UNDEFINED`."""
+
+    def __repr__(self) -> str:
+        return "undefined"
+
+
+UNDEFINED = Undefined()
+"""What a variable without a value has."""
+
+
+class Scope(dict[str, Any]):
+    """The variables of an application, document, dialog or piece of content."""
+
+    __slots__ = ("__weakref__",)
+
+
+class Named(Scope):
+    """A scope that its own expressions know by name: ``application``, ``document``, ``dialog``."""
+
+    __slots__ = ("count",)
+    count: Callable[[int], None]
+    """Counts work with so many characters, in an application's scope."""
+
+
+Scopes = tuple[Scope, Scope, Scope, Scope]
+"""The scopes that an expression sees: application, document, dialog and local."""
+Operation = Callable[[Any, Any, Scopes], Any]
+
+DEEPEST = 100
+"""Lists and objects of a value from outside that may stand inside each other."""
+LONGEST = 100_000
+"""Characters that a text may have; nothing longer could leave the scopes."""
+SHORT = 200
+"""Characters up to which a text is no work worth counting."""
+CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
+SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
+"""What ECMAScript takes for white space."""
+NUMERIC = pattern(
+    r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
+)
+INDEX = pattern("0|[1-9][0-9]{0,9}")
+MOST_INDEX = 2**32 - 2
+SURROGATE = pattern("[\ud800-\udfff]")
+MISSING = object()
+"""Stands for the value of what nothing declares."""
+
+
+# What an expression in Python calls --------------------------------------------------------
+
+
+def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
+    """A variable that stands in none of the scopes in which most stand.
+
+    Raises:
+        ScriptError: nothing declares it.
+    """
+    value = found(name, scopes, MISSING)
+    if value is MISSING:
+        raise ScriptError(f"ReferenceError: {name} is not defined", [(line, column)])
+    return value
+
+
+def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
+    """A variable's value, or what stands for one that nothing declares."""
+    for scope in reversed(scopes):
+        if name in scope:
+            return scope[name]
+    if name in CONSTANTS:
+        return CONSTANTS[name]
+    if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
+        return scope
+    return otherwise
+
+
+def holder_of(name: str, scopes: Scopes) -> Scope:
+    """The innermost scope that has a variable, by its name as written.
+
+    Raises:
+        ScriptError: no scope declares it.
+    """
+    inner, _, last = name.rpartition(".")
+    for scope in (scopes[SCOPES.index(inner)],) if inner else reversed(scopes):
+        if last in scope:
+            return scope
+    raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
+
+
+def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
+    """A member of a value, by its name and the index that the name is."""
+    if isinstance(value, dict):
+        return value.get(key, UNDEFINED)
+    if value is None or value is UNDEFINED:
+        what = "null" if value is None else "undefined"
+        message = f"TypeError: cannot read property '{key}' of {what}"
+        raise ScriptError(message, [(line, column)])
+    if not isinstance(value, list | str):
+        return UNDEFINED
+    if len(value) > SHORT and isinstance(value, str):
+        work(scopes, value)
+    if key == "length":
+        return float(len(value) if isinstance(value, list) else units(value))
+    if isinstance(value, str):
+        return unit(value, index)
+    return value[index] if 0 <= index < len(value) else UNDEFINED
+
+
+def work(scopes: Scopes, value: Any) -> None:
+    """Count the work with a value that may be long.
+
+    Raises:
+        ScriptError: the application has taken too long in this instant.
+    """
+    if isinstance(value, str | list) and len(value) > SHORT:
+        count = getattr(scopes[0], "count", None)
+        if count is not None:
+            count(len(value))
+
+
+def equal(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``==``, with the work counted."""
+    work(scopes, first)
+    work(scopes, second)
+    return alike(first, second)
+
+
+def identical(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``===``, with the work counted."""
+    work(scopes, first)
+    work(scopes, second)
+    return same(first, second)
+
+
+def numeric(value: Any, scopes: Scopes) -> float:
+    """A value as a number, with the work counted."""
+    if type(value) is float:
+        return value
+    work(scopes, value)
+    return number(value)
+
+
+def add(first: Any, second: Any, scopes: Scopes) -> Any:
+    """``+``, which joins texts as well."""
+    first, second = primitive(first), primitive(second)
+    if not isinstance(first, str) and not isinstance(second, str):
+        return number(first) + number(second)
+    joined = text(first) + text(second)
+    if len(joined) > SHORT:
+        if len(joined) > LONGEST:
+            raise ScriptError("it used too much memory")
+        work(scopes, joined)
+    return joined
+
+
+def _arithmetic(act: Callable[[float, float], float]) -> Operation:
+    def calculate(first: Any, second: Any, scopes: Scopes) -> float:
+        return act(numeric(first, scopes), numeric(second, scopes))
+
+    return calculate
+
+
+def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
+    def compare(first: Any, second: Any, scopes: Scopes) -> bool:
+        first, second = primitive(first), primitive(second)
+        if isinstance(first, str) and isinstance(second, str):
+            if first.isascii() and second.isascii():
+                return act(first, second)
+            work(scopes, first)
+            work(scopes, second)
+            return act(order(first), order(second))
+        return act(numeric(first, scopes), numeric(second, scopes))
+
+    return compare
+
+
+def divide(first: float, second: float) -> float:
+    """Division, which has a value by nought as well."""
+    if second:
+        return first / second
+    if first == 0 or first != first or second != second:
+        return math.nan
+    return math.copysign(math.inf, first) * math.copysign(1, second)
+
+
+def remainder(first: float, second: float) -> float:
+    """The remainder, with the sign of what is divided."""
+    if second == 0 or math.isinf(first):
+        return math.nan
+    return math.fmod(first, second)
+
+
+# Values (ECMAScript 2024, chapter 7) --------------------------------------------------------
+
+
+def truth(value: Any) -> bool:
+    """A value as a condition (7.1.2)."""
+    if value is True or value is False:
+        return bool(value)
+    if isinstance(value, list | dict):
+        return True
+    return value is not UNDEFINED and bool(value) and value == value
+
+
+def primitive(value: Any) -> Any:
+    """An array or object as the text that it is where a plain value is needed (7.1.1)."""
+    return text(value) if isinstance(value, list | dict) else value
+
+
+def number(value: Any) -> float:
+    """A value as a number (7.1.4)."""
+    if isinstance(value, float):
+        return value
+    if value is None or isinstance(value, bool):
+        return float(value or 0)
+    if value is UNDEFINED:
+        return math.nan
+    code = text(value).strip(SPACE)
+    if not code:
+        return 0.0
+    if NUMERIC.fullmatch(code) is None:
+        return math.nan
+    return whole(int(code, 0)) if code[1:2] in tuple("xXoObB") else float(code)
+
+
+def text(value: Any) -> str:
+    """A value as text (7.1.17)."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return number_text(value)
+    if value is None or isinstance(value, bool):
+        return "null" if value is None else str(value).lower()
+    if isinstance(value, list):
+        return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
+    if isinstance(value, dict):
+        if "toString" in value:  # it is no function
+            raise ScriptError("TypeError: toPrimitive")
+        return "[object Object]"
+    return "undefined"
+
+
+def number_text(value: float) -> str:
+    """A number as text (6.1.6.1.20)."""
+    if value != value or math.isinf(value):
+        return "NaN" if value != value else "Infinity" if value > 0 else "-Infinity"
+    if value == int(value) and abs(value) < LARGEST:
+        return str(int(value))
+    found, _, exponent = repr(value).partition("e")
+    power = int(exponent or 0)
+    sign, digits = ("-", found[1:]) if found[0] == "-" else ("", found)
+    if -7 < power < 0:
+        return f"{sign}0.{'0' * (-power - 1)}{digits.replace('.', '')}"
+    if 0 < power < 21:
+        return sign + digits.replace(".", "").ljust(power + 1, "0")
+    return f"{sign}{digits}e{power:+d}" if exponent else sign + digits.removesuffix(".0")
+
+
+def kind_of(value: Any) -> str:
+    """What ``typeof`` says of a value."""
+    if isinstance(value, bool):
+        return "boolean"
+    if isinstance(value, float | str):
+        return "number" if isinstance(value, float) else "string"
+    return "undefined" if value is UNDEFINED else "object"
+
+
+def same(first: Any, second: Any) -> bool:
+    """``===`` (7.2.14)."""
+    if type(first) is not type(second):
+        return False
+    return first is second if isinstance(first, list | dict) else bool(first == second)
+
+
+def alike(first: Any, second: Any) -> bool:
+    """``==`` (7.2.13)."""
+    if type(first) is type(second):
+        return same(first, second)
+    absent = (None, UNDEFINED)
+    if first in absent or second in absent:
+        return first in absent and second in absent
+    if isinstance(first, list | dict) and isinstance(second, list | dict):
+        return first is second
+    first, second = primitive(first), primitive(second)
+    if isinstance(first, str) and isinstance(second, str):
+        return first == second
+    return number(first) == number(second)
+
+
+def index_of(key: str) -> int:
+    """The index that a member's name is (6.1.7), or -1."""
+    return index if INDEX.fullmatch(key) and (index := int(key)) <= MOST_INDEX else -1
+
+
+def unit(value: str, index: int) -> Any:
+    """One of the 16 bits that a text is made of for ECMAScript."""
+    if value.isascii():
+        return value[index] if 0 <= index < len(value) else UNDEFINED
+    found = value.encode("utf-16-be", "surrogatepass")[max(2 * index, 0) : 2 * index + 2]
+    return found.decode("utf-16-be", "surrogatepass") if found else UNDEFINED
+
+
+def units(value: str) -> int:
+    """How long ECMAScript takes a text for."""
+    return len(value) if value.isascii() else len(value.encode("utf-16-le", "surrogatepass")) // 2
+
+
+def order(value: str) -> str | bytes:
+    """What texts are compared by."""
+    return value.encode("utf-16-be", "surrogatepass")
+
+
+def well_formed(value: str) -> str:
+    """Text in which halves of letters are whole again, or replaced."""
+    if SURROGATE.search(value) is None:
+        return value
+    return value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def escaped(value: str) -> str:
+    """Text in which halves of letters are whole again, or written as JSON escapes."""
+    if SURROGATE.search(value) is None:
+        return value
+    value = value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")
+    return SURROGATE.sub(lambda found: f"\\u{ord(found[0]):04x}", value)
+
+
+def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
+    """A value as JSON (25.5.2); what it cannot have is left out, or null.
+
+    Raises:
+        ScriptError: something holds itself, as a scope does.
+    """
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, float) and not math.isfinite(value):
+        return "null"
+    if not isinstance(value, list | dict):
+        return "null" if value is UNDEFINED else text(value)
+    if id(value) in around or isinstance(value, Named):
+        raise ScriptError("TypeError: circular reference")
+    around = (*around, id(value))
+    if isinstance(value, list):
+        return f"[{','.join(stringify(one, around) for one in value)}]"
+    pairs = [
+        f"{_quoted(key)}:{stringify(one, around)}"
+        for key, one in sorted(value.items(), key=_position)
+        if one is not UNDEFINED
+    ]
+    return f"{{{','.join(pairs)}}}"
+
+
+def _quoted(value: str) -> str:
+    """A text as JSON, which few documents need."""
+    from json import dumps
+
+    return dumps(value, ensure_ascii=False)
+
+
+def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
+    """Names that are numbers stand before others, in their order (10.1.11.1)."""
+    index = index_of(pair[0])
+    return (index < 0, index)
+
+
+def inward(value: Json, depth: int = 0) -> Any:
+    """A value from outside as one of those here: a copy, in which numbers are ``float``.
+
+    Raises:
+        ScriptError: it has lists or objects too deep inside each other.
+    """
+    if isinstance(value, str):
+        return value if type(value) is str else str.__str__(value)
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int | float):
+        return whole(value) if isinstance(value, int) else float(value)
+    if depth > DEEPEST:
+        raise ScriptError("it is nested too deep")
+    if isinstance(value, list | tuple):
+        return [inward(one, depth + 1) for one in value]
+    if isinstance(value, Mapping):
+        return {str(key): inward(one, depth + 1) for key, one in value.items()}
+    return value
+
+
+def outward(value: Any) -> Json:
+    """A value as plain data; undefined becomes None.
+
+    Raises:
+        ScriptError: it is too long, or holds itself.
+    """
+    if value is UNDEFINED:
+        return None
+    if isinstance(value, str):
+        return bounded(well_formed(value))
+    if isinstance(value, list | dict):
+        from json import loads
+
+        return loads(bounded(well_formed(stringify(value))))
+    return plain_number(value)
+
+
+HELPERS: dict[str, Any] = {
+    "infinity": math.inf, "undefined": UNDEFINED, "sought": sought, "found": found, "member": member, "truth": truth,
+    "kind_of": kind_of, "equal": equal, "identical": identical, "numeric": numeric, "add": add,
+    "subtract": _arithmetic(operator.sub), "multiply": _arithmetic(operator.mul),
+    "divided": _arithmetic(divide), "remaining": _arithmetic(remainder),
+    "less": _comparison(operator.lt), "more": _comparison(operator.gt),
+    "at_most": _comparison(operator.le), "at_least": _comparison(operator.ge),
+}  # fmt: skip
+"""What expressions in Python know."""
