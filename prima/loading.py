@@ -31,6 +31,7 @@ from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.check import DOCUMENTS, check_root
 from prima.markup.limits import LIMITS
+from prima.markup.opening import root_of
 from prima.markup.reader import parse, too_large
 
 if TYPE_CHECKING:
@@ -135,28 +136,21 @@ def read_application(
     return document, [*page.problems, *later]
 
 
-VOICEXML_ROOT = pattern(
-    rb"(?:\xef\xbb\xbf|\xff\xfe|\xfe\xff)?"
-    rb"(?:\s++|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>)*+"
-    rb"<(?:[\w.-]+:)?vxml[\s>/]",
-    re.DOTALL,
-)
-"""All before a document's root element, and the beginning of VoiceXML's."""
-
-
-APPLICATION = pattern(
-    VOICEXML_ROOT.pattern.replace(rb"(?:[\w.-]+:)?vxml[\s>/]", rb"prima\s(?:[^<>]*\s)?")
-    + b'xmlns="%s"' % DIALOGUE.namespace.encode(),
-    re.DOTALL,
-)
-"""How an application begins that is surely one, so that it need not be parsed to know it."""
+VOICEXML = pattern(rb"<(?:[\w.-]+:)?vxml[\s>/]")
+"""How the root element of VoiceXML begins."""
 
 
 def is_voicexml(data: bytes) -> bool:
     """Whether a file's root element is VoiceXML's, as far as its beginning tells."""
-    if b"\0" in data[:4]:  # UTF-16
-        data = data.replace(b"\0", b"")
-    return VOICEXML_ROOT.match(data) is not None
+    return VOICEXML.match(root_of(data)) is not None
+
+
+def _is_surely_ours(data: bytes) -> bool:
+    """Whether a file begins so that it need not be parsed to know it for our language's."""
+    tag, _, _ = root_of(data).partition(b">")
+    before, found, _ = tag.partition(b'xmlns="%s"' % DIALOGUE.namespace.encode())
+    apart = before[6:7].isspace() and before[-1:].isspace()
+    return bool(found) and before.startswith(b"<prima") and apart and b"<" not in before[6:]
 
 
 def is_application(path: str) -> bool:
@@ -248,7 +242,7 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 def _validate_one(path: str) -> list[Problem]:
     try:
         data = read_file(path)
-        application = APPLICATION.match(data) is not None
+        application = _is_surely_ours(data)
         if not application and is_voicexml(data):
             from prima.voicexml.document import read_page
 
@@ -279,18 +273,16 @@ def _validate_one(path: str) -> list[Problem]:
     return []
 
 
-GRAMMAR = pattern(
-    rb"\s*(?:#ABNF|#JSGF|;GSL|#GSL)|" + VOICEXML_ROOT.pattern.replace(b"vxml", b"grammar"),
-    re.DOTALL,
-)
-"""How a grammar begins that is a file of its own."""
+GRAMMAR = pattern(rb"<(?:[\w.-]+:)?grammar[\s>/]")
+"""How the root element of a grammar begins that is a file of its own."""
+OTHER_FORMS = (b"#ABNF", b"#JSGF", b";GSL", b"#GSL")
+"""How grammars begin that are no XML."""
 
 
 def is_grammar(data: bytes) -> bool:
     """Whether a file is a grammar, as far as its beginning tells."""
-    if b"\0" in data[:4]:  # UTF-16
-        data = data.replace(b"\0", b"")
-    return GRAMMAR.match(data) is not None
+    root = root_of(data)
+    return root.startswith(OTHER_FORMS) or GRAMMAR.match(root) is not None
 
 
 def _grammar_problems(path: Path, data: bytes) -> list[Problem]:

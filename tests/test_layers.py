@@ -47,7 +47,7 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [
-        {"limits", "vocabulary", "tree"},
+        {"limits", "opening", "vocabulary", "tree"},
         {"slips"},
         {"build", "check", "rnc", "schema"},
         {"reader"},

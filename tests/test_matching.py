@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from prima.interpreter.grammar import (
+    FEW,
     MAX_STEPS,
     Answers,
     Choice,
@@ -19,7 +20,7 @@ from prima.interpreter.grammar import (
     Words,
     fold,
 )
-from prima.interpreter.leads import FEW, index_choices
+from prima.interpreter.leads import index_choices
 from tests.robot import document
 
 MANY = 10_000

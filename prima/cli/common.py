@@ -181,20 +181,17 @@ def _begins_document(path: Path) -> bool:
     """Whether a file is a document that somebody writes, as far as its beginning tells."""
     import re
 
-    from prima.loading import VOICEXML_ROOT, is_grammar
+    from prima.loading import is_grammar
+    from prima.markup.opening import root_of
     from prima.testing.finding import GLANCE
 
-    roots = rb"(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
     try:
         with path.open("rb") as stream:
             data = stream.read(GLANCE)
     except OSError:
         return False  # writing tells what is wrong
-    if b"\0" in data[:4]:  # UTF-16
-        data = data.replace(b"\0", b"")
-    data = re.sub(rb"^(?:\xef\xbb\xbf|\xff\xfe|\xfe\xff)+", b"", data)  # byte order marks
-    pattern = VOICEXML_ROOT.pattern.replace(rb"vxml[\s>/]", roots)
-    return bool(re.match(pattern, data, re.DOTALL)) or is_grammar(data)
+    root = rb"<(?:[\w.-]+:)?(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
+    return bool(re.match(root, root_of(data))) or is_grammar(data)
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:

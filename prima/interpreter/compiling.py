@@ -103,15 +103,20 @@ BUILT_IN = (GLOBALS - VARIABLES - CONSTANTS.keys()) | {
 }
 """Names of the engine's own."""
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
-TOKEN = pattern(
-    r"""(?P<space>[ \t\n\r]+)"""
-    r"""|(?P<number>(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.]))"""
-    r"""|(?P<name>[A-Za-z_$][\w$]*)|(?P<text>"[^"\\\n\r]*"|'[^'\\\n\r]*')"""
-    r"""|(?P<escaped>"(?:\\[^ux0-9\n\r\u2028\u2029]|[^"\\\n\r])*"|'(?:\\[^ux0-9\n\r\u2028\u2029]|[^'\\\n\r])*')"""
-    r"""|(?P<mark>[=!]==?|[<>]=|&&|\|\||\+(?![+=])|-(?![-=])|\*(?![*=])|/(?![/*=])|%(?!=)|[<>](?![<>])"""
-    r"""|\?\.(?![0-9])|\?(?![?.])|\.(?![.0-9])|[!:,()\[\]{}])""",
-    re.ASCII,
+DIGITS = frozenset("0123456789")
+LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$")
+WORD = LETTERS | DIGITS
+NUMBER = pattern(
+    r"(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.])", re.ASCII
 )
+ESCAPED = pattern(r"""(["'])(?:\\[^ux0-9\n\r\u2028\u2029]|(?!\1)[^\\\n\r])*\1""", re.ASCII)
+"""A text in which characters are escaped by what stands for themselves, or for white space."""
+LONG_MARKS = ("===", "!==", "==", "!=", "<=", ">=", "&&", "||")
+MARKS = {
+    "+": "+=", "-": "-=", "*": "*=", "/": "/*=", "%": "=", "<": "<>", ">": "<>", "?": "?.",
+    ".": ".0123456789", **dict.fromkeys("!:,()[]{}", ""),
+}  # fmt: skip
+"""Marks of one character, and what would make something else of it."""
 
 
 def anywhere(_name: str) -> tuple[str, ...]:
@@ -131,6 +136,79 @@ class _Token:
 
 
 END = _Token("end", "", -1)
+
+
+def _tokens(code: str) -> list[_Token]:
+    """The names, literals and marks of which code consists.
+
+    It goes by characters: to make one pattern of all this takes longer than most commands have.
+
+    Raises:
+        _Beyond: there is something else in it, or too much.
+    """
+    found: list[_Token] = []
+    at, size = 0, len(code)
+    while at < size:
+        if len(found) > MOST_TOKENS:
+            raise _Beyond
+        first, end = code[at], at + 1
+        if first in " \t\n\r":
+            at = end
+            continue
+        if first in LETTERS:
+            kind = "name"
+            while end < size and code[end] in WORD:
+                end += 1
+        elif first in DIGITS or (first == "." and code[end : end + 1] in DIGITS):
+            kind = "number"
+            end = _number_end(code, at)
+        elif first in "\"'":
+            kind, end = _text_end(code, at)
+        else:
+            kind = "mark"
+            end += len(_mark(code, at)) - 1
+        found.append(_Token(kind, code[at:end], at))
+        at = end
+    found.append(END)
+    return found
+
+
+def _number_end(code: str, at: int) -> int:
+    end = at
+    while code[end : end + 1] in DIGITS:
+        end += 1
+    simple = end == at + 1 or (end > at and code[at] != "0")
+    if simple and code[end : end + 1] not in WORD and code[end : end + 1] != ".":
+        return end
+    match = NUMBER.match(code, at)
+    if match is None:
+        raise _Beyond
+    return int(match.end())
+
+
+def _text_end(code: str, at: int) -> tuple[str, int]:
+    end = code.find(code[at], at + 1) + 1
+    if end and not {"\\", "\n", "\r"}.intersection(code[at:end]):
+        return "text", end
+    match = ESCAPED.match(code, at)
+    if match is None:
+        raise _Beyond
+    return "escaped", int(match.end())
+
+
+def _mark(code: str, at: int) -> str:
+    for mark in LONG_MARKS:
+        if code.startswith(mark, at):
+            return mark
+    first, after = code[at], code[at + 1 : at + 2]
+    if first == "?" and after == "." and code[at + 2 : at + 3] not in DIGITS:
+        return "?."
+    spoilers = MARKS.get(first)
+    if spoilers is None or (after and after in spoilers):
+        raise _Beyond
+    return first
+
+
 LEVELS: dict[str, int] = {
     "||": 1, "&&": 2, "==": 3, "!=": 3, "===": 3, "!==": 3, "<": 4, ">": 4, "<=": 4, ">=": 4,
     "+": 5, "-": 5, "*": 6, "/": 6, "%": 6,
@@ -254,16 +332,7 @@ class _Parser:
         self.quick = where is not None
         """Whether it is worth more Python that takes less time."""
         self.names: dict[str, int] = {}
-        self.tokens: list[_Token] = []
-        position = 0
-        while position < len(code):
-            match = TOKEN.match(code, position)
-            if match is None or len(self.tokens) > MOST_TOKENS:
-                raise _Beyond
-            position = match.end()
-            if match.lastgroup != "space":
-                self.tokens.append(_Token(match.lastgroup or "", match[0], match.start()))
-        self.tokens.append(END)
+        self.tokens = _tokens(code)
         self.at = self.depth = self.held = 0
 
     def take(self) -> _Token:

@@ -7,8 +7,7 @@ Matching folds case, width and punctuation (W3C SRGS works on tokens; a person's
 from __future__ import annotations
 
 import re
-import unicodedata
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 _BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
 _NUMBER = pattern(r"(\d+(?:[.,:]\d+)+)")
+FEW = 8
+"""So many alternatives are all tried."""
 MAX_STEPS = 100_000
 """How many steps matching one utterance may take."""
 
@@ -27,7 +28,7 @@ MAX_STEPS = 100_000
 @lru_cache(maxsize=512)
 def fold(text: str) -> str:
     """Give text without what speech does not carry: case, width, punctuation, CJK spaces."""
-    folded = unicodedata.normalize("NFKC", text).casefold()
+    folded = _wide(text).casefold()
     for quote in "'\u2019\u2018`\u00b4":
         folded = folded.replace(quote, "")
     # Separators inside numbers and times are kept.
@@ -37,8 +38,21 @@ def fold(text: str) -> str:
     return said if said.isascii() else re.sub(_BETWEEN_CJK, "", said)
 
 
+def _wide(text: str) -> str:
+    """Text in the usual width (NFKC)."""
+    if text.isascii():
+        return text
+    from unicodedata import normalize  # few grammars need it
+
+    return normalize("NFKC", text)
+
+
 def _letter(letter: str) -> str:
-    return " " if unicodedata.category(letter)[0] in "PSZC" else letter
+    if letter.isascii():
+        return letter if letter.isalnum() else " "
+    from unicodedata import category
+
+    return " " if category(letter)[0] in "PSZC" else letter
 
 
 YES = "yes|yeah|yep|yes please|yes i do|yes you may|sure|of course|ok|okay|はい|ええ|うん|お願いします|はいお願いします"
@@ -71,7 +85,7 @@ _KANJI = dict(zip("〇一二三四五六七八九", range(10), strict=True))
 
 def read_number(text: str) -> float | None:
     """A number said in digits, English words up to 99, or Japanese ones; or None."""
-    plain = unicodedata.normalize("NFKC", text).strip(" .!?。").replace("\u2212", "-")
+    plain = _wide(text).strip(" .!?。").replace("\u2212", "-")
     if re.fullmatch(r"-?[0-9]{1,3}(?:,[0-9]{3})+(?:\.[0-9]+)?", plain):
         return float(plain.replace(",", ""))
     if re.fullmatch(r"-?[0-9]+(?:[.,][0-9]+)?", plain):
@@ -228,6 +242,18 @@ class Grammar:
 
     rules: dict[str, Part] = field(default_factory=dict)
     root: str = ""
+
+    def large(self) -> Iterator[Choice]:
+        """Where there are so many alternatives that an index of them is worth while."""
+        todo = list(self.rules.values())
+        while todo:
+            part = todo.pop()
+            if isinstance(part, Choice):
+                if len(part.parts) > FEW:
+                    yield part
+                todo += part.parts
+            elif isinstance(part, Sequence):
+                todo += part.parts
 
     def match(self, text: str) -> str | None:
         """The value of an utterance (the last tag met, else the utterance), or None."""

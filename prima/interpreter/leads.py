@@ -8,23 +8,13 @@ from __future__ import annotations
 from prima.interpreter.grammar import Choice, Grammar, Index, Part, Reference, Sequence, Tag, Words
 from prima.leads import NOTHING, UNKNOWN, Finder, Lead, Leads
 
-FEW = 8
-"""So many alternatives are all tried."""
-
 
 def index_choices(grammar: Grammar) -> None:
     """Index the alternatives of a grammar whose references all lead to rules."""
     finder = _Finder(grammar)
-    todo: list[Part] = list(grammar.rules.values())
-    while todo:
-        part = todo.pop()
-        if isinstance(part, Choice):
-            if len(part.parts) > FEW:
-                by_lead, others = finder.table(part.parts)
-                part.index = Index(by_lead, sorted({len(text) for text in by_lead}), others)
-            todo += part.parts
-        elif isinstance(part, Sequence):
-            todo += part.parts
+    for choice in grammar.large():
+        by_lead, others = finder.table(choice.parts)
+        choice.index = Index(by_lead, sorted({len(text) for text in by_lead}), others)
 
 
 class _Finder(Finder[Part]):

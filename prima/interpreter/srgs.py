@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from prima.errors import did_you_mean
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
-from prima.interpreter.leads import index_choices
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -44,7 +43,10 @@ def read_grammar(note: Note, node: Node) -> Grammar:
         note(node, "no-such-rule", f'There is no rule "{grammar.root}".', hint, "root")
         grammar.rules[grammar.root] = Choice([])
     _check_references(note, node, grammar)
-    index_choices(grammar)
+    if next(grammar.large(), None) is not None:
+        from prima.interpreter.leads import index_choices  # few grammars need it
+
+        index_choices(grammar)
     return grammar
 
 

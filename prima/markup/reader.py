@@ -60,7 +60,6 @@ REMEDIES = (
     (r"CData", "It ends with ]]>."),
 )  # fmt: skip
 """The parser's words, and what the author may do."""
-DECLARATION = pattern(r"<\?xml[^>]*?\?>")
 ENCODING = pattern(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
 BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -70,6 +69,8 @@ BOMS = (
     (b"\0<\0?", "utf-16-be"),
 )
 """How files of some encodings begin (XML 1.0, appendix F)."""
+MOST_FILES = b'<?xml version="1.0" encoding="utf-8"?>'
+"""How most files begin that declare their encoding."""
 LATE_DECLARATION = pattern(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
 TEMPLATE = pattern(r"<%|<\?php|<\?=")
 
@@ -88,7 +89,8 @@ def decode(file: str, data: bytes) -> str:
     if len(data) > LIMITS.bytes:
         raise too_large(file, len(data))
     encoding = next((name for bom, name in BOMS if data.startswith(bom)), "")
-    declared = ENCODING.match(data)
+    usual = data[: len(MOST_FILES)].lower() == MOST_FILES
+    declared = None if usual else ENCODING.match(data)
     if not encoding:
         encoding = declared[1].decode().lower() if declared else "utf-8"
         if declared and _codec(encoding).startswith("utf-16"):
@@ -104,7 +106,8 @@ def decode(file: str, data: bytes) -> str:
             place, "encoding", f'The encoding "{encoding}" is not accepted.', "Save it as UTF-8."
         )
     try:
-        text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)
+        marked = encoding == "utf-8" and data.startswith(codecs.BOM_UTF8)
+        text = data.decode("utf-8-sig" if marked else encoding)
     except UnicodeDecodeError as error:
         if LATE_DECLARATION.match(
             data
@@ -173,9 +176,9 @@ def parse(file: str, data: bytes) -> Node:
         DocumentError: not well-formed, or beyond a limit.
     """
     text = decode(file, data)
-    declaration = DECLARATION.match(text)
-    if declaration is not None:  # the text is what it is, whatever it declares
-        text = " " * declaration.end() + text[declaration.end() :]
+    end = text.find(">") + 1
+    if text.startswith("<?xml") and text[:end].endswith("?>"):
+        text = " " * end + text[end:]  # the text is what it is, whatever it declares
     source = Source(file, text)
     try:
         try:

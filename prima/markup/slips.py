@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 
 from prima.errors import one_of
 from prima.markup.tree import Node
@@ -46,6 +45,8 @@ TEXTS = ("text", "value", "say", "content", "message", "name")
 def half(text: str) -> str:
     """Text in characters of half width, as keyboards for English give."""
     straight = re.sub("[“”„«»]", '"', text)
+    import unicodedata  # only what is wrong needs it
+
     return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 
 from prima.deferred import dataclass, field, pattern
 from prima.errors import Place
@@ -75,6 +74,8 @@ class Source:
         """The place of a character of the text."""
         if self.lines is None:
             self.lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
+        from bisect import bisect_right  # most documents have nothing to be told of
+
         line = bisect_right(self.lines, offset)
         return Place(self.file, line, offset - self.lines[line - 1] + 1)
 

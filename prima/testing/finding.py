@@ -10,14 +10,13 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from prima.errors import DocumentError, UsageError, did_you_mean
-from prima.loading import VOICEXML_ROOT, read_file
+from prima.loading import read_file
+from prima.markup.opening import root_of
 from prima.markup.reader import parse
 from prima.testing.golden import golden_of
 
-SCENARIO = re.compile(
-    VOICEXML_ROOT.pattern.replace(b"vxml[\\s>/]", b"scenario\\s[^<]*urn:prima:scenario:"), re.DOTALL
-)
-"""All before a document's root element, and the beginning of a scenario's."""
+SCENARIO = re.compile(rb"<(?:[\w.-]+:)?scenario\s[^<]*urn:prima:scenario:")
+"""The beginning of a scenario's root element."""
 GLANCE = 65_536
 """Bytes of a file that are looked at."""
 PASSED_BY = frozenset({"node_modules", "__pycache__", "venv", "build", "dist"})
@@ -31,9 +30,7 @@ def is_scenario(path: str | Path) -> bool:
             data = stream.read(GLANCE)
     except (OSError, ValueError):
         return False
-    if b"\0" in data[:4]:  # UTF-16
-        data = data.replace(b"\0", b"")
-    return SCENARIO.match(data) is not None
+    return SCENARIO.match(root_of(data)) is not None
 
 
 def find(paths: Iterable[str]) -> list[str]:

@@ -1,0 +1,44 @@
+"""What a file begins with: enough to tell what kind of document it is."""
+
+from __future__ import annotations
+
+import re
+
+from prima.deferred import pattern
+
+BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
+DOCTYPE = pattern(rb"<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>", re.DOTALL)
+PIECES = ((b"<?", b"?>"), (b"<!--", b"-->"))
+"""How processing instructions and comments begin and end."""
+
+
+def root_of(data: bytes) -> bytes:
+    """A file from where its root element seems to begin: past the prolog, without parsing it.
+
+    No file is refused: of one that is no XML all but white space is given. Text in UTF-16 is
+    given with one byte a letter.
+    """
+    if b"\0" in data[:4]:
+        data = data.replace(b"\0", b"")
+    at = 0
+    while bom := next((bom for bom in BOMS if data.startswith(bom, at)), b""):
+        at += len(bom)
+    while True:
+        while data[at : at + 1].isspace():
+            at += 1
+        end = _past(data, at)
+        if end < 0:
+            return data[at:]
+        at = end
+
+
+def _past(data: bytes, at: int) -> int:
+    """Where the instruction, comment or DOCTYPE ends that begins here; -1 if none does."""
+    for begin, close in PIECES:
+        if data.startswith(begin, at):
+            found = data.find(close, at + len(begin))
+            return -1 if found < 0 else found + len(close)
+    if data.startswith(b"<!DOCTYPE", at):
+        match = DOCTYPE.match(data, at)
+        return -1 if match is None else int(match.end())
+    return -1
