@@ -8,6 +8,7 @@ from prima.interpreter import expressions
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
+from prima.interpreter.sensors import sensors_read
 from prima.messages import Sensed
 from tests.robot import Bench, document
 
@@ -781,6 +782,41 @@ def test_a_watch_is_looked_at_only_when_its_sensor_changes(monkeypatch: pytest.M
     bench.step(Sensed({"battery.level": 10.0}))
     bench.step(Sensed({"front": 1.0}))
     assert bench.logs() == ["low"]
+
+
+LOG = '<form id="a"><block><log><value expr="{}"/></log></block></form>'
+WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
+
+
+@pytest.mark.parametrize(
+    ("body", "read"),
+    [
+        (WATCH.format("sensor.x &gt; 1"), {"x"}),
+        (WATCH.format("sensor.x?.y &gt; sensor?.z.a"), {"x", "z"}),
+        (LOG.format("sensor .a + application.sensor.b"), {"a", "b"}),
+        ("<script>var a = 1;</script>" + LOG.format("a"), set()),
+        ('<form id="a"><block><speak>A sensor\'s application.</speak></block></form>', set()),
+        ('<var name="n" expr="1"/>' + WATCH.format("sensor.x &gt; n"), None),
+        (LOG.format("sensor"), None),
+        (LOG.format("sensor['x']"), None),
+        (LOG.format("application"), None),
+        (LOG.format("application['sensor']"), None),
+        ("<script>function f() { return sens\\u006fr.x; }</script>" + LOG.format("1"), None),
+        ("<script>function f() { return eval('sen' + 'sor.x'); }</script>" + LOG.format("1"), None),
+        ("<script>function f(s) { return s.sensor; }</script>" + LOG.format("1"), None),
+    ],
+)
+def test_which_sensors_a_document_looks_at(body: str, read: set[str] | None) -> None:
+    found = sensors_read(document(body))
+    assert (found if found is None else set(found)) == read
+
+
+def test_a_watch_that_a_subdialog_may_hide_looks_at_whatever_changes() -> None:
+    watching = '<form id="a"><watch name="w" when="sensor.x &gt; 1"/>{}</form>'
+    assert sensors_read(document(watching.format(""))) == frozenset({"x"})
+    calls = '<subdialog name="s" src="#b"/>'
+    other = '<form id="b"><block><return/></block></form>'
+    assert sensors_read(document(watching.format(calls) + other)) is None
 
 
 def test_a_watch_knows_what_changed_while_a_subdialog_had_its_place() -> None:

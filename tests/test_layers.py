@@ -69,7 +69,7 @@ INSIDE = {
         {"elements", "srgs", "compiling"},
         {"events", "plain"},
         {"surroundings"},
-        {"build", "checks", "frame", "selection"},
+        {"build", "checks", "frame", "selection", "sensors"},
         {"reader", "content"},
         {"form", "bounds"},
         {"reactions"},

@@ -12,6 +12,7 @@ import pytest
 from prima import api
 from prima.interpreter.evaluation import PULSE
 from prima.session import Session
+from prima.sim import rehearsal as simulation
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
 from prima.sim.scenario import Map, Profile
@@ -193,6 +194,36 @@ def test_watches_see_the_sensors(tmp_path: Path) -> None:
     script = """<person x="4" y="0"/><when at="1s"><walk x="0.8" y="0"/></when>
       <when at="9s"><sensor name="temperature" value="31"/></when>"""
     assert told(rehearse(tmp_path, body, script))[-3:-1] == ["warm", '"Hot."']
+
+
+WATCHING = """<form id="a">
+  <watch name="low" when="sensor.battery?.level &lt; 15"/>
+  <on event="low"><log>Low.</log></on>
+  <on event="touch"><turn angle="90"/><turn angle="-90"/></on></form>"""
+TURNS = """<person x="4" y="0"/><when at="1s"><walk x="0.8" y="0"/><touch sensor="head"/></when>
+  <when at="8s"><sensor name="battery.level" value="3"/></when>"""
+
+
+def reports(transcript: api.Transcript) -> list[set[str]]:
+    return [set(one["data"]) for one in transcript.records if one["phase"] == "sensed"]
+
+
+def test_only_sensors_that_somebody_looks_at_are_told_after_the_first_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = rehearse(tmp_path, WATCHING, TURNS)
+    first, *more = reports(few)
+    assert first >= {"human.visible", "human.distance", "position.x", "moving"}
+    assert more == [{"battery.level"}]
+    other = '<form id="f"><watch name="m" when="sensor.moving"/></form>'
+    _, *more = reports(rehearse(tmp_path, WATCHING, TURNS, other=other))
+    assert more == [*[{"moving"}] * 4, {"battery.level"}], "it turns there and back"
+    monkeypatch.setattr(simulation, "sensors_read", lambda document: None)
+    everything = rehearse(tmp_path, WATCHING, TURNS)
+    assert len(reports(everything)) > 20
+    assert [one for one in everything.records if one["phase"] != "sensed"] == [
+        one for one in few.records if one["phase"] != "sensed"
+    ]
 
 
 def test_an_emergency_stop_and_an_unload(tmp_path: Path) -> None:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Expression, Form, Handler, Item, Known, Watch
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
-from prima.interpreter.names import GLOBALS, free_names, tokens_of
 from prima.interpreter.reactions import reaction_of
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
+from prima.interpreter.sensors import hides_sensors, sensors_of
 from prima.messages import Event, Json, Notice
 
 if TYPE_CHECKING:
@@ -320,7 +317,7 @@ class Handling:
     def _sensors_of(self, watch: Watch) -> frozenset[str] | None:
         """The sensors that a watch looks at alone; None where the document has such a name itself."""
         if self._hidden is None:
-            self._hidden = HIDING.search(self.owner.document.node.source.text) is not None
+            self._hidden = hides_sensors(self.owner.document)
         return None if self._hidden else sensors_of(watch.when.code)
 
 
@@ -330,25 +327,3 @@ class Armed:
     true = False
     report = -1
     """After how many reports of sensors that was; -1 where it could not be evaluated."""
-
-
-SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
-HIDING = re.compile(
-    r"""\bname\s*=\s*["']\s*(?:sensor|undefined|NaN|Infinity)\s*["']"""
-    r"""|\bsensor\s*=[^=]|\b(?:var|let|const|function|class)\s+sensor\b"""
-)
-"""Where a document declares, or a script gives a value to, what conditions take for granted."""
-OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
-
-
-@lru_cache(maxsize=1000)
-def sensors_of(code: str) -> frozenset[str] | None:
-    """The sensors that a condition looks at, by the first part of their names.
-
-    None where it may depend on anything else, or where which ones cannot be told.
-    """
-    used = {token.text for token in tokens_of(code)}
-    found = SENSOR.findall(code)
-    if free_names(code) or used & (OTHER | (GLOBALS - CONSTANTS.keys()) - {"sensor"}):
-        return None
-    return frozenset(found) if found and all(found) else None

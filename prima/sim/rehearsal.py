@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
+from prima.interpreter.sensors import sensors_read
 from prima.interpreter.surroundings import nearest
 from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.scheduler.selection import Policy
@@ -107,17 +108,21 @@ class Rehearsal:
         self.services = Services(scenario.services, web)
         self.telephone = Telephone(scenario.transfers)
         self.session = Session(cast.documents, policy, cast.robot.commands, bound, scenario.date)
+        native = [doc for doc in cast.documents if isinstance(doc, Document)]
         self._watching = any(
-            doc.watches or any(form.watches for form in doc.forms.values())
-            for doc in cast.documents
+            doc.watches or any(form.watches for form in doc.forms.values()) for doc in native
         )
+        if self._watching:
+            read = [sensors_read(doc) for doc in native]
+            known = [one for one in read if one is not None]
+            self.robot.told_of = frozenset().union(*known) if len(known) == len(read) else None
         self._loads = sorted(
             (start, index, doc.id)
             for index, ((_, start, _), doc) in enumerate(
                 zip(scenario.applications, cast.documents, strict=False)
             )
         )
-        self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
+        self._native = {doc.id for doc in native}
         """Applications of PRIMA's own language."""
         self._inside: set[str] = set()
         """Areas that the robot is in."""

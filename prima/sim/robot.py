@@ -44,6 +44,8 @@ AFTERMATH_MS = 1000
 """How long after it moved the body a dance answers for where the robot is (X5)."""
 FAILING_MS = 300
 """How long a broken device tries before it says that it fails."""
+ITS_OWN = frozenset({"human", "position", "moving"})
+"""What it measures itself, by the first part of the sensors' names."""
 
 
 @dataclass(slots=True)
@@ -125,12 +127,12 @@ class Robot:
         self._now = 0
         self._seen = False
         self._unseen_since: int | None = None
+        self.told_of: frozenset[str] | None = None
+        """Sensors that somebody looks at, by the first part of their names; None for all of them."""
         self._sensed: dict[str, Json] = {}
         """What the sensors have said last."""
         self._around: tuple[object, ...] = ()
         """Where robot and person were then, and how the robot was turned and driven."""
-        self._values: dict[str, Json] = {}
-        """What was measured by other sensors then."""
         self._loops: dict[str, Callable[[Task], bool]] = {
             "topological-move": self._drive_path,
             "set-position": self._drive_path,
@@ -561,27 +563,41 @@ class Robot:
         return any(task.command.type == "active-sensing-human" for task in self.tasks.values())
 
     def sense(self, values: dict[str, Json]) -> list[Inbound]:
-        """What the sensors say, if it has changed: for applications that watch them."""
-        world = self.world
-        around = (world.position, world.heading, world.pan, world.person, world.drive)
-        if around == self._around and values == self._values:
-            return []
-        self._around, self._values = around, dict(values)
-        person, pose = world.person, world.pose()
-        now: dict[str, Json] = {
-            "human.visible": world.sees_person(),
-            "human.distance": (
-                None if person is None else round(distance(world.position, person), 1)
-            ),
-            "position.x": round(pose["x"], 1),
-            "position.y": round(pose["y"], 1),
-            "position.heading": round(pose["heading"]) % 360,
-            "moving": world.drive != (0.0, 0.0),
-            **values,
-        }
+        """What the sensors say, if it has changed: for applications that watch them.
+
+        The first report has all of them; later ones have only what somebody looks at.
+        """
+        world, looked_at = self.world, ITS_OWN if self.told_of is None else self.told_of
+        if not self._sensed:
+            looked_at = ITS_OWN
+        now: dict[str, Json] = {}
+        if not looked_at.isdisjoint(ITS_OWN):
+            around = (world.position, world.heading, world.pan, world.person, world.drive)
+            if around != self._around:
+                self._around = around
+                now = self._measured(looked_at)
+        now.update(values)
         changed = {key: value for key, value in now.items() if self._sensed.get(key, ...) != value}
         self._sensed.update(changed)
         return [Sensed(changed)] if changed else []
+
+    def _measured(self, looked_at: frozenset[str]) -> dict[str, Json]:
+        """What its own sensors say, of those that are looked at."""
+        world, now = self.world, dict[str, Json]()
+        if "human" in looked_at:
+            person = world.person
+            now["human.visible"] = world.sees_person()
+            now["human.distance"] = (
+                None if person is None else round(distance(world.position, person), 1)
+            )
+        if "position" in looked_at:
+            pose = world.pose()
+            now["position.x"] = round(pose["x"], 1)
+            now["position.y"] = round(pose["y"], 1)
+            now["position.heading"] = round(pose["heading"]) % 360
+        if "moving" in looked_at:
+            now["moving"] = world.drive != (0.0, 0.0)
+        return now
 
     # The ear ------------------------------------------------------------------------
 
