@@ -8,6 +8,8 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from prima import api
 from prima.interpreter.evaluation import PULSE
@@ -85,6 +87,33 @@ def test_physics_steps_only_while_something_moves() -> None:
     world.drive = (0.5, 0.0)
     world.advance(10**9 + 2000)
     assert world.position == pytest.approx((0.0, 1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("x", [1.2, 50.0], ids=["by walls", "far from walls"])
+@given(
+    st.lists(
+        st.tuples(st.floats(-1, 1), st.floats(-180, 180), st.integers(1, 300)),
+        min_size=1,
+        max_size=9,
+    )
+)
+def test_the_body_goes_where_physics_would_take_it(
+    x: float, drives: list[tuple[float, float, int]]
+) -> None:
+    walls = [((x, -1.0), (x, 1.0)), ((-x, 1.0), (x, 1.0))]
+    ways = []
+    for physics in (False, True):
+        world = World(Map("m", walls=walls), PROFILE, (0.5, 0.25), 30.0)
+        with pytest.MonkeyPatch.context() as patch:
+            if physics:
+                patch.setattr(world, "_wall_within", lambda reach: True)
+            way = []
+            for forward, turning, lasts in drives:
+                world.drive = (forward, turning)
+                world.advance(world.time + lasts)
+                way.append((world.position, world.heading))
+        ways.append(way)
+    assert ways[0] == ways[1]
 
 
 def test_a_wall_stops_the_robot() -> None:

@@ -60,14 +60,12 @@ class World:
         shape = pymunk.Circle(self._body, profile.radius)
         shape.filter = pymunk.ShapeFilter(categories=0b01)
         self._space.add(self._body, shape)
-        self._body.position = at
-        self._body.angle = math.radians(heading)
         self._free: tuple[Point, float] = (at, -1.0)
         """A place, and how far (m) around it there is no wall."""
         self._looked: tuple[object, ...] = ()
         """From where to where the camera has looked last, and how it was turned."""
         self._visible = False
-        self._settle()
+        self._place(at, math.radians(heading))
         self.drive = (0.0, 0.0)
         """What the wheels are told: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
@@ -78,13 +76,12 @@ class World:
         self._searched = self.position
         """Where the robot was when it was last looked for corners near to it."""
 
-    def _settle(self) -> None:
-        """Read where physics has left the body: it moves nowhere else, and reading is slow."""
-        place = self._body.position
-        self.position: Point = (place.x, place.y)
+    def _place(self, position: Point, angle: float) -> None:
+        """Note where the body has got to; in physics it is put when physics is needed."""
+        self.position = position
         """Where the robot is (m)."""
-        self._angle = self._body.angle
-        self.heading = math.degrees(self._angle) % 360.0
+        self._angle = angle
+        self.heading = math.degrees(angle) % 360.0
         """Where the robot's front points (degrees)."""
 
     # The robot -----------------------------------------------------------------
@@ -149,23 +146,32 @@ class World:
     def _step(self, seconds: float) -> None:
         forward, turning = self.drive
         if forward or turning:
-            body = self._body
-            if forward and self._wall_ahead(forward, seconds):
-                forward = 0.0
-            # Each step sets both anew: what a push has left of them counts for nothing.
-            body.velocity = (forward * math.cos(self._angle), forward * math.sin(self._angle))
-            body.angular_velocity = math.radians(turning)
-            self._space.step(seconds)
-            self._settle()
+            self._move(forward, math.radians(turning), seconds)
         if self._goal is not None and self.person is not None:
             self._step_person(self._goal, seconds)
+
+    def _move(self, forward: float, turning: float, seconds: float) -> None:
+        """Move the body; only where it may touch a wall it takes more than its speed."""
+        near = self._wall_within(self.profile.radius + abs(forward) * seconds + 0.05)
+        if near and forward and self._wall_ahead(forward, seconds):
+            forward = 0.0
+        along, across = forward * math.cos(self._angle), forward * math.sin(self._angle)
+        if near:
+            body = self._body
+            body.position, body.angle = self.position, self._angle
+            # Each step sets both anew: what a push has left of them counts for nothing.
+            body.velocity, body.angular_velocity = (along, across), turning
+            self._space.step(seconds)
+            self._place((body.position.x, body.position.y), body.angle)
+        else:
+            x, y = self.position
+            there = (x + along * seconds, y + across * seconds)
+            self._place(there, self._angle + turning * seconds)
 
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
         """Whether going on would press the body against a wall."""
         reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
         thick = self.profile.radius * 0.7
-        if not self._wall_within(reach + thick):
-            return False
         angle = self._angle if forward > 0 else self._angle + math.pi
         x, y = self.position
         ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
