@@ -143,7 +143,7 @@ def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
     """S2b is gone."""
 
     def rank(ab: Behavior, memory: Memory) -> tuple[int, ...]:
-        return (0,)
+        return (0, 0, 0)
 
     patch.setattr(selection, "rank_reaction", rank)
 

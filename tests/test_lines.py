@@ -157,3 +157,15 @@ def test_the_work_of_a_decision_does_not_grow_with_those_who_wait() -> None:
         looked.append(len(ranks))
     assert looked[0] == looked[1]
     assert looked[0] < 20 * 4
+
+
+def test_losers_are_all_named_when_one_start_leaves_few_waiting() -> None:
+    found = []
+    for few in (8, 1000):
+        crowd = Crowd(few)
+        for index in range(9):
+            crowd.ask(index, KINDS[0 if index < 5 else 2])
+        crowd.mediator.select()
+        found.append([one for one in crowd.decisions() if one["phase"] == "decision"])
+    assert found[0] == found[1]
+    assert [(one["rule"], one["losers_count"]) for one in found[0]] == [("S2f", 4), ("S2f", 3)]

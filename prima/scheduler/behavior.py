@@ -8,17 +8,25 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from enum import Enum
+from functools import lru_cache
 
 from prima.commands import CommandType
 from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group
 from prima.scheduler.effects import Effects
 
-Rank = tuple[tuple[int, ...], ...]
-"""Where a waiting AB stands by the parts of a policy's rule, S2a to S2f: the smallest first."""
+Rank = tuple[int, ...]
+"""Where a waiting AB stands by the numbers of a policy's rule, S2a to S2f: the smallest first."""
 HIGH = 1
 NO_DEVICES: frozenset[str] = frozenset()
+
+
+@lru_cache(maxsize=1000)
+def in_order(devices: frozenset[str]) -> tuple[str, ...]:
+    """Devices in the order in which they are looked at and told."""
+    return tuple(sorted(devices))
 
 
 class State(Enum):
@@ -156,8 +164,17 @@ class Behavior:
     """Whether the AB engages the user (K1)."""
     priority: int = HIGH
 
+    motion: str = ""
+    """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not within a unit."""
+
     id: str = ""
     """The AB's name in the transcript; a loop of a feedback Command has its number."""
+    line: Line | None = None
+    """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
+    place: Rank = ()
+    """The last parts of its rank while it stands in a line, S2d to S2f."""
+    entry: Entry | None = None
+    """By which it stands there."""
 
     def __post_init__(self) -> None:
         self.id = self.name
@@ -165,6 +182,7 @@ class Behavior:
         if row is not None:
             self.feedback, self.leaves = row.feedback, row.leaves
             self.engages, self.priority = row.engages, row.priority
+            self.motion = row.motion if self.unit is None else ""
 
     def next_loop(self) -> None:
         """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
@@ -174,12 +192,31 @@ class Behavior:
         self.id = f"{self.name}.{self.loop}"
 
     @property
-    def motion(self) -> str:
-        """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5)."""
-        return self.type.motion if self.type is not None and self.unit is None else ""
-
-    @property
     def restartable(self) -> bool:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         what = self.group or self.command
         return what is not None and what.restartable and not self.silent
+
+
+Entry = tuple[Rank, Behavior]
+"""An AB that waits, behind its rank among those that react to nothing and were not freed just now."""
+
+
+class Line:
+    """The waiting ABs of one kind that react to nothing, first come first."""
+
+    __slots__ = ("devices", "entries", "leaves", "priority")
+
+    def __init__(self, devices: frozenset[str], priority: int, leaves: bool) -> None:
+        self.devices = devices
+        self.priority = priority
+        self.leaves = leaves
+        self.entries: list[Entry] = []
+
+    def below(self, rank: Rank) -> int:
+        """Where those begin that stand behind a rank."""
+        return bisect_left(self.entries, (rank,))
+
+    def stands_behind(self, rank: Rank, ab: Behavior) -> bool:
+        """Whether an AB waits in this line behind a rank."""
+        return ab.line is self and ab.entry is not None and ab.entry[0] > rank

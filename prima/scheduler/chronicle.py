@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Cue, Data, Json, Record
-from prima.scheduler.behavior import Behavior, Stream
+from prima.scheduler.behavior import Behavior, Entry, Stream, in_order
 
 LOSERS_NAMED = 8
 """How many losers of a decision are named; all are counted."""
@@ -51,6 +51,64 @@ class Chronicle:
         fields["unit"] = ab.unit.id if ab.unit else None
         self.records.append(fields)
 
+    def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
+        """Record the end of an AB, or of a loop of one."""
+        record: Record = {
+            "time": self.now,
+            "phase": "end",
+            "actor": "robot",
+            "app": ab.app.name,
+            "behavior": ab.id,
+            "tree": ab.stream.name,
+            "command": ab.type.name if ab.type else "iu",
+            "text": ab.command.text if ab.command else None,
+            "unit": ab.unit.id if ab.unit else None,
+            "outcome": outcome,
+            "inbound": inbound or None,
+        }
+        if ab.feedback:
+            record["goal"] = goal
+        if data:
+            record["data"] = dict(data)
+        self.records.append(record)
+
+    def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
+        """Record the start of an AB, or of a loop of one."""
+        record: Record = {
+            "time": self.now,
+            "phase": "start",
+            "actor": "robot",
+            "app": ab.app.name,
+            "behavior": ab.id,
+            "tree": ab.stream.name,
+            "command": ab.type.name if ab.type else "iu",
+            "text": ab.command.text if ab.command else None,
+            "unit": ab.unit.id if ab.unit else None,
+            "devices": [*in_order(ab.devices)],
+            "rule": rule,
+        }
+        if ab.feedback:
+            record["parent"] = ab.parent
+        if reaction is not None:
+            record["reactive"] = True
+            record["cause"] = reaction if reaction > 0 else None
+        if ab.resumed:
+            record["resumed"], record["data"] = True, ab.since
+        self.records.append(record)
+
+    def hold(self, ab: Behavior, rule: str, by: str) -> None:
+        """Record what keeps a waiting AB from starting."""
+        record: Record = {
+            "time": self.now,
+            "phase": "hold",
+            "actor": "mediator",
+            "app": ab.app.name,
+            "behavior": ab.id,
+            "rule": rule,
+            "by": by,
+        }
+        self.records.append(record)
+
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
         command = ab.command
@@ -62,7 +120,7 @@ class Chronicle:
             cues=shown_cues(command.cues) if command and command.cues else None,
             parent=ab.parent,
             parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
-            devices=sorted(ab.devices),
+            devices=[*in_order(ab.devices)],
             priority="high" if ab.priority else "low",
             reactive=ab.reaction is not None,
             cause=ab.reaction,
@@ -84,7 +142,7 @@ class Chronicle:
         """Record what becomes of a stream."""
         self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
 
-    def decision(self, winner: Behavior, rule: str, losers: list[Behavior], count: int) -> None:
+    def decision(self, winner: Behavior, rule: str, losers: list[Entry], count: int) -> None:
         """Record a selection: the rule, who won, who lost, and how many did."""
         record: Record = {
             "time": self.now,
@@ -93,7 +151,7 @@ class Chronicle:
             "app": winner.app.name,
             "winner": winner.id,
             "rule": rule,
-            "losers": [ab.id for ab in losers],
+            "losers": [ab.id for _, ab in losers],
             "losers_count": count,
         }
         self.records.append(record)

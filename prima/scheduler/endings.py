@@ -39,6 +39,8 @@ class Endings:
         """When ABs will have run for longer than they may (U5, E1), by name."""
         self.holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
+        self._restoring = policy.has("x1")
+        """Whether it matters what Commands have done to the robot's state."""
         self._rolling: Behavior | None = None
         self._continuing: list[Application] = []
         """Applications one of whose streams stays open for this instant (O2, O3)."""
@@ -127,7 +129,8 @@ class Endings:
 
     def running(self, behavior: str) -> Behavior | None:
         """The running AB of that name, if it runs still."""
-        ab = self.memory.running.get(behavior.partition(".")[0])
+        running = self.memory.running
+        ab = running.get(behavior) or running.get(behavior.partition(".")[0])
         return ab if ab is not None and ab.id == behavior else None
 
     def question(self) -> Behavior | None:
@@ -178,17 +181,11 @@ class Endings:
             return False
         self.changed = True
         ending = goal or ab.last_loop or not ab.feedback
-        self.chronicle.behavior(
-            "end",
-            ab,
-            outcome=str(data.get("outcome", "done")) if ending else "again",
-            goal=goal if ab.feedback else None,
-            data=dict(data) or None,
-            inbound=inbound or None,
-        )
+        outcome = str(data.get("outcome", "done")) if ending else "again"
+        self.chronicle.end(ab, outcome, goal, data, inbound)
         if ab.feedback and not goal and "locomotion" in ab.devices:
             self._rolling = ab
-        if ab.type is not None and ab.command is not None:
+        if self._restoring and ab.type is not None and ab.command is not None:
             body = self._selector.body
             body.moved(ab.type, ab.command, data)
             if ab.inserted != "X1" and (ending or "follow" in ab.type.effects):
@@ -219,7 +216,7 @@ class Endings:
         """End a unit when its Commands have ended, or what was left to run in it has."""
         if unit.state is not State.RUNNING or unit.inner or unit.open:
             return
-        self.chronicle.behavior("end", unit, outcome="done")
+        self.chronicle.end(unit, "done", True, {}, inbound=False)
         self._finish(unit, {})
 
     def _close_unit(self, app: Application, number: int) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from prima.messages import Notice, Order
 from prima.scheduler.behavior import Behavior, State, Stream
 from prima.scheduler.endings import Endings, Told, in_group
@@ -153,14 +151,14 @@ def allowance(ab: Behavior) -> int:
     """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
-    stated: Iterable[int] = (
-        int(command.args[name])
-        for name, argument in row.arguments.items()
-        if argument.kind == "duration" and name in command.args
-    )
+    stated = 0
+    for name, value in command.args.items():
+        argument = row.arguments.get(name)
+        if argument is not None and argument.kind == "duration":
+            stated += int(value)
     letters = MS_A_LETTER * len(command.text or "")
     if not command.cues:
-        return HANG_MS + sum(stated) + letters
+        return HANG_MS + stated + letters
     times = sum(
         cue.value
         for cue in command.cues
@@ -169,4 +167,4 @@ def allowance(ab: Behavior) -> int:
     slowest = min(
         (float(cue.value or 1) for cue in command.cues if cue.kind == "rate"), default=1.0
     )
-    return HANG_MS + sum(stated) + round(times + letters / min(slowest, 1.0))
+    return HANG_MS + stated + round(times + letters / min(slowest, 1.0))

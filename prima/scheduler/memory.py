@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from prima.scheduler.behavior import Application, Behavior, State, Stream
+from prima.scheduler.behavior import Application, Behavior, State, Stream, in_order
 from prima.scheduler.waiting import Waiting
 
 
@@ -69,11 +69,12 @@ class Memory:
     def release(self, ab: Behavior) -> None:
         """Give back what a running AB occupies."""
         self.running.pop(ab.name, None)
-        holders = (self.occupied,) if ab.unit is None else (self.occupied, ab.unit.busy)
-        for held in holders:
-            for device in ab.devices:
-                if held.get(device) is ab:
-                    del held[device]
+        occupied, unit = self.occupied, ab.unit
+        for device in ab.devices:
+            if occupied.get(device) is ab:
+                del occupied[device]
+            if unit is not None and unit.busy.get(device) is ab:
+                del unit.busy[device]
         if ab.motion:
             self._leave_to_other_motion(ab)
 
@@ -86,13 +87,16 @@ class Memory:
 
     def remove(self, ab: Behavior) -> None:
         """Take an AB out of working memory, whatever its state."""
-        self.release(ab)
-        self.waiting.remove(ab)
-        self.behaviors.pop(ab.name, None)
-        ab.app.members.pop(ab.name, None)
-        ab.stream.members.pop(ab.name, None)
+        name = ab.name
+        if ab.state is State.RUNNING:
+            self.release(ab)
+        else:
+            self.waiting.remove(ab)
+        self.behaviors.pop(name, None)
+        ab.app.members.pop(name, None)
+        ab.stream.members.pop(name, None)
         if ab.unit is not None:
-            ab.unit.inner.pop(ab.name, None)
+            ab.unit.inner.pop(name, None)
         ab.state = State.GONE
 
     def of_app(self, app: Application) -> Iterator[Behavior]:
@@ -137,7 +141,7 @@ class Memory:
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit
-        for device in sorted(ab.devices):
+        for device in in_order(ab.devices):
             if unit is not None and device in unit.devices:
                 other = unit.busy.get(device)
             else:

@@ -12,27 +12,29 @@ from prima.deferred import dataclass
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.scheduler.behavior import Behavior, Rank, State, Stream
 from prima.scheduler.memory import Memory
-from prima.scheduler.waiting import rank_declared, rank_in_line, rank_request
+from prima.scheduler.waiting import (
+    LATER,
+    NO_REACTION,
+    place_in_line,
+    rank_declared,
+    rank_priority,
+    rank_request,
+)
 
 Refusal = tuple[str, str]
 """The rule that keeps an AB from starting, and what it is kept back by."""
 
 
-def rank_priority(ab: Behavior) -> tuple[int, ...]:
-    """S2a: the higher priority goes first."""
-    return (-ab.priority,)
-
-
-def rank_reaction(ab: Behavior, memory: Memory) -> tuple[int, ...]:
+def rank_reaction(ab: Behavior, memory: Memory) -> Rank:
     """S2b: reactions, the latest event's first; of one event, the active application's."""
     if ab.reaction is None:
-        return (1,)
+        return NO_REACTION
     return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
 
 
-def rank_continuing(ab: Behavior, now: int) -> tuple[int, ...]:
+def rank_continuing(ab: Behavior, now: int) -> Rank:
     """S2c: a parent that has ended in this instant goes before others."""
-    return (0 if ab.freed == now else 1,)
+    return (0,) if ab.freed == now else LATER
 
 
 def outranks(priority: int, stream: Stream) -> bool:
@@ -81,8 +83,8 @@ class Policy:
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
-    rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
-    """The name of the rule behind each part of a rank."""
+    rules: tuple[str, ...] = ("S2a", *["S2b"] * 3, "S2c", "S2d", "S2e", "S2f", "S2f")
+    """The name of the rule behind each number of a rank."""
     turning: bool = False
     """Whether a start changes how other ABs rank."""
     extensions: frozenset[str] = frozenset()
@@ -95,14 +97,23 @@ class Policy:
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """Where a waiting AB stands: the smallest goes first (S2)."""
         return (
-            rank_priority(ab),
-            rank_reaction(ab, memory),
-            rank_continuing(ab, now),
-            *rank_in_line(ab),
+            *rank_priority(ab),
+            *rank_reaction(ab, memory),
+            *rank_continuing(ab, now),
+            *(place_in_line(ab) if ab.line is None else ab.place),
         )
+
+    def decided(self, winner: Rank, loser: Rank) -> str:
+        """The rule by which one rank goes before another."""
+        for rule, mine, other in zip(self.rules, winner, loser, strict=True):
+            if mine != other:
+                return rule
+        return self.rules[-1]
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, K1)."""
+        if not memory.floor and not memory.engaged:
+            return None
         if self.has("x5") and composes_with_floor(ab, memory):
             return refused_by_channel(ab, memory)
         return refused_by_floor(ab, memory) or refused_by_channel(ab, memory)
@@ -123,11 +134,11 @@ class Fifo(Policy):
 
     name: str = "fifo"
     floor: bool = False
-    rules: tuple[str, ...] = ("fifo", "S2f")
+    rules: tuple[str, ...] = ("fifo", "S2f", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The earlier request goes first."""
-        return (rank_request(ab), rank_declared(ab))
+        return (*rank_request(ab), *rank_declared(ab))
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """Nothing but devices keeps an AB from starting."""
@@ -149,11 +160,11 @@ class Fair(Fifo):
 
     name: str = "fair"
     turning: bool = True
-    rules: tuple[str, ...] = ("fair", "fifo", "S2f")
+    rules: tuple[str, ...] = ("fair", "fifo", "S2f", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
-        return ((ab.app.last_turn,), rank_request(ab), rank_declared(ab))
+        return (ab.app.last_turn, *rank_request(ab), *rank_declared(ab))
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,13 +172,13 @@ class Fixed(Fifo):
     """One application, named, always outranks the other (a subsumption architecture)."""
 
     name: str = "fixed"
-    rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
+    rules: tuple[str, ...] = ("fixed", "fifo", "S2f", "S2f")
     first: str = ""
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
         top = ab.app.name == self.first if self.first else ab.app.order == 0
-        return ((0 if top else 1,), rank_request(ab), rank_declared(ab))
+        return (0 if top else 1, *rank_request(ab), *rank_declared(ab))
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +187,7 @@ class Unmediated(Fifo):
 
     name: str = "none"
     exclusive: bool = False
-    rules: tuple[str, ...] = ("none", "S2f")
+    rules: tuple[str, ...] = ("none", "S2f", "S2f")
 
     def holds_back(self, ab: Behavior) -> bool:
         """Nothing is ever held back."""

@@ -6,13 +6,21 @@ from collections.abc import Iterable
 from operator import itemgetter
 
 from prima.messages import Command, Group, Order
-from prima.scheduler.behavior import Application, Behavior, Rank, State, Stream
+from prima.scheduler.behavior import (
+    Application,
+    Behavior,
+    Entry,
+    Line,
+    Rank,
+    State,
+    Stream,
+    in_order,
+)
 from prima.scheduler.chronicle import LOSERS_NAMED, Chronicle
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy, Refusal, composes_with_floor, outranks
-from prima.scheduler.waiting import LEAST, Line
 
 STARVING_LOOPS = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
@@ -23,7 +31,7 @@ COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
 
 
-Losers = tuple[list[tuple[Rank, Behavior]], int]
+Losers = tuple[list[Entry], int]
 """The first of those whom a winner keeps waiting, by rank, and how many there are."""
 
 
@@ -42,6 +50,7 @@ class Selector:
         self._lining = policy.lined
         self._preparing = policy.has("x1") or policy.has("x4")
         self._composing = policy.has("x5")
+        self._yielding = policy.has("x2")
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
@@ -61,66 +70,68 @@ class Selector:
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
         self.started, self.given_up = [], []
-        for unit in [ab for ab in self.memory.running.values() if ab.inner]:
+        memory = self.memory
+        for unit in [ab for ab in memory.running.values() if ab.inner]:
             self._advance(unit, now)
-        again = bool(self.memory.waiting)
-        while again:
-            again = self._pass(now)
+        while memory.waiting.all and self._pass(now):
+            pass
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true when what ranks them changed on the way."""
-        memory = self.memory
+        memory, policy = self.memory, self.policy
+        many = self._lining and len(memory.waiting.all) > self.few
+        candidates = self._firsts(now) if many else self._ranked(memory.waiting, now)
         held: dict[str, Behavior] = {}
-        candidates = self._candidates(now)
-        for index, (rank, ab) in enumerate(candidates):
-            refusal = self.policy.refusal(ab, memory)
+        for index, (rank, ab) in enumerate(candidates, 1):
+            refusal = policy.refusal(ab, memory)
             if refusal is None:
                 if self._preparing and self._prepare(ab, now):
                     return True
                 refusal = self._refused_by_devices(ab, held)
-                if refusal is not None and self.policy.holds_back(ab):
+                if refusal is not None and policy.holds_back(ab):
                     for device in ab.devices:
                         held.setdefault(device, ab)
-            if refusal is not None:
+            if refusal is None:
+                if self._start(ab, rank, candidates[index:], now, many):
+                    return True
+            elif ab.blocked != refusal:
                 self._hold(ab, refusal)
-            elif self._start(ab, rank, candidates[index + 1 :], now):
-                return True
         return False
 
-    def _candidates(self, now: int) -> list[tuple[Rank, Behavior]]:
-        """The waiting ABs in the order of S2; of many only those that may be the next (S1-S3, F, K).
+    def _firsts(self, now: int) -> list[Entry]:
+        """Of many waiting ABs those that may be the next, in the order of S2 (S1-S3, F, K).
 
         In a line all need the same devices: whoever comes after the first that F2 and K1
         let start has to wait for that one's.
         """
-        waiting = self.memory.waiting
-        if not self._lined():
-            return self._ranked(waiting, now)
-        found = [*waiting.reactions.values(), *waiting.fresh(now)]
+        memory, waiting = self.memory, self.memory.waiting
+        apart = waiting.fresh(now)
+        if waiting.reactions:
+            apart += waiting.reactions.values()
+        found = {ab: self.policy.rank(ab, memory, now) for ab in apart}
         for line in waiting.lines.values():
             let = self._let(line)
-            if isinstance(let, Application):
-                found += waiting.of(let)
-            elif let is EVERYBODY:
-                found += [ab for _, ab in line.entries[: 1 if line.devices else None]]
-        return self._ranked(dict.fromkeys(found), now)
+            if let is EVERYBODY:
+                for rank, ab in line.entries[:1] if line.devices else line.entries:
+                    found.setdefault(ab, rank)
+            elif isinstance(let, Application):
+                for ab in waiting.of(let):
+                    if ab.entry is not None:
+                        found.setdefault(ab, ab.entry[0])
+        return sorted(((rank, ab) for ab, rank in found.items()), key=itemgetter(0))
 
-    def _lined(self) -> bool:
-        """Whether so many wait that not each of them is looked at."""
-        return self._lining and len(self.memory.waiting.all) > self.few
-
-    def _ranked(self, found: Iterable[Behavior], now: int) -> list[tuple[Rank, Behavior]]:
+    def _ranked(self, found: Iterable[Behavior], now: int) -> list[Entry]:
         ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
         return sorted(ranked, key=itemgetter(0))
 
     def _let(self, line: Line) -> Application | str:
         """Whose ABs of a line F2 and K1 let start: everybody's, one application's, nobody's."""
-        holder = self.memory.holder
+        memory = self.memory
         allowed: Application | str = EVERYBODY
-        if holder is not None and not outranks(line.priority, holder):
-            allowed = holder.app
+        if memory.floor and not outranks(line.priority, memory.floor[-1]):
+            allowed = memory.floor[-1].app
         if line.leaves:
-            for stream in self.memory.engaged.values():
+            for stream in memory.engaged.values():
                 if stream.engages_user():
                     if allowed not in (EVERYBODY, stream.app):
                         return NOBODY
@@ -129,25 +140,21 @@ class Selector:
 
     def _behind(self, line: Line, winner: Behavior, rank: Rank, now: int) -> Losers:
         """Those of a line who rank below a winner that is gone from it, and must wait."""
-        waiting = self.memory.waiting
-        together = ((-line.priority,), (1,), (1,))
-        free = line.devices.isdisjoint(winner.devices)
-        let = self._let(line) if free else NOBODY
-        ahead = rank[:3]
-        if together < ahead or let is EVERYBODY:
-            return [], 0
-        place = rank[3:] if together == ahead else LEAST
-        start = line.below(place)
-        apart = {ab.name for ab in waiting.fresh(now)}  # ranked one by one
+        let: Application | str = NOBODY
+        if line.devices.isdisjoint(winner.devices):
+            let = self._let(line)
+            if let is EVERYBODY:
+                return [], 0
+        waiting, start = self.memory.waiting, line.below(rank)
+        apart = waiting.fresh(now)  # ranked one by one
         if isinstance(let, Application):
-            apart |= {ab.name for ab in waiting.of(let)}
-        if not apart:
-            first = line.entries[start : start + LOSERS_NAMED]
-            return [(together + place, ab) for place, ab in first], len(line.entries) - start
-        count = len(line.entries) - start - sum(waiting.stands(name, line, place) for name in apart)
+            apart = list({*apart, *waiting.of(let)})
         first = line.entries[start : start + LOSERS_NAMED + len(apart)]
-        named = [(together + place, ab) for place, ab in first if ab.name not in apart]
-        return named[:LOSERS_NAMED], count
+        count = len(line.entries) - start
+        if apart:
+            count -= sum(line.stands_behind(rank, ab) for ab in apart)
+            first = [entry for entry in first if entry[1] not in apart][:LOSERS_NAMED]
+        return first, count
 
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
@@ -155,9 +162,9 @@ class Selector:
             return None
         if not held and self.memory.occupied.keys().isdisjoint(ab.devices):
             return None
-        kept = min(ab.devices & held.keys(), default="")
+        kept = min(ab.devices & held.keys(), default="") if held else ""
         other = self._occupant(ab)
-        if other is not None and not kept and self._give_way(ab):
+        if self._yielding and other is not None and not kept and self._give_way(ab):
             other = self._occupant(ab)
         if other is not None:
             return ("S1", other.id)
@@ -182,7 +189,7 @@ class Selector:
 
     def _give_way(self, reaction: Behavior) -> bool:
         """X2: interrupt what is restartable and in the way of a reaction; true if that frees all."""
-        if not self.policy.has("x2") or reaction.reaction is None:
+        if reaction.reaction is None:
             return False
         ways = self._in_the_way(reaction)
         if not all(yields(ab, reaction) for ab in ways):
@@ -281,42 +288,46 @@ class Selector:
         return True
 
     def _hold(self, ab: Behavior, refusal: Refusal) -> None:
-        if ab.blocked == refusal:
-            return
-        changed = ab.blocked[0] != refusal[0] or "." not in refusal[1]
+        rule, by = refusal
+        changed = ab.blocked[0] != rule or "." not in by
         ab.blocked = refusal
         if changed:  # the next loop of the same feedback Command is no news
-            rule, by = refusal
-            self.chronicle.add(
-                "hold", "mediator", app=ab.app.name, behavior=ab.id, rule=rule, by=by
-            )
+            self.chronicle.hold(ab, rule, by)
 
-    def _start(
-        self, ab: Behavior, rank: Rank, lower: list[tuple[Rank, Behavior]], now: int
-    ) -> bool:
-        """Start an AB and record why; true when others rank otherwise now, or may start."""
+    def _start(self, ab: Behavior, rank: Rank, lower: list[Entry], now: int, many: bool) -> bool:
+        """Start an AB and record why; true when others rank otherwise now, or may start.
+
+        Args:
+            ab: the AB.
+            rank: where it stands.
+            lower: those looked at that rank below it.
+            now: the instant.
+            many: whether so many wait that not each of them is looked at.
+        """
         memory, policy = self.memory, self.policy
-        holder = memory.holder
+        holder = memory.floor[-1] if memory.floor else None
         composed = self._composing and composes_with_floor(ab, memory)
         by_floor_rule = holder is not None and holder.app is not ab.app and not composed
         others = bool(memory.running)
         # Where the floor changes, all others are suspended: then each is looked at anyway.
-        waiting, many = memory.waiting, self._lined()
+        waiting = memory.waiting
         lined = many and ab.reaction is None and not by_floor_rule
-        if many:  # what is ranked by the lines alone is left to them, or looked for now
+        if many and lower:  # what is ranked by the lines alone is left to them
             lower = [entry for entry in lower if not by_lines(entry[1], now)]
-            if not lined:
-                others_below = self._ranked((one for one in waiting if by_lines(one, now)), now)
-                lower += [entry for entry in others_below if entry[0] > rank]
-                lower.sort(key=itemgetter(0))
+        if many and not lined:  # or looked for now
+            others_below = self._ranked((one for one in waiting if by_lines(one, now)), now)
+            lower += [entry for entry in others_below if entry[0] > rank]
+            lower.sort(key=itemgetter(0))
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
         resumed = self._run(ab, now)
-        changed = self._take_floor(ab, reaction, by_floor_rule)
+        changed = False
+        if reaction is not None or by_floor_rule:
+            changed = self._take_floor(ab, reaction, by_floor_rule)
         losers = [
-            (other_rank, other)
-            for other_rank, other in lower
-            if other.devices & ab.devices or policy.refusal(other, memory)
+            entry
+            for entry in lower
+            if entry[1].devices & ab.devices or policy.refusal(entry[1], memory)
         ]
         # Of several reactions that the floor would let in, it is their rank that decided.
         rivals = reaction is not None and any(other.reaction for _, other in losers)
@@ -326,7 +337,8 @@ class Selector:
                 firsts, more = self._behind(line, ab, rank, now)
                 losers += firsts
                 count += more
-            losers.sort(key=itemgetter(0))
+            if lower or len(waiting.lines) > 1:
+                losers.sort(key=itemgetter(0))
         if resumed:
             memory.rank_anew(ab.stream)
         if not policy.exclusive:
@@ -336,12 +348,11 @@ class Selector:
         elif by_floor_rule and policy.floor and not rivals:
             rule = "F2"
         elif losers:
-            pairs = zip(policy.rules, rank, losers[0][0], strict=True)
-            rule = next((name for name, mine, other in pairs if mine != other), "S2f")
+            rule = policy.decided(rank, losers[0][0])
         else:
             rule = "S4" if others else "S1"
-        self.chronicle.decision(ab, rule, [other for _, other in losers[:LOSERS_NAMED]], count)
-        self._record_start(ab, rule, reaction)
+        self.chronicle.decision(ab, rule, losers[:LOSERS_NAMED], count)
+        self.chronicle.start(ab, rule, reaction)
         if ab.inner:
             self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
@@ -382,22 +393,9 @@ class Selector:
             self._open_group(ab, now)
         return resumed
 
-    def _record_start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
-        self.chronicle.behavior(
-            "start",
-            ab,
-            devices=sorted(ab.devices),
-            parent=ab.parent if ab.feedback else None,
-            reactive=True if reaction is not None else None,
-            cause=reaction if reaction and reaction > 0 else None,
-            resumed=ab.resumed or None,
-            data=ab.since if ab.resumed else None,
-            rule=rule,
-        )
-
     def _collide(self, ab: Behavior) -> None:
         """Without a mediator a later Command displaces an earlier one on its devices."""
-        for device in sorted(ab.devices):
+        for device in in_order(ab.devices):
             other = self.memory.occupied.get(device)
             if other is not None and other is not ab and other is not ab.unit:
                 self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)
@@ -407,7 +405,7 @@ class Selector:
         stream = ab.stream
         if reaction is not None:
             stream.causes.add(reaction)
-        if not self.policy.floor or (reaction is None and not by_floor_rule):
+        if not self.policy.floor:
             return False
         floor = self.memory.floor
         if floor and floor[-1] is stream:
@@ -488,7 +486,7 @@ class Selector:
             ):
                 reaction, ab.reaction = ab.reaction, None
                 self._run(ab, now)
-                self._record_start(ab, "U5" if unit.spans else "U4", reaction)
+                self.chronicle.start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
 

@@ -11,24 +11,12 @@ from __future__ import annotations
 from bisect import bisect_left, insort
 from collections.abc import Iterator
 
-from prima.scheduler.behavior import Application, Behavior, Rank
+from prima.scheduler.behavior import Application, Behavior, Line, Rank
 
-LEAST: Rank = ((-1,),)
-"""Before all others of a line."""
-Kind = tuple[frozenset[str], int, bool]
-"""Devices, priority, and whether it leaves the user."""
-
-
-class Line:
-    """The waiting ABs of one kind that react to nothing, first come first."""
-
-    def __init__(self, kind: Kind) -> None:
-        self.devices, self.priority, self.leaves = kind
-        self.entries: list[tuple[Rank, Behavior]] = []
-
-    def below(self, rank: Rank) -> int:
-        """Where those begin that stand behind a rank."""
-        return bisect_left(self.entries, (rank,))
+LATER: Rank = (1,)
+"""S2c: the parent has not ended in this instant."""
+NO_REACTION: Rank = (1, 0, 0)
+"""S2b: it reacts to nothing."""
 
 
 class Waiting:
@@ -36,45 +24,48 @@ class Waiting:
 
     def __init__(self) -> None:
         self.all: dict[str, Behavior] = {}
-        self.lines: dict[Kind, Line] = {}
+        self.lines: dict[tuple[frozenset[str], int, bool], Line] = {}
+        """By devices, priority, and whether they leave the user."""
         self.reactions: dict[str, Behavior] = {}
-        self.by_app: dict[str, dict[str, Behavior]] = {}
         self._fresh: dict[str, Behavior] = {}
-        """Those that began to wait in the instant in which they were freed (S2c), and older ones."""
-        self._places: dict[str, tuple[Line, Rank]] = {}
+        """Those that were freed in the latest instant in which any was (S2c)."""
+        self._freed = -1
+        """That instant."""
 
     def add(self, ab: Behavior) -> None:
         """An AB begins to wait."""
         self.all[ab.name] = ab
-        self.by_app.setdefault(ab.app.name, {})[ab.name] = ab
         if ab.reaction is not None:
             self.reactions[ab.name] = ab
             return
         kind = (ab.devices, ab.priority, ab.leaves)
         line = self.lines.get(kind)
         if line is None:
-            line = self.lines[kind] = Line(kind)
-        rank = rank_in_line(ab)
-        insort(line.entries, (rank, ab))
-        self._places[ab.name] = line, rank
-        if ab.freed >= 0:
+            line = self.lines[kind] = Line(*kind)
+        ab.line, ab.place = line, place_in_line(ab)
+        ab.entry = ((*rank_priority(ab), *NO_REACTION, *LATER, *ab.place), ab)
+        insort(line.entries, ab.entry)
+        if ab.freed > self._freed:
+            self._freed, self._fresh = ab.freed, {ab.name: ab}
+        elif ab.freed == self._freed and ab.freed >= 0:
             self._fresh[ab.name] = ab
 
     def remove(self, ab: Behavior) -> None:
         """An AB waits no longer; one that did not wait is none of ours."""
-        if self.all.pop(ab.name, None) is None:
+        name, line = ab.name, ab.line
+        if self.all.pop(name, None) is None:
             return
-        own = self.by_app[ab.app.name]
-        del own[ab.name]
-        if not own:
-            del self.by_app[ab.app.name]
-        self._fresh.pop(ab.name, None)
-        if self.reactions.pop(ab.name, None) is not None:
+        if line is None:
+            del self.reactions[name]
             return
-        line, rank = self._places.pop(ab.name)
-        del line.entries[line.below(rank)]
-        if not line.entries:
+        if self._fresh:
+            self._fresh.pop(name, None)
+        entries = line.entries
+        assert ab.entry is not None
+        del entries[0 if entries[0][1] is ab else bisect_left(entries, ab.entry)]
+        if not entries:
             del self.lines[line.devices, line.priority, line.leaves]
+        ab.line = None
 
     def moved(self, ab: Behavior) -> None:
         """Something has changed by which an AB is ranked."""
@@ -84,20 +75,11 @@ class Waiting:
 
     def of(self, app: Application) -> list[Behavior]:
         """The waiting ABs of an application."""
-        return list(self.by_app.get(app.name, {}).values())
+        return [ab for ab in app.members.values() if ab.name in self.all]
 
     def fresh(self, now: int) -> list[Behavior]:
         """The ABs that go before others of their line because of S2c, in this instant."""
-        if not self._fresh:
-            return []
-        for name in [name for name, ab in self._fresh.items() if ab.freed != now]:
-            del self._fresh[name]
-        return list(self._fresh.values())
-
-    def stands(self, name: str, line: Line, rank: Rank) -> bool:
-        """Whether an AB stands in a line behind a rank."""
-        found = self._places.get(name)
-        return found is not None and found[0] is line and found[1] > rank
+        return [*self._fresh.values()] if self._freed == now else []
 
     def __iter__(self) -> Iterator[Behavior]:
         return iter(self.all.values())
@@ -109,22 +91,27 @@ class Waiting:
         return name in self.all
 
 
-def rank_in_line(ab: Behavior) -> Rank:
+def rank_priority(ab: Behavior) -> Rank:
+    """S2a: the higher priority goes first."""
+    return (-ab.priority,)
+
+
+def place_in_line(ab: Behavior) -> Rank:
     """The last parts of a rank, S2d to S2f: where an AB stands among those of its kind."""
-    return (rank_suspended(ab), rank_request(ab), rank_declared(ab))
+    return (*rank_suspended(ab), *rank_request(ab), *rank_declared(ab))
 
 
-def rank_suspended(ab: Behavior) -> tuple[int, ...]:
-    """S2d: the stream suspended last goes first."""
+def rank_suspended(ab: Behavior) -> Rank:
+    """S2d: the stream suspended last goes first; the numbers of suspensions begin with 1."""
     suspended = ab.stream.suspended
-    return (1,) if suspended is None else (0, -suspended)
+    return (1,) if suspended is None else (-suspended,)
 
 
-def rank_request(ab: Behavior) -> tuple[int, ...]:
+def rank_request(ab: Behavior) -> Rank:
     """S2e: the earlier request goes first."""
     return (ab.requested,)
 
 
-def rank_declared(ab: Behavior) -> tuple[int, ...]:
+def rank_declared(ab: Behavior) -> Rank:
     """S2f: the order in which applications were declared, then the serial number."""
     return (ab.app.order, ab.serial)
