@@ -8,7 +8,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prima.commands import TABLE_4_2
@@ -26,6 +26,30 @@ CODES = [
     *("n + 1", "n - d", "t + n", "d", "'x'", "missing", "t.x.y", "!n", "n / 0", "[1, 2]", "l", "i"),
     *("typeof l", "n &lt; 3", "t == 'x'", "d === 2", "n % 2 == 0", "event.name", "event.data.k"),
     *("t + t + t + t + t + t", "sensor.touch.head", "undefined", "{k: 1}", "-n * 2", "n ? d : t"),
+]
+SCRIPTED = [
+    *("next(n)", "next(next(n)) + calls", "(t + n).length", "JSON.stringify(o)", "o.x", "next"),
+    *(
+        "new Date().getTime()",
+        "Object.keys(document).length",
+        "hasOwnProperty('n')",
+        "next(dialog)",
+    ),
+    *("missing()", "next(n).x.y", "typeof k", "dialog.k", "z", "n++ + n", "[n, d].concat(l)"),
+    *("event.name + next(n)", "p + 1", "this === undefined", "eval('n + 1')", "(k = n)"),
+]
+"""Code that needs an engine."""
+SCRIPTS = [
+    *(
+        "var z = n; n = z + 1;",
+        "n = next(n);",
+        "dialog.k = n;",
+        "loose = n;",
+        "throw n;",
+        "o.x = n;",
+    ),
+    *("function next(x) { return x + 2; }", "n = missing.x;", "l = function () { return n; };"),
+    "document.n = n + 1;",
 ]
 CONDITIONS = [
     *(
@@ -51,13 +75,38 @@ LEAVES = [
 ]  # fmt: skip
 
 
-def contents(some: Random, depth: int = 0) -> str:
+class Some(Random):
+    """Chance, which leaves out all that certain words stand in."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(seed)
+        words = [word for word in ("dialog", "event", "Date", "eval") if self.random() < 0.6]
+        self.without = words if self.random() < 0.8 else []
+        self.simple = self.random() < 0.5
+        """Whether states only wait, and little is done in them."""
+
+    def one(self, *lists: list[str]) -> str:
+        """One of the texts of some list."""
+        given = [one for one in self.choice(lists) if not any(word in one for word in self.without)]
+        return self.choice(given)
+
+
+def code_of(some: Some, scripted: bool) -> str:
+    """An expression."""
+    return some.one(CODES, SCRIPTED) if scripted else some.one(CODES)
+
+
+def contents(some: Some, scripted: bool, depth: int = 0) -> str:
     """Content in which no Command stands."""
     made = []
-    for _ in range(some.randint(1, 4 - depth)):
+    for _ in range(some.randint(1, 1 if some.simple else 4 - depth)):
         kind = some.random() if depth < 2 else 1
-        inner = [contents(some, depth + 1) for _ in range(3)] if kind < 0.4 else []
-        conds = some.sample(CONDITIONS, 2)
+        if some.simple:
+            kind = some.choice([0.3, 0.6, 0.6, 0.6, 0.9])
+        inner = [contents(some, scripted, depth + 1) for _ in range(3)] if kind < 0.4 else []
+        conds = [some.one(CONDITIONS) for _ in range(2)]
+        if scripted and some.random() < 0.1:
+            made.append(f"<script>{some.one(SCRIPTS)}</script>")
         if kind < 0.1:
             made.append(f'<foreach item="i" array="[1, \'b\']">{inner[0]}</foreach>')
         elif kind < 0.25:
@@ -66,19 +115,25 @@ def contents(some: Random, depth: int = 0) -> str:
             more = f'<elseif cond="{conds[1]}"/>{inner[1]}<else/>{inner[2]}'
             made.append(f'<if cond="{conds[0]}">{inner[0]}{more}</if>')
         elif kind < 0.8 or depth == 2:
-            made.append(f'<assign name="{some.choice(NAMES)}" expr="{some.choice(CODES)}"/>')
+            name = some.one([*NAMES, "o.x", "p"] if scripted else NAMES)
+            made.append(f'<assign name="{name}" expr="{code_of(some, scripted)}"/>')
         else:
-            made.append(some.choice(LEAVES))
+            made.append(some.one(LEAVES))
     return "".join(made)
 
 
-def handler(some: Random) -> str:
+def handler(some: Some, scripted: bool) -> str:
     """A handler of one of a few events."""
     event = some.choice(["go", "go", "go", "go.on", "own", "error", "go own.one"])
-    cond = f' cond="{some.choice(CONDITIONS)}"' if some.random() < 0.5 else ""
+    cond = f' cond="{some.one(CONDITIONS)}"' if some.random() < 0.5 else ""
+    if scripted and some.random() < 0.2:
+        cond = f' cond="{code_of(some, True)}"'
     reactive = ' reactive="false"' if some.random() < 0.1 else ""
     shown = SHOWN.format("")
-    return f'<on event="{event}"{cond}{reactive}>{contents(some)}{shown}{contents(some)}</on>'
+    first, second = (contents(some, scripted) for _ in range(2))
+    if some.simple:
+        second = some.choice(["", *LEAVES[:3]])
+    return f'<on event="{event}"{cond}{reactive}>{first}{shown}{second}</on>'
 
 
 ITEMS = [
@@ -88,20 +143,28 @@ ITEMS = [
 ]
 
 
-def document_text(some: Random) -> str:
-    """A document with three forms, of which some only wait."""
-    own = handler(some) if some.random() < 0.5 else ""
+CALLED = """<form id="s">{}<subdialog name="sub" src="#called"><param name="p" expr="n"/></subdialog>
+</form><form id="called">{}</form>"""
+SCRIPT = """<script>var calls = 0, o = {x: 1};
+function next(x) { calls = calls + 1; return x + 1; }</script>"""
+
+
+def document_text(some: Some, scripted: bool = False) -> str:
+    """A document with three forms, of which some only wait, and perhaps a subdialog."""
+    own = handler(some, scripted) if some.random() < 0.5 else ""
     own += f'<on event="error">{SHOWN.format("failed: ")}</on>'
     forms = "".join(
-        f'<form id="f{form}">{some.choice(ITEMS)}'
-        f"{''.join(handler(some) for _ in range(some.randint(1, 3)))}</form>"
+        f'<form id="f{form}">{some.choice(ITEMS[:1] if some.simple else ITEMS)}'
+        f"{''.join(handler(some, scripted) for _ in range(some.randint(1, 3)))}</form>"
         for form in "abc"
     )
+    if scripted and some.random() < 0.3:
+        forms = CALLED.format(handler(some, True), handler(some, True)) + forms
     variables = "".join(
         f'<var name="{name}" expr="{code}"/>'
         for name, code in (("n", "0"), ("t", "'x'"), ("d", "1"), ("l", "undefined"))
     )
-    return f"{HEAD}{variables}{own}{forms}</prima>"
+    return f"{HEAD}{variables}{SCRIPT if scripted else ''}{own}{forms}</prima>"
 
 
 EVENTS = ["go", "go.on", "own", "go", "go", "error.outside", "go", "go.on", "go.on", "own", "go"]
@@ -111,11 +174,12 @@ def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
     """The records of a run in which events occur, the variables after it, and how many functions."""
     document, problems = read_document("a.xml", f"<!-- {quick} -->{text}".encode())
     errors = {one.code for one in problems if one.severity == "error"}
-    assert errors <= {"undeclared-variable", "no-such-item"}, "only what can be run is of interest"
+    allowed = {"undeclared-variable", "no-such-item"}
+    assert errors <= allowed, f"only what can be run is of interest: {problems}"
     session = Session([document], Policy(), TABLE_4_2)
     app = session.apps["a"]
     assert isinstance(app, Interpreter)
-    assume(app.quick)
+    assert app.quick
     app.quick = quick
     session.step(0, [Loaded("a")])
     session.step(1, [Sensed({"touch.head": True})])
@@ -124,7 +188,11 @@ def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
         due = session.deadline()
         if due is not None and due <= now * 100 + 50:
             session.step(max(due, now * 100), [])
-    scopes = [dict(frame) for frame in (app.frame.document, app.frame.dialog)] if app.frame else []
+    scopes: list[Any] = []
+    for scope in (app.frame.document, app.frame.dialog) if app.frame else ():
+        names = [*"ntdlopkz", "calls", "loose"]
+        found = {name: app.engine.get(scope, name) for name in names if app.engine.has(scope, name)}
+        scopes.append(found)
     kept = sum(
         one is not None
         for form in document.forms.values()
@@ -133,10 +201,11 @@ def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
     return session.drain(), scopes, kept
 
 
+@pytest.mark.parametrize("scripted", [False, True])
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32))
-def test_an_event_does_the_same_as_a_function(seed: int) -> None:
-    text = document_text(Random(seed))
+def test_an_event_does_the_same_as_a_function(scripted: bool, seed: int) -> None:
+    text = document_text(Some(seed), scripted)
     often, handling.OFTEN = handling.OFTEN, 1
     try:
         quick, slow = run(text, True), run(text, False)
@@ -145,6 +214,61 @@ def test_an_event_does_the_same_as_a_function(seed: int) -> None:
     assert quick[0] == slow[0]
     assert repr(quick[1]) == repr(slow[1])
     assert slow[2] == 0
+
+
+SHOW_N = '<log expr="n"/>'
+DEED = '<assign name="n" expr="{}"/>' + SHOW_N
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (DEED.format("hasOwnProperty('n') ? 1 : 2"), ["2"] * 8),
+        (DEED.format("next(typeof o.hasOwnProperty === 'function' ? n : 0)"), list("12345678")),
+        ("<script>var z = 5;</script>" + DEED.format("next(z)"), ["6"] * 8),
+        (
+            '<script>dialog.k = n;</script><goto next="#g"/>',
+            ["undefined", "0", "undefined", "0"] * 2,
+        ),
+        ("<script>n = event.data.k;</script>" + SHOW_N, list("12345678")),
+        ('<assign name="event.data.k" expr="7"/><log expr="event.data.k"/>', ["7"] * 8),
+        ("<script>n = loose; loose = n;</script>" + SHOW_N, ["null"] * 8),
+        (DEED.format("next(sensor.m)"), list("23456789")),
+        (DEED.format("next(application.sensor.m)"), list("23456789")),
+        (DEED.format("next(dialog.k === undefined ? n : 0)"), list("12345678")),
+        (
+            DEED.format("new Date().getTime() - began"),
+            [str(100 * number) for number in range(1, 9)],
+        ),
+    ],
+)
+@pytest.mark.parametrize("quick", [False, True])
+def test_what_scripts_do_is_the_same(quick: bool, content: str, told: list[str]) -> None:
+    script = SCRIPT.replace("<script>", "<script>var began = new Date().getTime();")
+    text = f"""<!-- {quick} -->{HEAD}{script}<var name="n" expr="0"/><watch name="never" when="sensor.k &lt; 0"/>
+<form id="f"><on event="go">{content}</on></form>
+<form id="g"><on event="go"><log expr="typeof dialog.k"/><log expr="n"/><goto next="#f"/></on>
+</form></prima>"""
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    app = session.apps["a"]
+    assert isinstance(app, Interpreter) and app.quick
+    app.quick = quick
+    assert not document.plain, "it needs an engine"
+    session.step(0, [Loaded("a")])
+    often, handling.OFTEN = handling.OFTEN, 1
+    try:
+        for now in range(1, 17):
+            session.step(
+                now * 50, [Sensed({"m": (now + 1) // 2, **({"k": 1} if now == 1 else {})})]
+            )
+            if now % 2 == 0:
+                session.step(now * 50, [Occurred("go", data={"k": now // 2})])
+    finally:
+        handling.OFTEN = often
+    logs = [one["message"] for one in session.drain() if one["phase"] in ("log", "error")]
+    assert logs[:8] == told
+    assert bool(document.forms["f"].reactions) == quick
 
 
 def reaction(content: str, form: str = "", before: str = "") -> Any:

@@ -83,7 +83,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.kind = document.kind
         self.arguments = arguments or {}
         super().__init__(evaluator_of(document, engine))
-        self.quick = isinstance(self.engine, PlainEngine)
+        self.quick = isinstance(self.engine, PlainEngine) == document.plain
         """Whether what an event does may be done by a function, where nobody can look into it."""
         self.actions: list[Action] = []
         self.over = False
@@ -493,7 +493,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def set_up_document(self, frame: Frame) -> None:
         """Declare the document's variables and run its scripts; they see no dialog."""
         frame.fresh = False
-        alone = Frame(frame.form, frame.state, frame.document, self.engine.scope())
+        alone = Frame(frame.form, frame.state, frame.document, self.engine.nothing)
         self._set_up(self.document.setup, frame.document, Fiber(alone))
 
     def _set_up(self, setup: list[Declare | Script], scope: Scope, fiber: Fiber) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from prima.commands import (
@@ -76,8 +77,12 @@ PARTS = {
 }
 """What elements are for that others are for as well; the rest go by their tags."""
 COMMANDS = frozenset(ACTING)
-EVENT = pattern(r"event|_message|\beval\b")
+EVENT = pattern(r"event|_message|\beval\b|\\u")
 """What code has that may look at the event that is being handled."""
+HANDLED = frozenset(["event", "_event", "_message"])
+"""Variables that tell of it."""
+DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|\\u")
+"""What code has that may know the scope of a form, and put something into it."""
 ONLY_NEXT = frozenset(["next"])
 
 
@@ -89,6 +94,8 @@ class Builder:
         self.problems: list[Problem] = []
         self.lang = root.get("xml:lang", "en")
         self.expressions: list[Expression] = []
+        self.words: list[str] = []
+        """Code and names of variables that are no expressions."""
         self.scripted = self.counting = False
         self._unnamed = 0
         self._runs = 0
@@ -243,8 +250,14 @@ class Builder:
             expressions=self.expressions,
             scripted=self.scripted,
             counting=self.counting,
-            curious=self.scripted or any(EVENT.search(one.code) for one in self.expressions),
+            curious=self.any_has(EVENT),
+            tampering=self.any_has(DIALOG),
         )
+
+    def any_has(self, words: re.Pattern[str]) -> bool:
+        """Whether any code of the document, or a variable's name in it, has certain words."""
+        codes = (one.code for one in self.expressions)
+        return any(map(words.search, (*self.words, *codes)))
 
     def form(self, node: Node) -> Form:
         """A form."""
@@ -307,6 +320,7 @@ class Builder:
         """A script."""
         code = "".join(item for item in node.content if isinstance(item, str))
         self.scripted = True
+        self.words.append(code)
         return Script(Expression(code, node, ""), node)
 
     def properties(self, parts: Parts) -> dict[str, Json]:
@@ -675,6 +689,7 @@ class Builder:
             case "assign":
                 return self.assign(node)
             case "clear":
+                self.words += self.names(node)
                 return Clear(self.names(node), node)
             case "if":
                 return self.condition(node)
@@ -705,7 +720,10 @@ class Builder:
     def assign(self, node: Node) -> Assign:
         """An assign; what it names may be a part of a variable."""
         name = node.get("name")
+        if name in HANDLED:
+            self.words.append(name)
         if "." in name:
+            self.words.append(name)
             scope, _, part = name.partition(".")
             self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
         return Assign(name, self.code(node.get("expr"), node, "expr"), node)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
@@ -60,10 +61,18 @@ return {
 }; })()
 """
 
+MAY_ASK_TIME = re.compile(
+    r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
+    r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
+)
+"""Code that names ``Date``, or may find it without naming it."""
 HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
 """Half a surrogate pair in JSON, which is written as an escape; whole pairs are letters."""
-ODD = (TypeError, ValueError, OverflowError, MemoryError)
-"""What the binding itself raises for values that it cannot give to Python."""
+FAILURES = (
+    *(quickjs.JSException, quickjs.StackOverflow),
+    *(TypeError, ValueError, OverflowError, MemoryError),
+)
+"""What the engine raises, and the binding itself for values that it cannot give to Python."""
 
 
 def _script_error(error: Exception) -> ScriptError:
@@ -98,12 +107,15 @@ class Engine:
         context.set_time_limit(TIME_LIMIT)
         self._context = context
         self._scopes = scopes
-        names = [_short(name) for name in scopes]
-        self._names = ",".join(names)
-        self._withs = "".join(f"with({name})" for name in names)
+        self._names, self._withs = _head(scopes)
         self.spent = 0.0
         """Seconds of evaluations since the owner last set it to nought."""
+        # Functions by their code, for each use that is made of it.
         self._compiled: dict[str, Any] = {}
+        self._conditions: dict[tuple[str, int], Any] = {}
+        self._giving: dict[str, Any] = {}
+        self._assigning: dict[tuple[str, str, int], Any] = {}
+        self._scripts: dict[str, Any] = {}
         helpers = context.eval(HELPERS)
         context.set("__h", helpers)
         self._help = {
@@ -112,6 +124,8 @@ class Engine:
         context.eval("delete globalThis.__h")
         self.now = self._told = 0
         """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
+        self._clocked = False
+        """Whether any code may ask for it."""
         self._tick = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
         self._tick()
@@ -119,26 +133,30 @@ class Engine:
         self.nothing = self.scope()
         """A scope in which nothing is declared."""
 
-    def _call(self, function: Any, *args: Any) -> Any:
-        PULSE.evaluations += 1
+    def _call(self, function: Any, args: tuple[Any, ...], most: float = math.inf) -> Any:
+        """Call a function of the engine, unless the scripts of this instant took ``most`` seconds."""
+        if self.spent > most:
+            raise ScriptError("scripts take too long without ever waiting")
+        pulse, now = PULSE, self.now
+        pulse.evaluations += 1
         began = perf_counter()
         try:
-            if self._told != self.now:
-                self._told = self.now
-                self._tick(float(self.now))
+            if self._clocked and self._told != now:
+                self._told = now
+                self._tick(float(now))
             return function(*args)
-        except (quickjs.JSException, quickjs.StackOverflow, *ODD) as error:
+        except FAILURES as error:
             raise _script_error(error) from None
         finally:
-            PULSE.evaluations += 1
+            pulse.evaluations += 1
             # What the engine counts as its time is the processor's: on a busy machine less.
-            self.spent += min(perf_counter() - began, TIME_LIMIT)
+            lasted = perf_counter() - began
+            self.spent += lasted if lasted < TIME_LIMIT else TIME_LIMIT
 
-    def _evaluate(self, function: Any, *args: Any) -> Any:
-        """Run code of a document, of which one piece of content may have very many pieces."""
-        if self.spent > MAX_SCRIPT_SECONDS:
-            raise ScriptError("scripts take too long without ever waiting")
-        return self._call(function, *args)
+    def _check(self, check: Callable[[Any, str], None], code: str) -> None:
+        """Let code in that compiles by itself."""
+        check(self._context, code)
+        self._clocked = self._clocked or MAY_ASK_TIME.search(code) is not None
 
     def compile(self, code: str) -> Any:
         """Give the function of an expression, compiled the first time.
@@ -148,7 +166,7 @@ class Engine:
         """
         function = self._compiled.get(code)
         if function is None:
-            check_expression(self._context, code)
+            self._check(check_expression, code)
             # The binding cannot give out a text that is joined lazily, which slice joins, or
             # that has half a surrogate pair.
             give = "return typeof $v === 'string' ? $v.slice(0).toWellFormed() : $v"
@@ -156,29 +174,30 @@ class Engine:
             self._compiled[code] = function
         return function
 
-    def _compile(self, body: str) -> Any:
-        code = f"(function({self._names}){{{self._withs}{{{body}}}}})"
-        return self._call(self._context.eval, code)
+    def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
+        """A function of scopes: of all of them, if nothing is said."""
+        names, withs = (self._names, self._withs) if scopes is None else _head(scopes)
+        return self._call(self._context.eval, (f"(function({names}){{{withs}{{{body}}}}})",))
 
     def scope(self, **values: Json) -> Scope:
         """A new, empty scope object."""
-        scope = self._call(self._help["scope"])
+        scope = self._call(self._help["scope"], ())
         for name, value in values.items():
             self.set(scope, name, value)
         return scope
 
     def named(self, name: str) -> Scope:
         """A new scope that has itself as a variable, as a dialog's ``dialog`` (VoiceXML 5.1.2)."""
-        return self._call(self._help["named"], name)
+        return self._call(self._help["named"], (name,))
 
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
         given = self.into(data) if data else None
-        return self._call(self._help["event"], name, message, given)
+        return self._call(self._help["event"], (name, message, given))
 
     def clock(self, scope: Scope, seconds: float) -> None:
         """Tell a scope the time of the run, as ``session.time``."""
-        self._call(self._help["clock"], scope, seconds)
+        self._call(self._help["clock"], (scope, seconds))
 
     def into(self, value: Json) -> Any:
         """A Python value as one the engine takes.
@@ -188,9 +207,9 @@ class Engine:
         """
         if isinstance(value, dict | list | tuple):
             try:
-                return self._call(self._context.parse_json, json.dumps(value, allow_nan=False))
+                return self._call(self._context.parse_json, (json.dumps(value, allow_nan=False),))
             except ValueError:  # JSON has no such numbers
-                return self._call(self._help["parse"], json.dumps(_marked(value)))
+                return self._call(self._help["parse"], (json.dumps(_marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
         # The binding cuts whole numbers to 32 bits.
@@ -198,31 +217,38 @@ class Engine:
 
     def set(self, scope: Scope, name: str, value: Json) -> None:
         """Give a variable of a scope a value from outside."""
-        self._call(self._help["set"], scope, name, self.into(value))
+        self._call(self._help["set"], (scope, name, self.into(value)))
 
     def unset(self, scope: Scope, name: str) -> None:
         """Make a variable of a scope undefined."""
-        self._call(self._help["unset"], scope, name)
+        self._call(self._help["unset"], (scope, name))
 
     def has(self, scope: Scope, name: str) -> bool:
         """Whether a scope has a variable of that name."""
-        return bool(self._call(self._help["has"], scope, name))
+        return bool(self._call(self._help["has"], (scope, name)))
 
     def defined(self, scope: Scope, name: str) -> bool:
         """Whether a variable of a scope has a value other than undefined."""
-        return bool(self._call(self._help["defined"], scope, name))
+        return bool(self._call(self._help["defined"], (scope, name)))
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
         """Evaluate an expression and give the engine's own value."""
-        return self._evaluate(self.compile(code), *scopes)
+        return self._call(self.compile(code), scopes, MAX_SCRIPT_SECONDS)
 
     def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
-        """Evaluate an expression as a condition."""
-        return bool(self._evaluate(self.compile(f"!!({code}\n)"), *scopes))
+        """Evaluate an expression as a condition; the inner scopes may be left out."""
+        key = code, len(scopes)
+        function = self._conditions.get(key)
+        if function is None:
+            whole = f"!!({code}\n)"
+            self._check(check_expression, whole)
+            body = f"return (\n{whole}\n)"
+            function = self._conditions[key] = self._compile(body, self._scopes[: len(scopes)])
+        return bool(self._call(function, scopes, MAX_SCRIPT_SECONDS))
 
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
-        text = str(self._call(self._help["text"], self.raw(code, scopes)))
+        text = str(self._call(self._help["text"], (self.raw(code, scopes),)))
         return bounded(text)
 
     def value(self, code: str, scopes: tuple[Scope, ...]) -> Json:
@@ -235,7 +261,7 @@ class Engine:
             return plain_number(value)
         if isinstance(value, str):
             return bounded(value)
-        text = self._call(self._help["json"], value)
+        text = self._call(self._help["json"], (value,))
         if not isinstance(text, str):
             return None
         if "\\ud" in text:
@@ -244,7 +270,7 @@ class Engine:
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
-        return self.out(self._call(self._help["item"], scope, name))
+        return self.out(self._call(self._help["item"], (scope, name)))
 
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """Evaluate an expression that gives an array; its elements as the engine's values.
@@ -253,48 +279,49 @@ class Engine:
             ScriptError: it is no array.
         """
         array = self.raw(code, scopes)
-        length = self._call(self._help["items"], array)
+        length = self._call(self._help["items"], (array,))
         if length < 0:
             raise ScriptError(f"{code} is not an array")
         if length > most:
             raise ScriptError(f"it has more than {most:,} elements")
-        return [self._call(self._help["item"], array, index) for index in range(int(length))]
+        return [self._call(self._help["item"], (array, index)) for index in range(int(length))]
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Evaluate an expression and give its value to a variable of a scope.
 
         The value stays in the engine: undefined is not what Python would give back.
         """
-        key = f"give\n{code}"
-        function = self._compiled.get(key)
+        function = self._giving.get(code)
         if function is None:
-            check_expression(self._context, code)
+            self._check(check_expression, code)
             body = f"{{$s[$n] = (\n{code}\n)}}"
             wrapped = f"(function({self._names},$s,$n){{{self._withs}{body}}})"
-            function = self._compiled[key] = self._call(self._context.eval, wrapped)
-        self._evaluate(function, *scopes, scope, name)
+            function = self._giving[code] = self._call(self._context.eval, (wrapped,))
+        self._call(function, (*scopes, scope, name), MAX_SCRIPT_SECONDS)
 
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
 
+        The inner scopes may be left out where nothing in them can be meant.
+
         Raises:
             ScriptError: no scope declares it, or the expression fails.
         """
-        key = f"assign {name}\n{code}"
-        function = self._compiled.get(key)
+        key = name, code, len(scopes)
+        function = self._assigning.get(key)
         if function is None:
-            check_expression(self._context, code)
-            function = self._compiled[key] = self._compile(_assignment(name, code, self._scopes))
-        self._evaluate(function, *scopes)
+            self._check(check_expression, code)
+            names = self._scopes[: len(scopes)]
+            function = self._assigning[key] = self._compile(_assignment(name, code, names), names)
+        self._call(function, scopes, MAX_SCRIPT_SECONDS)
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the engine's own values."""
-        self._call(self._help["set"], scope, name, value)
+        self._call(self._help["set"], (scope, name, value))
 
     def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
         """Run a script; what it declares at its top level becomes variables of ``scope``."""
-        key = f"script\n{code}"
-        function = self._compiled.get(key)
+        function = self._scripts.get(code)
         if function is None:
             # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
             # scope, which here is the script's own (VoiceXML 5.3.12).
@@ -304,12 +331,12 @@ class Engine:
             )
             names = sorted(declared_names(code))
             exports = "".join(f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in names)
-            check_script(self._context, code)
+            self._check(check_script, code)
             inner = f"(function(){{\n{code}\n;{exports}}})()"
             body = f"(function({self._names},$$){{{self._withs}{{{loose}{inner}}}}})"
-            function = self._compiled[key] = self._call(self._context.eval, body)
+            function = self._scripts[code] = self._call(self._context.eval, (body,))
         try:
-            self._evaluate(function, *scopes, scope)
+            self._call(function, (*scopes, scope), MAX_SCRIPT_SECONDS)
         except ScriptError as error:
             if len(error.places) > 1:  # the outermost function is ours
                 error.line, error.column = error.places[-2]
@@ -334,6 +361,12 @@ def _marked(value: Json) -> Json:
 def _short(scope: str) -> str:
     """The name of a scope's parameter; their first two letters tell scopes apart."""
     return f"{scope[0:2]}_"
+
+
+def _head(scopes: tuple[str, ...]) -> tuple[str, str]:
+    """The parameters of a function of scopes, and what makes their variables seen in it."""
+    names = [_short(name) for name in scopes]
+    return ",".join(names), "".join(f"with({name})" for name in names)
 
 
 def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:

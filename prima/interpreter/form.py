@@ -35,7 +35,7 @@ class Algorithm:
         """Select, visit, process, until no item is left; then the form waits for events."""
         if frame.fresh:
             yield from self._at_once(frame, fiber, lambda: self.owner.set_up_document(frame))
-        if setup:
+        if setup and not (frame.form.bare and frame.called_by is None):
             yield from self._at_once(frame, fiber, lambda: self.owner.initialise(frame, fiber))
             yield from self._at_once(frame, fiber, lambda: self.owner.arm_watches(frame))
         yield from self._visit_all(frame, fiber, frame.form.items, None)

@@ -2,9 +2,10 @@
 
 :func:`reaction_of` writes what :meth:`~prima.interpreter.handling.Handling.dispatch` does for the
 handlers in scope whose names take an event: their conditions, their content, and where it leads.
-It does so only for documents whose code is evaluated in Python (:mod:`prima.interpreter.plain`) and
-for handlers in which no Command stands; all else stays with ``dispatch``. What differs from one
-handler to the next is given to its function, so that handlers alike have their Python compiled once.
+It does so only for handlers in which no Command stands; all else stays with ``dispatch``. Code that
+is evaluated in Python (:mod:`prima.interpreter.plain`) is written out, other code is the engine's.
+What differs from one handler to the next is given to its function, so that handlers alike have
+their Python compiled once.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from prima.deferred import pattern
 from prima.interpreter.bounds import MAX_STEPS
-from prima.interpreter.compiling import VARIABLES, Compiled, quickly
+from prima.interpreter.compiling import INHERITED, VARIABLES, Compiled, quickly
 from prima.interpreter.content import SIMPLE
 from prima.interpreter.ecmascript import HELPERS, Scope, holder_of
 from prima.interpreter.elements import (
@@ -35,7 +37,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS, ScriptError
 from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
-from prima.interpreter.plain import LONG, PlainEngine
+from prima.interpreter.plain import LONG, PlainEngine, is_plain
 from prima.interpreter.selection import Taking
 from prima.messages import Event
 
@@ -53,6 +55,7 @@ SCOPES = "(owner.application, document, dialog, local)"
 """The scopes in a reaction, for those who need all of them: few do."""
 DEEPEST = 30
 """Columns at which content may stand: how deep ``if`` may be inside each other."""
+WORD = pattern(r"[\w$]+")
 MOST_ACTS = 300
 """Pieces of content that are written out for one event."""
 
@@ -79,8 +82,9 @@ def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction 
         return None
     if any(handler.count != 1 for handler in handlers):
         return None
-    has_local = document.curious or any(isinstance(act, Declare | Foreach) for act in acts)
-    writer = _Writer(document, form, has_local)
+    own = any(isinstance(act, Declare | Foreach | Script) for act in acts)
+    kind = _Writer if is_plain(document) else _EngineWriter
+    writer = kind(document, form, document.curious or own)
     try:
         writer.reaction(handlers)
     except _Beyond:
@@ -98,7 +102,10 @@ def _maker(code: str, given: int) -> Callable[..., Reaction]:
 
 
 class _Writer:
-    """Writes a function line by line."""
+    """Writes a function line by line, and all code in it as Python."""
+
+    new_local, no_local = "Scope()", "nothing"
+    """A new scope, and one in which nothing is declared."""
 
     def __init__(self, document: Document, form: Form, has_local: bool) -> None:
         self.document = document
@@ -116,10 +123,10 @@ class _Writer:
 
     def reaction(self, handlers: list[Handler]) -> None:
         """The whole function."""
-        local = "nothing"
+        local = self.no_local
         if self.has_local:
             curious = self.document.curious
-            local = "owner.handling.event_scope(event)" if curious else "Scope()"
+            local = "owner.handling.event_scope(event)" if curious else self.new_local
         places = self.give(self.places)
         self.write(1, "def react(owner, frame, event):")
         before = len(self.lines)
@@ -282,13 +289,57 @@ class _Writer:
     def call(self, depth: int, handler: Handler, act: Act) -> None:
         """What has a method of its own, which tells where it fails."""
         method = SIMPLE.get(type(act))
-        if method is None or isinstance(act, Script):
+        if method is None:
             raise _Beyond
         self.with_fiber = True
         self.write(depth, f"at = {self.at(handler, None)}")
         call = f"{self.give(method)}(owner.execute, {self.give(act)}, fiber)"
         self.write(depth, f"transfer = {call}")
         self.write(depth, "if transfer is not None: return transfer")
+
+
+class _EngineWriter(_Writer):
+    """Writes a function in which the engine evaluates all code."""
+
+    new_local, no_local = "owner.engine.scope()", "owner.engine.nothing"
+
+    def scopes(self, *codes: str) -> str:
+        """The scopes that code and names have to see: where nothing is meant in the inner ones, not
+        those, as each makes all names take longer.
+        """
+        self.with_sensors = True  # what the code looks at is not known
+        document = self.document
+        alone = self.form.bare and not (self.has_local or document.tampering)
+        words = {word for code in codes for word in WORD.findall(code)}
+        if alone and words.isdisjoint(INHERITED) and words.isdisjoint(dialog_names(document)):
+            return "(owner.application, document)"
+        return SCOPES
+
+    def way(self, form: str) -> Transfer:
+        """The way to a form; a scope that scripts may have put something into does not stay."""
+        return GoForm(form) if self.document.tampering else super().way(form)
+
+    def condition(self, expr: Expression) -> str:
+        """An expression as a condition."""
+        return f"owner.engine.condition({self.give(expr.code)}, {self.scopes(expr.code)})"
+
+    def assign(self, depth: int, handler: Handler, act: Assign) -> None:
+        """A declared variable has a new value."""
+        self.write(depth, f"at = {self.at(handler, act.expr)}")
+        name, code = act.name, act.expr.code
+        given = f"{self.give(name)}, {self.give(code)}, {self.scopes(name, code)}"
+        self.write(depth, f"owner.engine.assign_declared({given})")
+
+    def declare(self, depth: int, handler: Handler, act: Declare) -> None:
+        """A variable of the handler's own."""
+        name = self.give(act.name)
+        if act.expr is None:
+            self.write(depth, f"owner.engine.unset(local, {name})")
+            return
+        self.write(depth, f"at = {self.at(handler, act.expr)}")
+        self.with_sensors = True
+        given = f"local, {name}, {self.give(act.expr.code)}, {SCOPES}"
+        self.write(depth, f"owner.engine.assign({given})")
 
 
 def dialog_names(document: Document) -> frozenset[str]:
