@@ -124,9 +124,8 @@ class Maker:
             serial=self.serial,
             app=app,
             stream=stream,
-            type=row,
+            row=row,
             command=command,
-            group=group,
             devices=(
                 row.occupied(command.text)
                 if row and command
@@ -136,9 +135,9 @@ class Maker:
             ),
             requested=now,
             document_state=state,
+            group=group,
             run=run,
             unit=unit,
-            longest=group.longest if group else None,
         )
 
     def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:
