@@ -200,17 +200,17 @@ def _unfinished(rehearsal: Rehearsal) -> list[str]:
 
 def _doing(app: Application, owed: bool) -> str:
     """What an application does that the mediator keeps; ``owed`` if a service has yet to answer."""
-    from prima.scheduler.behavior import State
+    from prima.scheduler.behavior import RUNNING, WAITING
     from prima.transcript.table import describe
 
     for behavior in app.members.values():
-        if behavior.state is State.RUNNING and behavior.unit is None:
+        if behavior.state is RUNNING and behavior.unit is None:
             command = behavior.command
             if command is None:
                 return "in the middle of a unit"
             what = describe(command.type, command.text, dict(command.args))
             return f"asking {what}" if command.type == "q-and-a" else f"in the middle of {what}"
-    if any(behavior.state is State.WAITING for behavior in app.members.values()):
+    if any(behavior.state is WAITING for behavior in app.members.values()):
         return "waiting for its turn"
     return "waiting for a service's answer" if owed else "waiting for an event"
 

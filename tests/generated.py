@@ -274,7 +274,7 @@ def _stuck(session: Session) -> list[str]:
     found = []
     memory = session.mediator.memory
     for ab in memory.behaviors.values():
-        found.append(f"invariant 9: {ab.id} is {ab.state.value} for ever")
+        found.append(f"invariant 9: {ab.id} is {ab.state} for ever")
     for stream in memory.streams.values():
         found.append(f"invariant 9: {stream.name} stays open for ever")
     for app in session.apps.values():
@@ -765,7 +765,7 @@ def drive(script: Script, policy: str = "prima") -> Run:
     run = Run(records, steps < STEPS, _orders_match(records, devices.starts))
     if run.complete and not mediator.halted:
         run.problems += [
-            f"invariant 9: {ab.id} is {ab.state.value} for ever"
+            f"invariant 9: {ab.id} is {ab.state} for ever"
             for ab in mediator.memory.behaviors.values()
         ]
     return run

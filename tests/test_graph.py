@@ -570,7 +570,7 @@ def memories(scenario: str, policy: str) -> tuple[list[Record], dict[float, dict
         records += map(finished, made)
         memory = rehearsal.session.mediator.memory.behaviors.values()
         if records:
-            held[records[-1]["time"]] = {run.base(ab.name): ab.state.name.lower() for ab in memory}
+            held[records[-1]["time"]] = {run.base(ab.name): ab.state for ab in memory}
     return records, held
 
 

@@ -9,8 +9,8 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 from __future__ import annotations
 
 from bisect import bisect_left
-from enum import Enum
 from functools import lru_cache
+from typing import Literal
 
 from prima.commands import CommandType
 from prima.messages import Command, Data, Group
@@ -28,13 +28,12 @@ def in_order(devices: frozenset[str]) -> tuple[str, ...]:
     return tuple(sorted(devices))
 
 
-class State(Enum):
-    """The states of an AB in working memory (thesis Figure 4.3), and out of it."""
-
-    LINKED = "linked"
-    WAITING = "waiting"
-    RUNNING = "running"
-    GONE = "gone"
+State = Literal["linked", "waiting", "running", "gone"]
+"""The states of an AB in working memory (thesis Figure 4.3), and out of it."""
+LINKED: State = "linked"
+WAITING: State = "waiting"
+RUNNING: State = "running"
+GONE: State = "gone"
 
 
 class Stream:
@@ -64,7 +63,7 @@ class Stream:
 
     def contending(self) -> list[Behavior]:
         """The stream's running and waiting ABs; linked ones compete for nothing."""
-        return [ab for ab in self.members.values() if ab.state is not State.LINKED]
+        return [ab for ab in self.members.values() if ab.state is not LINKED]
 
     def engages_user(self) -> bool:
         """Whether the stream keeps the channel (rule K1)."""
@@ -135,7 +134,7 @@ class Behavior:
         self.group = group
         self.run = run
         self.unit = unit
-        self.state = State.WAITING
+        self.state: State = WAITING
         self.reaction: int | None = None
         """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
         self.parent: str | None = None

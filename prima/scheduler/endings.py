@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections import deque
 
 from prima.messages import Command, Data, Notice, Order
-from prima.scheduler.behavior import Application, Behavior, Run, State, Stream
+from prima.scheduler.behavior import (
+    GONE,
+    LINKED,
+    RUNNING,
+    WAITING,
+    Application,
+    Behavior,
+    Run,
+    Stream,
+)
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.intake import Maker, Table
 from prima.scheduler.memory import Memory
@@ -68,10 +77,10 @@ class Endings:
     def _cancel(self, behaviors: list[Behavior], devices: frozenset[str]) -> None:
         """O2: delete ABs; one that runs on the devices is cut short, others finish."""
         for ab in reversed(behaviors):
-            if ab.state is State.GONE or in_group(ab):
+            if ab.state is GONE or in_group(ab):
                 continue
             heard = not ab.silent
-            if ab.state is State.RUNNING and not ab.devices & devices:
+            if ab.state is RUNNING and not ab.devices & devices:
                 self._silence(ab)
             else:
                 self._delete(ab, "O2")
@@ -87,9 +96,9 @@ class Endings:
     def _withdraw(self, behaviors: list[Behavior], rule: str) -> None:
         """O3, E2: what has not started goes; what runs finishes, heard by nobody."""
         for ab in reversed(behaviors):
-            if ab.state is State.GONE or in_group(ab):
+            if ab.state is GONE or in_group(ab):
                 continue
-            if ab.state is State.RUNNING:
+            if ab.state is RUNNING:
                 self._silence(ab)
                 ab.left = True
                 if ab.listening:
@@ -106,9 +115,9 @@ class Endings:
         ab.open = True  # a unit that is deleted does not settle as done
         for inner in list(ab.inner.values()):
             self._delete(inner, rule)
-        if ab.state is State.RUNNING and ab.command is not None:
+        if ab.state is RUNNING and ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
-        self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state.value)
+        self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state)
         self._remove(ab)
 
     def _remove(self, ab: Behavior) -> None:
@@ -118,7 +127,7 @@ class Endings:
         self._touched[ab.stream.name] = ab.stream
         for child in ab.children:
             child.waits_for.discard(ab.name)
-            if child.state is State.LINKED and not child.waits_for:
+            if child.state is LINKED and not child.waits_for:
                 child.freed = self._now()
                 self.memory.wait(child)
         if ab.group is not None:
@@ -213,20 +222,20 @@ class Endings:
 
     def _settle(self, unit: Behavior) -> None:
         """End a unit when its Commands have ended, or what was left to run in it has."""
-        if unit.state is not State.RUNNING or unit.inner or unit.open:
+        if unit.state is not RUNNING or unit.inner or unit.open:
             return
         self.chronicle.end(unit, "done", True, {}, inbound=False)
         self._finish(unit, {})
 
     def _close_unit(self, app: Application, number: int) -> None:
         unit = app.units.pop(number, None)
-        if unit is None or unit.state is State.GONE:
+        if unit is None or unit.state is GONE:
             return
         unit.open = False
         for ab in list(reversed(list(unit.inner.values()))):
-            if ab.state is State.RUNNING:
+            if ab.state is RUNNING:
                 self._silence(ab)
-            elif ab.state is not State.GONE:
+            elif ab.state is not GONE:
                 self._delete(ab, "U5")
         if unit.name in self.memory.running:
             self._settle(unit)
@@ -236,7 +245,7 @@ class Endings:
     def _delete_rest(self, tree: dict[str, Behavior], run: Run | None, rule: str) -> None:
         """Delete what has not started of a failed tree; other runs in it are cancelled."""
         for other in list(reversed(list(tree.values()))):
-            if other.state in (State.LINKED, State.WAITING) and not in_group(other):
+            if other.state in (LINKED, WAITING) and not in_group(other):
                 self._delete(other, rule)
                 if other.run is not run and not other.silent:
                     self._tell_cancelled(other)

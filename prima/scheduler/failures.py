@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Notice, Order
-from prima.scheduler.behavior import Behavior, State, Stream
+from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
 from prima.scheduler.endings import Endings, Told, in_group
 
 HANG_MS = 120_000
@@ -96,7 +96,7 @@ class Failures(Endings):
             told = unit.silent or unit.app.gone
             self._silence(unit)
             for ab in list(reversed(list(unit.inner.values()))):
-                if ab.state is not State.RUNNING:
+                if ab.state is not RUNNING:
                     self._delete(ab, "U5")
             self._delete_rest(unit.stream.members, run, "U5")
             if told:
@@ -122,7 +122,7 @@ class Failures(Endings):
         self.halted = False
         if not resume:
             for ab in reversed(list(self.memory.behaviors.values())):
-                if ab.state is not State.GONE and not in_group(ab):
+                if ab.state is not GONE and not in_group(ab):
                     self._delete(ab, "E5")
                     if not ab.silent:
                         self._tell_cancelled(ab)
@@ -133,7 +133,7 @@ class Failures(Endings):
         for inner in list(ab.inner.values()):
             if given_up:
                 self._delete(inner, "E5")
-            elif inner.state is State.RUNNING:
+            elif inner.state is RUNNING:
                 self._halt(inner)
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))

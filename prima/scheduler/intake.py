@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from prima.commands import TABLE_4_2, CommandType, check_arguments
 from prima.errors import did_you_mean
 from prima.messages import Command, Group, OpenUnit, Request, Step
-from prima.scheduler.behavior import NO_DEVICES, Application, Behavior, Run, State, Stream
+from prima.scheduler.behavior import GONE, NO_DEVICES, Application, Behavior, Run, Stream
 
 Table = Mapping[str, CommandType]
 
@@ -178,7 +178,7 @@ def link(parent: Behavior, child: Behavior) -> None:
 def parent_of(app: Application, unit: Behavior | None) -> Behavior | None:
     """O1: the latest Command this application requested, if it is in working memory still."""
     latest = app.latest
-    if latest is None or latest.state is State.GONE:
+    if latest is None or latest.state is GONE:
         return None
     if unit is not None:
         return latest if latest.unit is unit else None

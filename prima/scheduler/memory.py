@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from prima.scheduler.behavior import Application, Behavior, State, Stream, in_order
+from prima.scheduler.behavior import (
+    GONE,
+    LINKED,
+    RUNNING,
+    WAITING,
+    Application,
+    Behavior,
+    Stream,
+    in_order,
+)
 from prima.scheduler.waiting import Waiting
 
 
@@ -42,20 +51,20 @@ class Memory:
         ab.app.members[ab.name] = ab
         ab.stream.members[ab.name] = ab
         if ab.waits_for:
-            ab.state = State.LINKED
+            ab.state = LINKED
         else:
             self.wait(ab)
 
     def wait(self, ab: Behavior) -> None:
         """Let the AB compete. Commands inside a unit compete within it only."""
-        ab.state = State.WAITING
+        ab.state = WAITING
         if ab.unit is None:
             self.waiting.add(ab)
 
     def start(self, ab: Behavior, now: int) -> None:
         """Move a waiting AB to the running ones; its devices are occupied from here on."""
         self.waiting.remove(ab)
-        ab.state = State.RUNNING
+        ab.state = RUNNING
         ab.started = now
         self.running[ab.name] = ab
         self._active = ab.app
@@ -88,7 +97,7 @@ class Memory:
     def remove(self, ab: Behavior) -> None:
         """Take an AB out of working memory, whatever its state."""
         name = ab.name
-        if ab.state is State.RUNNING:
+        if ab.state is RUNNING:
             self.release(ab)
         else:
             self.waiting.remove(ab)
@@ -97,7 +106,7 @@ class Memory:
         ab.stream.members.pop(name, None)
         if ab.unit is not None:
             ab.unit.inner.pop(name, None)
-        ab.state = State.GONE
+        ab.state = GONE
 
     def of_app(self, app: Application) -> Iterator[Behavior]:
         """The application's ABs, in the order of their requests."""
@@ -136,7 +145,7 @@ class Memory:
     def unwait(self, ab: Behavior) -> None:
         """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
         self.waiting.remove(ab)
-        ab.state = State.LINKED
+        ab.state = LINKED
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""

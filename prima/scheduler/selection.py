@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.scheduler.behavior import Behavior, Rank, State, Stream
+from prima.scheduler.behavior import RUNNING, Behavior, Rank, Stream
 from prima.scheduler.memory import Memory
 from prima.scheduler.waiting import (
     LATER,
@@ -61,7 +61,7 @@ def composes_with_floor(ab: Behavior, memory: Memory) -> bool:
         return False
     contending = holder.contending()
     return bool(contending) and all(
-        other.motion == "faithful" and other.state is State.RUNNING for other in contending
+        other.motion == "faithful" and other.state is RUNNING for other in contending
     )
 
 
@@ -238,7 +238,7 @@ def policy_named(text: str) -> Policy:
 
 def _extensions(names: list[str]) -> frozenset[str]:
     for name in names:
-        if name not in (*EXTENSIONS, "all"):
+        if name != "all" and name not in EXTENSIONS:
             hint = did_you_mean(name, EXTENSIONS) or f"Write {one_of(EXTENSIONS)}, or all."
             raise UsageError(f'There is no extension "{name}". {hint}')
     return frozenset(EXTENSIONS if "all" in names else names)

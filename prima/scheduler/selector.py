@@ -7,12 +7,13 @@ from operator import itemgetter
 
 from prima.messages import Command, Group, Order
 from prima.scheduler.behavior import (
+    RUNNING,
+    WAITING,
     Application,
     Behavior,
     Entry,
     Line,
     Rank,
-    State,
     Stream,
     in_order,
 )
@@ -224,7 +225,7 @@ class Selector:
         }
         every = leaves(unit.group)
         finished = [command for command in every if id(command) not in pending]
-        running = [p for p in left if p.state is State.RUNNING and p.command is not None]
+        running = [p for p in left if p.state is RUNNING and p.command is not None]
         for part in sorted(
             running, key=lambda p: (p.command is None or not p.command.text, p.serial)
         )[:1]:
@@ -234,9 +235,9 @@ class Selector:
         """Take out what is in a unit that starts again from its beginning."""
         for inner in list(unit.inner.values()):
             self._empty(inner)
-            if inner.state is State.RUNNING and inner.command is not None:
+            if inner.state is RUNNING and inner.command is not None:
                 self._stop_device(inner)
-            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state.value)
+            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state)
             self.given_up.append(inner.name)
             self.memory.remove(inner)
 
@@ -481,9 +482,7 @@ class Selector:
     def _advance(self, unit: Behavior, now: int) -> None:
         """Start the unit's own ABs in their order, where their devices are free (U4, U5)."""
         for ab in list(unit.inner.values()):
-            if ab.state is State.WAITING and not (
-                self.policy.exclusive and self.memory.conflict(ab)
-            ):
+            if ab.state is WAITING and not (self.policy.exclusive and self.memory.conflict(ab)):
                 reaction, ab.reaction = ab.reaction, None
                 self._run(ab, now)
                 self.chronicle.start(ab, "U5" if unit.spans else "U4", reaction)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from prima.errors import UsageError
-from prima.scheduler.behavior import Behavior, State
+from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
@@ -302,10 +302,10 @@ def _situation(game: Game) -> list[str]:
     for name, app in session.apps.items():
         there = name in memory.apps and not app.over
         lines.append(f"  {app.kind.upper()} {name}" + ("" if there else " (not there)"))
-    for state in (State.RUNNING, State.WAITING, State.LINKED):
+    for state in (RUNNING, WAITING, LINKED):
         for ab in memory.behaviors.values():
             if ab.state is state:
-                lines.append(f"  {state.value}: {_behavior(ab)}")
+                lines.append(f"  {state}: {_behavior(ab)}")
     for stream in memory.streams.values():
         if stream.open:
             held = " has the floor" if stream is memory.holder else ""
