@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Literal
 
 from prima.commands import CommandType
+from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group
 from prima.scheduler.effects import Effects
 
@@ -36,25 +37,25 @@ RUNNING: State = "running"
 GONE: State = "gone"
 
 
+@dataclass(slots=True, eq=False)
 class Stream:
     """A Communication Stream: it ends when nothing keeps it open (rule C1)."""
 
-    def __init__(self, name: str, app: Application) -> None:
-        self.name = name
-        self.app = app
-        self.members: dict[str, Behavior] = {}
-        self.windows = 0
-        self.engaged = False
-        self.causes: set[int] = set()
-        """Serial numbers of the events that the stream has reacted to (F2)."""
-        self.suspended: int | None = None
-        """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
-        self.effects = Effects()
-        self.hold: int | None = None
-        """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
-        self.hold_state = 0
-        """The document's state whose hint that is."""
-        self.held_until: int | None = None
+    name: str
+    app: Application
+    members: dict[str, Behavior] = field(default_factory=dict)
+    windows: int = 0
+    engaged: bool = False
+    causes: set[int] = field(default_factory=set)
+    """Serial numbers of the events that the stream has reacted to (F2)."""
+    suspended: int | None = None
+    """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
+    effects: Effects = field(default_factory=Effects)
+    hold: int | None = None
+    """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
+    hold_state: int = 0
+    """The document's state whose hint that is."""
+    held_until: int | None = None
 
     @property
     def open(self) -> bool:
@@ -73,119 +74,114 @@ class Stream:
         return not contending or not all(ab.leaves for ab in contending)
 
 
+@dataclass(slots=True, eq=False)
 class Application:
     """What the mediator keeps of an application: nothing of its documents."""
 
-    def __init__(self, name: str, kind: str, order: int) -> None:
-        self.name = name
-        self.kind = kind
-        self.order = order
-        self.latest: Behavior | None = None
-        self.window: Stream | None = None
-        self.continuing: tuple[Stream, int] | None = None
-        """The stream that O2 or O3 cancelled, and the instant for which it stays open."""
-        self.units: dict[int, Behavior] = {}
-        self.members: dict[str, Behavior] = {}
-        """Its ABs in working memory, in the order of their requests."""
-        self.streams = 0
-        self.behaviors = 0
-        self.last_turn = -1
-        self.gone = False
+    name: str
+    kind: str
+    order: int
+    latest: Behavior | None = None
+    window: Stream | None = None
+    continuing: tuple[Stream, int] | None = None
+    """The stream that O2 or O3 cancelled, and the instant for which it stays open."""
+    units: dict[int, Behavior] = field(default_factory=dict)
+    members: dict[str, Behavior] = field(default_factory=dict)
+    """Its ABs in working memory, in the order of their requests."""
+    streams: int = 0
+    behaviors: int = 0
+    last_turn: int = -1
+    gone: bool = False
 
 
+@dataclass(slots=True)
 class Run:
     """Commands that an application sent at once and whose end it awaits."""
 
-    def __init__(self, number: int, app: Application, left: int) -> None:
-        self.number = number
-        self.app = app
-        self.left = left
+    number: int
+    app: Application
+    left: int
 
 
+@dataclass(slots=True, eq=False)
 class Behavior:
     """An Atomic Behavior (thesis Figure 4.2)."""
 
-    def __init__(
-        self,
-        name: str,
-        serial: int,
-        app: Application,
-        stream: Stream,
-        row: CommandType | None,
-        command: Command | None,
-        devices: frozenset[str],
-        requested: int,
-        document_state: int,
-        group: Group | None = None,
-        run: Run | None = None,
-        unit: Behavior | None = None,
-    ) -> None:
-        self.name = name
-        self.id = name
-        """The AB's name in the transcript; a loop of a feedback Command has its number."""
-        self.serial = serial
-        self.app = app
-        self.stream = stream
-        self.type = row
-        self.command = command
-        self.devices = devices
-        self.requested = requested
-        self.document_state = document_state
-        self.group = group
-        self.run = run
-        self.unit = unit
-        self.state: State = WAITING
-        self.reaction: int | None = None
-        """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
-        self.parent: str | None = None
-        self.waits_for: set[str] = set()
-        self.children: list[Behavior] = []
-        self.freed = -1
-        """The instant in which the AB's parent ended or its window opened (S2c)."""
-        self.started = -1
-        self.loop = 0
-        self.resumed = False
-        self.listening = False
-        self.last_loop = False
-        self.silent = False
-        """Nobody hears of its end any more."""
-        self.left = False
-        """Its state has been left (O3): a question ends as soon as it listens."""
-        self.connect = False
-        """Whether the robot has to face the user before it starts (X4)."""
-        self.reacted = -1
-        """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
-        self.restarting = False
-        """Whether the AB was interrupted and has not started again (X2)."""
-        self.since: Data | None = None
-        """The mark from which it goes on after an interruption, as its device told it (X2)."""
-        self.inserted = ""
-        """The rule by which the mediator itself put the AB in (X1, X4)."""
-        self.blocked = ("", "")
-        """The rule that kept it from starting lately, and what it was kept back by."""
-        self.waited_loops = 0
-        # Units only (U4, U5):
-        self.spans = False
-        self.open = False
-        self.inner: dict[str, Behavior] = {}
-        self.busy: dict[str, Behavior] = {}
-        self.longest: int | None = group.longest if group is not None else None
-        # As the Command's type has it; nothing in a unit leaves the user (K2):
-        self.feedback = row is not None and row.feedback
-        """Whether the Command makes one loop after another (U2)."""
-        self.leaves = row is not None and row.leaves
-        """Whether the AB leaves the user (K2)."""
-        self.engages = row is not None and row.engages
-        """Whether the AB engages the user (K1)."""
-        self.priority = row.priority if row is not None else HIGH
-        self.motion: str = row.motion if row is not None and unit is None else ""
-        """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not in a unit."""
-        # While it waits, see prima.scheduler.waiting:
-        self.line: Line | None = None
-        self.place: Rank = ()
-        """The last parts of its rank in the line, S2d to S2f."""
-        self.entry: Entry | None = None
-        """By which it stands there."""
+    name: str
+    serial: int
+    app: Application
+    stream: Stream
+    type: CommandType | None
+    command: Command | None
+    devices: frozenset[str]
+    requested: int
+    document_state: int
+    group: Group | None = None
+    run: Run | None = None
+    unit: Behavior | None = None
+    state: State = WAITING
+    reaction: int | None = None
+    """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
+    parent: str | None = None
+    waits_for: set[str] = field(default_factory=set)
+    children: list[Behavior] = field(default_factory=list)
+    freed: int = -1
+    """The instant in which the AB's parent ended or its window opened (S2c)."""
+    started: int = -1
+    loop: int = 0
+    resumed: bool = False
+    listening: bool = False
+    last_loop: bool = False
+    silent: bool = False
+    """Nobody hears of its end any more."""
+    left: bool = False
+    """Its state has been left (O3): a question ends as soon as it listens."""
+    connect: bool = False
+    """Whether the robot has to face the user before it starts (X4)."""
+    reacted: int = -1
+    """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
+    restarting: bool = False
+    """Whether the AB was interrupted and has not started again (X2)."""
+    since: Data | None = None
+    """The mark from which it goes on after an interruption, as its device told it (X2)."""
+    inserted: str = ""
+    """The rule by which the mediator itself put the AB in (X1, X4)."""
+    blocked: tuple[str, str] = ("", "")
+    waited_loops: int = 0
+    # Units only (U4, U5):
+    spans: bool = False
+    open: bool = False
+    inner: dict[str, Behavior] = field(default_factory=dict)
+    busy: dict[str, Behavior] = field(default_factory=dict)
+    longest: int | None = None
+    # As the Command's type has it; nothing in a unit leaves the user (K2):
+    feedback: bool = False
+    """Whether the Command makes one loop after another (U2)."""
+    leaves: bool = False
+    """Whether the AB leaves the user (K2)."""
+    engages: bool = False
+    """Whether the AB engages the user (K1)."""
+    priority: int = HIGH
+
+    motion: str = ""
+    """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not within a unit."""
+
+    id: str = ""
+    """The AB's name in the transcript; a loop of a feedback Command has its number."""
+    line: Line | None = None
+    """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
+    place: Rank = ()
+    """The last parts of its rank while it stands in a line, S2d to S2f."""
+    entry: Entry | None = None
+    """By which it stands there."""
+
+    def __post_init__(self) -> None:
+        self.id = self.name
+        row = self.type
+        if row is not None:
+            self.feedback, self.leaves = row.feedback, row.leaves
+            self.engages, self.priority = row.engages, row.priority
+            self.motion = row.motion if self.unit is None else ""
 
     def next_loop(self) -> None:
         """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""

@@ -124,8 +124,9 @@ class Maker:
             serial=self.serial,
             app=app,
             stream=stream,
-            row=row,
+            type=row,
             command=command,
+            group=group,
             devices=(
                 row.occupied(command.text)
                 if row and command
@@ -135,9 +136,9 @@ class Maker:
             ),
             requested=now,
             document_state=state,
-            group=group,
             run=run,
             unit=unit,
+            longest=group.longest if group else None,
         )
 
     def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:

@@ -8,8 +8,7 @@ devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from prima.deferred import dataclass
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.scheduler.behavior import RUNNING, Behavior, Rank, Stream
 from prima.scheduler.memory import Memory
@@ -75,31 +74,21 @@ def refused_by_channel(ab: Behavior, memory: Memory) -> Refusal | None:
     return None
 
 
+@dataclass(frozen=True, slots=True)
 class Policy:
     """The thesis's policy, ``prima``."""
 
-    def __init__(self, name: str = "prima", extensions: frozenset[str] = frozenset()) -> None:
-        self.name = name
-        self.extensions = extensions
-        """Which of :data:`EXTENSIONS` are on."""
-        self.floor = True
-        """Whether reactions take the floor (F1) and the channel is kept (K1)."""
-        self.exclusive = True
-        """Whether an AB waits for its devices (S1); only ``none`` does without."""
-        self.turning = False
-        """Whether a start changes how other ABs rank."""
-        self.rules: tuple[str, ...] = (
-            "S2a",
-            "S2b",
-            "S2b",
-            "S2b",
-            "S2c",
-            "S2d",
-            "S2e",
-            "S2f",
-            "S2f",
-        )
-        """The name of the rule behind each number of a rank."""
+    name: str = "prima"
+    floor: bool = True
+    """Whether reactions take the floor (F1) and the channel is kept (K1)."""
+    exclusive: bool = True
+    """Whether an AB waits for its devices (S1); only ``none`` does without."""
+    rules: tuple[str, ...] = ("S2a", *["S2b"] * 3, "S2c", "S2d", "S2e", "S2f", "S2f")
+    """The name of the rule behind each number of a rank."""
+    turning: bool = False
+    """Whether a start changes how other ABs rank."""
+    extensions: frozenset[str] = frozenset()
+    """Which of :data:`EXTENSIONS` are on."""
 
     def has(self, extension: str) -> bool:
         """Whether an extension is on."""
@@ -139,13 +128,13 @@ class Policy:
         return not self.extensions
 
 
+@dataclass(frozen=True, slots=True)
 class Fifo(Policy):
     """Waiting ABs in the order of their requests; no floor, channel or reactivity."""
 
-    def __init__(self, name: str = "fifo") -> None:
-        super().__init__(name)
-        self.floor = False
-        self.rules = ("fifo", "S2f", "S2f")
+    name: str = "fifo"
+    floor: bool = False
+    rules: tuple[str, ...] = ("fifo", "S2f", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The earlier request goes first."""
@@ -165,26 +154,26 @@ class Fifo(Policy):
         return False
 
 
+@dataclass(frozen=True, slots=True)
 class Fair(Fifo):
     """Like ``fifo``, but the application goes first that has not had its turn."""
 
-    def __init__(self) -> None:
-        super().__init__("fair")
-        self.turning = True
-        self.rules = ("fair", "fifo", "S2f", "S2f")
+    name: str = "fair"
+    turning: bool = True
+    rules: tuple[str, ...] = ("fair", "fifo", "S2f", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
         return (ab.app.last_turn, *rank_request(ab), *rank_declared(ab))
 
 
+@dataclass(frozen=True, slots=True)
 class Fixed(Fifo):
     """One application, named, always outranks the other (a subsumption architecture)."""
 
-    def __init__(self, first: str = "") -> None:
-        super().__init__("fixed")
-        self.rules = ("fixed", "fifo", "S2f", "S2f")
-        self.first = first
+    name: str = "fixed"
+    rules: tuple[str, ...] = ("fixed", "fifo", "S2f", "S2f")
+    first: str = ""
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
@@ -192,13 +181,13 @@ class Fixed(Fifo):
         return (0 if top else 1, *rank_request(ab), *rank_declared(ab))
 
 
+@dataclass(frozen=True, slots=True)
 class Unmediated(Fifo):
     """No mediator: every Command reaches its devices at once."""
 
-    def __init__(self) -> None:
-        super().__init__("none")
-        self.exclusive = False
-        self.rules = ("none", "S2f", "S2f")
+    name: str = "none"
+    exclusive: bool = False
+    rules: tuple[str, ...] = ("none", "S2f", "S2f")
 
     def holds_back(self, ab: Behavior) -> bool:
         """Nothing is ever held back."""
@@ -224,7 +213,7 @@ def policy_named(text: str) -> Policy:
     name, colon, first = text.partition(":")
     if name == "fixed" and (first or not colon):
         return Fixed(first=first)
-    simple: dict[str, Callable[[], Policy]] = {
+    simple: dict[str, type[Policy]] = {
         "prima": Policy,
         "fifo": Fifo,
         "fair": Fair,
