@@ -256,8 +256,8 @@ class Builder:
 
     def any_has(self, words: re.Pattern[str]) -> bool:
         """Whether any code of the document, or a variable's name in it, has certain words."""
-        codes = (one.code for one in self.expressions)
-        return any(map(words.search, (*self.words, *codes)))
+        codes = {*self.words, *(one.code for one in self.expressions)}  # most are there many times
+        return any(map(words.search, codes))
 
     def form(self, node: Node) -> Form:
         """A form."""
