@@ -71,12 +71,13 @@ def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
 
 
 def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
-    """Triggers that wait for words which nobody says."""
+    """Triggers that wait for words which nobody says; what is never to be said, if it is a slip."""
     questions, sayings = Sayings(documents, True), Sayings(documents, False)
     for tag, name, asked in (
         ("answer", "to", True),
         ("when", "asked", True),
         ("when", "said", False),
+        ("never", "says", False),
     ):
         for node in [one for one in nodes if one.tag == tag][:MOST]:
             words = node.get(name)
@@ -87,6 +88,8 @@ def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
                 remedy = did_you_mean(words, said.lines if len(said.lines) <= MANY_WORDS else ())
                 if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
+                if tag == "never" and not remedy:
+                    continue  # that nobody says it is just what is expected
                 place = node.attribute_place(name)
                 yield Problem(place, "warning", "never-said", message, remedy)
 
