@@ -14,6 +14,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from prima import loading
 from prima.diagnostics import excerpt, render, sarif
 from prima.errors import Place, Problem
 
@@ -218,3 +219,25 @@ def test_a_certificate_compares_an_fa_with_an_ea() -> None:
 
 def test_watching_an_empty_folder_is_told(tmp_path: Path) -> None:
     assert prima("validate", ".", "--watch", cwd=tmp_path).returncode == 2
+
+
+def test_a_language_without_a_voice_is_told(tmp_path: Path) -> None:
+    words = '<form id="a"><block><speak>Bonjour.</speak></block></form></prima>'
+    for name, lang in (("a", "fr-CA"), ("b", "ja"), ("c", "EN-gb")):
+        head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa"'
+        text = f'{head}\n id="{name}" xml:lang="{lang}">{words}'
+        (tmp_path / f"{name}.xml").write_text(text)
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
+        f' world="{ROOT}/documents/worlds/office.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<robot at="entrance"/><application src="a.xml"/><application src="b.xml"/>'
+        '<application src="c.xml"/></scenario>'
+    )
+    (found,) = [one for one in loading.validate([path]) if "voice" in one.message]
+    assert (found.severity, found.code) == ("warning", "no-such-name")
+    assert (found.place.line, found.place.column) == (2, 19)
+    assert (
+        f"{found.message} {found.remedy}"
+        == 'The robot has no voice for "fr-CA". There is en and ja.'
+    )

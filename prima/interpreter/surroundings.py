@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from prima.deferred import dataclass
 from prima.errors import Problem, did_you_mean, one_of
@@ -34,14 +34,16 @@ class Surroundings:
     things: frozenset[str]
     gestures: frozenset[str]
     sensors: frozenset[str]
+    voices: frozenset[str] = frozenset()
+    """The languages that the robot speaks; none where its profile does not say."""
 
 
 def check_surroundings(document: Document, names: Surroundings) -> list[Problem]:
-    """Places, things, gestures and touch sensors that are not there: warnings.
+    """Places, things, gestures, touch sensors and voices that are not there: warnings.
 
-    At run time they are errors of devices, which a document may handle.
+    At run time they are errors of devices, which a document may handle; a text is said anyway.
     """
-    problems = []
+    problems = list(_voices(document.node, names.voices)) if names.voices else []
     for command in commands_of(document):
         for name, value in command.args.items():
             if name in PLACED and isinstance(value, str):
@@ -55,6 +57,19 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
                 remedy = nearest(sensor, names.sensors)
                 problems.append(Problem(place, "warning", "no-such-name", message, remedy))
     return problems
+
+
+def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
+    spoken = {one.lower().partition("-")[0] for one in voices}
+    nodes = [root]
+    while nodes:
+        node = nodes.pop()
+        nodes += [child for child in node.nodes if child.tag != "grammar"]
+        lang = node.get("xml:lang")
+        if lang and lang.lower().partition("-")[0] not in spoken:
+            message = f'The robot has no voice for "{lang}".'
+            place = node.attribute_place("xml:lang")
+            yield Problem(place, "warning", "no-such-name", message, nearest("", voices))
 
 
 def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:

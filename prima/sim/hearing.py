@@ -36,7 +36,8 @@ def check_hearing(cast: Cast) -> list[Problem]:
     """Warnings about a scenario together with its applications, world and robot."""
     world, robot = cast.world, cast.robot
     names = Surroundings(
-        frozenset(world.places), frozenset(world.things), frozenset(robot.gestures), robot.touch
+        *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
+        *(robot.touch, frozenset(robot.voices)),
     )
     documents = [document for document in cast.documents if isinstance(document, Document)]
     problems = [one for document in documents for one in check_surroundings(document, names)]
