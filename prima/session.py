@@ -9,6 +9,7 @@ the inbound values is a journal, and feeding them again a replay.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
@@ -18,6 +19,7 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.evaluation import PULSE
 from prima.messages import (
+    Action,
     CloseUnit,
     Data,
     Emergency,
@@ -258,6 +260,8 @@ class Session:
         self.mediator.load(name, app.kind, app.document.lang)
         app.start(self.chronicle.now)
         self._act(app)
+        if self._sensors:  # what it watches for may be so already
+            self._look(app, {})
         self._settle()
 
     def _occurred(self, value: Occurred) -> None:
@@ -357,21 +361,31 @@ class Session:
         self._record("sensed", "environment", data=dict(value.values))
         self._sensors.update(value.values)
         for app in self._in_order():
-            for name in app.sensed(self.chronicle.now, value.values):
-                self._own_event(app, name, {}, reactive=True)
-            self._act(app)
+            self._look(app, value.values)
+
+    def _look(self, app: App, values: Data) -> None:
+        """C6: an application is told of sensors, and its conditions on them may have turned true."""
+        for name in app.sensed(self.chronicle.now, values):
+            self._own_event(app, name, {}, reactive=True)
+        self._act(app)
 
     def _own_event(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
         """An event that one application alone has defined."""
+        self._handle_own(app, name, data, reactive)
+        self._act(app)
+
+    def _handle_own(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
+        """Let the application handle its own event; what it wants then is still to be done."""
+        self._serial += 1
         self.chronicle.add(
             "event",
             "environment",
             app=app.name,
             event=name,
             data=data or None,
-            serial=self._serial + 1,
+            serial=self._serial,
         )
-        self._raise(name, data, [app], reactive)
+        app.event(self.chronicle.now, Event(name, self._serial, data, reactive))
 
     def _time_out(self, now: int) -> None:
         """V3: timeouts come last."""
@@ -414,26 +428,28 @@ class Session:
             self._due.pop(app.name, None)
 
     def _carry_out(self, app: App) -> None:
-        while app.actions:
-            actions, app.actions = app.actions, []
-            for action in actions:
-                match action:
-                    case Request():
-                        self.mediator.request(app.name, action)
-                    case OpenUnit():
-                        self.mediator.open_unit(app.name, action)
-                    case CloseUnit():
-                        self.mediator.close_unit(app.name, action)
-                    case LeaveState():
-                        self.mediator.leave_state(app.name, action)
-                    case Send():
-                        self._send(app, action)
-                    case Say():
-                        self._log(app, action)
-                    case Raise():
-                        self._own_event(app, action.event, {}, reactive=True)
-                    case Quit():
-                        self._quit(app, action)
+        """Do what an application wants, in order; what comes of its own events first."""
+        left: deque[Action] = deque()
+        while app.actions or left:
+            left.extendleft(reversed(app.actions))
+            app.actions.clear()
+            match action := left.popleft():
+                case Request():
+                    self.mediator.request(app.name, action)
+                case OpenUnit():
+                    self.mediator.open_unit(app.name, action)
+                case CloseUnit():
+                    self.mediator.close_unit(app.name, action)
+                case LeaveState():
+                    self.mediator.leave_state(app.name, action)
+                case Send():
+                    self._send(app, action)
+                case Say():
+                    self._log(app, action)
+                case Raise():
+                    self._handle_own(app, action.event, {}, reactive=True)
+                case Quit():
+                    self._quit(app, action)
 
     def _send(self, app: App, action: Send) -> None:
         data = {"to": action.service, **action.data}

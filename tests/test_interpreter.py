@@ -9,7 +9,7 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
 from prima.interpreter.sensors import sensors_read
-from prima.messages import Sensed
+from prima.messages import Loaded, Sensed, Unloaded
 from tests.robot import Bench, document
 
 # Items and content -------------------------------------------------------------------
@@ -627,6 +627,50 @@ def test_a_watch_that_fails_is_an_event_and_others_go_on() -> None:
     )
     bench.step(Sensed({"heat": 1}))
     assert bench.logs() == ["error.semantic", "warm"]
+    bench.step(Sensed({"heat": 2}))
+    assert bench.logs() == ["error.semantic", "warm"], "nothing that it looks at has changed"
+    bench.step(Sensed({"nosuch.other": 2}))
+    assert bench.logs() == ["error.semantic", "warm"], "now it does not fail"
+
+
+def test_what_a_document_watches_for_may_be_so_when_it_is_loaded() -> None:
+    watching = """<watch name="low" when="sensor.battery?.level &lt; 20"/>
+      <form id="a"><on event="low"><log>low</log></on></form>"""
+    bench = Bench('<form id="a"/>', document(watching, "ea", "late"))
+    bench.step(Unloaded("late"))
+    bench.step(Sensed({"battery.level": 10}))
+    bench.step(Loaded("late"))
+    assert bench.logs() == ["low"]
+    bench.step(Sensed({"battery.level": 9}))
+    assert bench.logs() == ["low"]
+
+
+@pytest.mark.parametrize("script", ["", "<script>function f(x) { return x; }</script>"])
+def test_a_state_without_watches_sees_what_was_told_last(script: str) -> None:
+    bench = Bench(
+        script
+        + """<form id="a"><watch name="low" when="sensor.battery?.level &lt; 20"/>
+          <on event="go"><goto next="#b"/></on></form>
+        <form id="b"><on event="show"><log expr="sensor.battery.level"/></on></form>"""
+    )
+    bench.step(Sensed({"battery.level": 50}))
+    bench.event("go")
+    for level in range(10, 17):
+        bench.step(Sensed({"battery.level": level}))
+        bench.event("show")
+    assert bench.logs() == [str(level) for level in range(10, 17)]
+
+
+def test_a_watch_that_is_always_true_where_it_leads_ends_its_application_alone() -> None:
+    round_and_round = """<form id="a"><watch name="w" when="!sensor.moving"/>
+      <on event="w"><goto next="#a"/></on></form>"""
+    other = '<form id="b"><on event="touch"><log>here</log></on></form>'
+    bench = Bench(round_and_round, document(other, "ea", "other"))
+    bench.step(Sensed({"moving": False}))
+    (failure,) = bench.session.failures
+    assert "loops without ever waiting" in failure
+    bench.event("touch")
+    assert bench.logs() == ["here"]
 
 
 def test_a_watch_sees_the_variables_of_its_form() -> None:
@@ -801,6 +845,14 @@ WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
         (LOG.format("sensor['x']"), None),
         (LOG.format("application"), None),
         (LOG.format("application['sensor']"), None),
+        (LOG.format("application.valueOf()['sen' + 'sor'].x"), None),
+        (LOG.format("application.mine"), set()),
+        (
+            "<script>application.all = function () { return this; };</script>" + LOG.format("1"),
+            None,
+        ),
+        ("<script>for (const k in ap_) k;</script>" + LOG.format("1"), None),
+        ('<var name="Infinity" expr="1"/>' + WATCH.format("sensor.x &lt; Infinity"), None),
         ("<script>function f() { return sens\\u006fr.x; }</script>" + LOG.format("1"), None),
         ("<script>function f() { return eval('sen' + 'sor.x'); }</script>" + LOG.format("1"), None),
         ("<script>function f(s) { return s.sensor; }</script>" + LOG.format("1"), None),

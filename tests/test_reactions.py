@@ -242,6 +242,7 @@ DEED = '<assign name="n" expr="{}"/>' + SHOW_N
         (DEED.format("next(sensor.m)"), list("23456789")),
         (DEED.format("next(application.sensor.m)"), list("23456789")),
         (DEED.format("next(dialog.k === undefined ? n : 0)"), list("12345678")),
+        ("<script>valueOf().n = 42;</script>" + DEED.format("next(n)"), ["43"] * 8),
         (
             DEED.format("new Date().getTime() - began"),
             [str(100 * number) for number in range(1, 9)],
@@ -274,6 +275,22 @@ def test_what_scripts_do_is_the_same(quick: bool, content: str, told: list[str])
     logs = [one["message"] for one in session.drain() if one["phase"] in ("log", "error")]
     assert logs[:8] == told
     assert bool(document.forms["f"].reactions) == quick
+
+
+@pytest.mark.parametrize("quick", [False, True])
+@pytest.mark.parametrize("deed", ["valueOf().n = 42;", "toString = 1;"])
+def test_a_script_puts_nothing_where_nothing_is_declared(deed: str, quick: bool) -> None:
+    text = f"""<!-- {quick} -->{HEAD}<var name="n" expr="0"/><script>{deed}</script><form id="f">
+<on event="go"><assign name="n" expr="Number(n) + 1"/>{SHOW_N}</on></form></prima>"""
+    document, _ = read_document("a.xml", text.encode())
+    session = Session([document], Policy(), TABLE_4_2)
+    app = session.apps["a"]
+    assert isinstance(app, Interpreter)
+    app.quick = quick
+    session.step(0, [Loaded("a")])
+    for now in range(1, 8):
+        session.step(now, [Occurred("go")])
+    assert [one["message"] for one in session.drain() if one["phase"] == "log"] == list("1234567")
 
 
 def reaction(content: str, form: str = "", before: str = "") -> Any:

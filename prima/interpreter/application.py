@@ -182,9 +182,9 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if self.over:
             return []
         watches = self.handling.watches()
+        self.untold = self.untold or bool(watches) or self.document.sensing
         if not watches:
             return []
-        self.untold = True
         raised: list[str] = []
         for watch in watches:
             self._guard(self._look, watch, raised)

@@ -77,12 +77,14 @@ PARTS = {
 }
 """What elements are for that others are for as well; the rest go by their tags."""
 COMMANDS = frozenset(ACTING)
-EVENT = pattern(r"event|_message|\beval\b|\\u")
+EVENT = pattern(r"event|_message|\beval\b|valueOf|\\u")
 """What code has that may look at the event that is being handled."""
 HANDLED = frozenset(["event", "_event", "_message"])
 """Variables that tell of it."""
-DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|\\u")
+DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|valueOf|\\u")
 """What code has that may know the scope of a form, and put something into it."""
+SENSOR = pattern(r"sensor|application|\bap_|\beval\b|\\u")
+"""What code has that may look at sensors."""
 ONLY_NEXT = frozenset(["next"])
 
 
@@ -251,6 +253,7 @@ class Builder:
             scripted=self.scripted,
             counting=self.counting,
             curious=self.any_has(EVENT),
+            sensing=self.any_has(SENSOR),
             tampering=self.any_has(DIALOG),
         )
 

@@ -37,10 +37,11 @@ TIME_LIMIT = 0.5
 HELPERS = r"""
 (function () {
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
-const number = Number, own = Object.hasOwn;
+const number = Number, own = Object.hasOwn, freeze = Object.freeze;
 const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
+  nothing: function () { return freeze({}); },
   named: function (name) { const made = {}; made[name] = made; return made; },
   event: function (name, message, data) {
     return { event: { name, message, data: data === null ? {} : data },
@@ -130,7 +131,7 @@ class Engine:
         context.eval(PRELUDE)
         self._tick()
         context.eval("Object.preventExtensions(globalThis)")
-        self.nothing = self.scope()
+        self.nothing = self._call(self._help["nothing"], ())
         """A scope in which nothing is declared."""
 
     def _call(self, function: Any, args: tuple[Any, ...], most: float = math.inf) -> Any:

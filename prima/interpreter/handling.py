@@ -307,11 +307,11 @@ class Handling:
                 self.owner.reported.get(name, 0) <= told.report for name in looked_at
             ):
                 continue
-            told.report = -1
+            told.report = self.owner.reports  # also where it fails
             true = self.owner.execute.condition(watch.when, fiber)
             if true and not told.true:
                 raised.append(watch.name)
-            told.true, told.report = true, self.owner.reports
+            told.true = true
         return raised
 
     def _sensors_of(self, watch: Watch) -> frozenset[str] | None:
@@ -326,4 +326,4 @@ class Armed:
 
     true = False
     report = -1
-    """After how many reports of sensors that was; -1 where it could not be evaluated."""
+    """After how many reports of sensors that was."""

@@ -18,7 +18,10 @@ HIDING = pattern(
 )
 """Where a document declares, or a script gives a value to, what conditions take for granted."""
 OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
-UNCLEAR = pattern(r"\bapplication\b(?!\s*\??\.\s*[\w$])|\beval\b|\\u")
+UNCLEAR = pattern(
+    r"\bapplication\b(?!\s*\??\.\s*(?!valueOf)[\w$]+(?![\w$])(?!\s*[(]))"
+    r"|\bthis\b|\b(?:ap|do|di|lo)_|\beval\b|\\u"
+)
 """By what code may look at ``sensor`` without saying so."""
 
 
@@ -48,6 +51,8 @@ def sensors_read(document: Document) -> frozenset[str] | None:
     """
     inner = [watch for form in document.forms.values() for watch in form.watches]
     if inner and any(node.tag == "subdialog" for node in _nodes(document)):
+        return None
+    if (inner or document.watches) and hides_sensors(document):
         return None
     if any(sensors_of(watch.when.code) is None for watch in (*document.watches, *inner)):
         return None
