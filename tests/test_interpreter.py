@@ -847,6 +847,17 @@ WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
         (LOG.format("application['sensor']"), None),
         (LOG.format("application.valueOf()['sen' + 'sor'].x"), None),
         (LOG.format("application.mine"), set()),
+        (LOG.format("'this application of a sensor'"), set()),
+        (
+            "<script>var a = \"don't\"; // isn't this it\nvar b = 'x';</script>" + LOG.format("b"),
+            set(),
+        ),
+        (
+            "<script>var f = function () { /* ' */ return this; }; // '\n</script>"
+            + LOG.format("1"),
+            None,
+        ),
+        ("<script>var f = () => `${sensor.x}`;</script>" + LOG.format("1"), {"x"}),
         (
             "<script>application.all = function () { return this; };</script>" + LOG.format("1"),
             None,

@@ -382,6 +382,8 @@ class Document:
     """Whether any code may look at the event that is being handled."""
     sensing: bool = False
     """Whether any code may look at sensors."""
+    sensors: tuple[frozenset[str] | None] | None = None
+    """Which of them; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
     tampering: bool = False
     """Whether code that an engine evaluates may put variables into the scope of a form."""
     dialog_names: frozenset[str] | None = None

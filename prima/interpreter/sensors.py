@@ -20,7 +20,7 @@ HIDING = pattern(
 OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
 UNCLEAR = pattern(
     r"\bapplication\b(?!\s*\??\.\s*(?!valueOf)[\w$]+(?![\w$])(?!\s*[(]))"
-    r"|\bthis\b|\b(?:ap|do|di|lo)_|\beval\b|\\u"
+    r"|\bthis\b|\b(?:ap|do|di|lo)_|\beval\b|\\"
 )
 """By what code may look at ``sensor`` without saying so."""
 
@@ -49,6 +49,12 @@ def sensors_read(document: Document) -> frozenset[str] | None:
     A condition that depends on other things too is looked at whenever any sensor changes, and so is
     what turned true while a subdialog had the place of the form that watches for it.
     """
+    if document.sensors is None:
+        document.sensors = (_sensors_read(document),)
+    return document.sensors[0]
+
+
+def _sensors_read(document: Document) -> frozenset[str] | None:
     inner = [watch for form in document.forms.values() for watch in form.watches]
     if inner and any(node.tag == "subdialog" for node in _nodes(document)):
         return None
@@ -57,12 +63,18 @@ def sensors_read(document: Document) -> frozenset[str] | None:
     if any(sensors_of(watch.when.code) is None for watch in (*document.watches, *inner)):
         return None
     read: set[str] = set()
-    for code in _codes(document):
+    for code in map(_without_texts, _codes(document)):
         found = SENSOR.findall(code)
         if UNCLEAR.search(code) or not all(found):
             return None
         read.update(found)
     return frozenset(read)
+
+
+def _without_texts(code: str) -> str:
+    """Code without what is only said in it; a template may hold code."""
+    kept = (one.text for one in tokens_of(code) if not one.text.startswith(("'", '"')))
+    return " ".join(kept)
 
 
 def _nodes(document: Document) -> Iterator[Node]:
