@@ -256,10 +256,7 @@ def _block(item: Item, lang: str, profile: Profile) -> int:
 def _voice(document: VoiceDocument, profile: Profile) -> list[Price]:
     """The prompts of a VoiceXML document; the last before an input item is its question."""
     found: list[Price] = []
-    stack = [document.page.root]
-    while stack:
-        node = stack.pop()
-        stack += reversed(node.nodes)
+    for node in document.page.root.walk():
         if node.tag != "prompt":
             continue
         letters = _voice_text(node)

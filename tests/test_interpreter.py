@@ -858,6 +858,7 @@ WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
             None,
         ),
         ("<script>var f = () => `${sensor.x}`;</script>" + LOG.format("1"), {"x"}),
+        ("<script>// all\nfunction f() { return this; }</script>" + LOG.format("1"), None),
         (
             "<script>application.all = function () { return this; };</script>" + LOG.format("1"),
             None,

@@ -112,7 +112,7 @@ class _Reader:
     def _describe(self, box: Box, dialog: Node) -> None:
         """What is special about a dialog, and what it asks or says."""
         asking = [one for one in (dialog, *dialog.nodes) if one.tag in ASKING]
-        leaving = [one for one in _inside(dialog) if _leaves(one)]
+        leaving = [one for one in dialog.walk() if _leaves(one)]
         tags = {one.tag for one in dialog.nodes}
         marks = {
             "asks": bool(asking),
@@ -313,22 +313,11 @@ def _divided(node: Node) -> Iterator[tuple[str | None, list[Node]]]:
     yield cond, part
 
 
-def _inside(node: Node) -> Iterator[Node]:
-    """An element and all in it."""
-    stack = [node]
-    while stack:
-        one = stack.pop()
-        yield one
-        stack += reversed(one.nodes)
-
-
 def _stays(handler: Node, events: list[str]) -> bool:
     """Whether a handler does something and leaves the dialog as it is."""
     ways = {"goto", "submit", "exit", "return", "disconnect", "throw"}
     empty = not handler.nodes and not handler.text
-    return not (
-        empty or ASKED.issuperset(events) or any(one.tag in ways for one in _inside(handler))
-    )
+    return not (empty or ASKED.issuperset(events) or any(one.tag in ways for one in handler.walk()))
 
 
 def _leaves(node: Node) -> bool:
@@ -363,7 +352,7 @@ def _never_ends(acts: list[Node]) -> bool:
 def _hints(page: Page) -> dict[str, list[str]]:
     """What is known of where events come from: links and choices that throw them."""
     found: dict[str, list[str]] = {}
-    for node in _inside(page.root):
+    for node in page.root.walk():
         event = node.get("event")
         if event and node.tag == "link":
             said = sayings(node.all("grammar"))

@@ -9,7 +9,6 @@ from prima.deferred import pattern
 from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Document
 from prima.interpreter.names import GLOBALS, free_names, tokens_of
-from prima.markup.tree import Node
 
 SENSOR = pattern(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
 HIDING = pattern(
@@ -56,7 +55,7 @@ def sensors_read(document: Document) -> frozenset[str] | None:
 
 def _sensors_read(document: Document) -> frozenset[str] | None:
     inner = [watch for form in document.forms.values() for watch in form.watches]
-    if inner and any(node.tag == "subdialog" for node in _nodes(document)):
+    if inner and any(node.tag == "subdialog" for node in document.node.walk()):
         return None
     if (inner or document.watches) and hides_sensors(document):
         return None
@@ -77,20 +76,12 @@ def _without_texts(code: str) -> str:
     return " ".join(kept)
 
 
-def _nodes(document: Document) -> Iterator[Node]:
-    stack = [document.node]
-    while stack:
-        node = stack.pop()
-        stack += node.nodes
-        yield node
-
-
 def _codes(document: Document) -> Iterator[str]:
     """All code of a document, with the variables that elements name."""
     for expression in document.expressions:
         yield expression.code
-    for node in _nodes(document):
+    for node in document.node.walk():
         if node.tag == "script":
-            yield node.text
+            yield node.own_text
         for name in ("name", "namelist"):
             yield node.attributes.get(name, "")

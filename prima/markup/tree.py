@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from prima.deferred import dataclass, field, pattern
 from prima.errors import Place
@@ -122,6 +123,14 @@ class Node:
     def all(self, *tags: str) -> list[Node]:
         """The child elements of these names."""
         return [item for item in self.content if not isinstance(item, str) and item.tag in tags]
+
+    def walk(self) -> Iterator[Node]:
+        """The element and all in it, in document order."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            stack += reversed(node.nodes)
 
     def get(self, name: str, default: str = "") -> str:
         """An attribute's text."""

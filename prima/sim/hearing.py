@@ -44,7 +44,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     for document in cast.documents:
         if not isinstance(document, Document):
             problems += _named(document.page.root, names)
-    nodes = list(_nodes(cast.scenario.node))
+    nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application says and hears is known only when it runs
@@ -54,17 +54,9 @@ def check_hearing(cast: Cast) -> list[Problem]:
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
 
 
-def _nodes(root: Node) -> Iterator[Node]:
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        stack += reversed(node.nodes)
-        yield node
-
-
 def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
     """What Commands of PRIMA in a VoiceXML document name and is not there."""
-    for node in _nodes(root):
+    for node in root.walk():
         if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
             for name, value in node.attributes.items():
                 if name in PLACED and name in TABLE_4_2[node.tag].arguments:

@@ -59,10 +59,7 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
         ("unload", "application"): ({doc.id for doc in cast.documents}, "application"),
         ("load", "application"): ({doc.id for doc in cast.documents}, "application"),
     }
-    stack = [scenario.node]
-    while stack:
-        node = stack.pop()
-        stack += reversed(node.nodes)
+    for node in scenario.node.walk():
         for (tag, name), (words, what) in known.items():
             word = node.attributes.get(name)
             if node.tag == tag and word is not None and word not in words:

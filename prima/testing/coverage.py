@@ -99,20 +99,11 @@ def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[Point, bool]]:
     while stack:
         node, parent, inside = stack.pop()
         for kind, what, line, reached in _of(node, parent, marks):
-            last = max(one.place.line for one in _all(node)) if kind == "in" else line
+            last = max(one.place.line for one in node.walk()) if kind == "in" else line
             yield Point(line, kind, what, inside, last), reached
             inside = count if kind == "in" else inside
             count += 1
         stack += [(child, node.tag, inside) for child in reversed(node.nodes)]
-
-
-def _all(node: Node) -> Iterator[Node]:
-    """An element with all that it holds."""
-    stack = [node]
-    while stack:
-        one = stack.pop()
-        yield one
-        stack += one.nodes
 
 
 def _of(node: Node, parent: str, marks: set[Mark]) -> Iterator[tuple[str, str, int, bool]]:
