@@ -170,8 +170,6 @@ class Behavior:
     """The AB's name in the transcript; a loop of a feedback Command has its number."""
     line: Line | None = None
     """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
-    place: Rank = ()
-    """The last parts of its rank while it stands in a line, S2d to S2f."""
     entry: Entry | None = None
     """By which it stands there."""
 
@@ -215,7 +213,3 @@ class Line:
     def below(self, rank: Rank) -> int:
         """Where those begin that stand behind a rank."""
         return bisect_left(self.entries, (rank,))
-
-    def stands_behind(self, rank: Rank, ab: Behavior) -> bool:
-        """Whether an AB waits in this line behind a rank."""
-        return ab.line is self and ab.entry is not None and ab.entry[0] > rank

@@ -40,32 +40,13 @@ class Chronicle:
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        fields["time"] = self.now
-        fields["phase"] = phase
-        fields["actor"] = "robot"
-        fields["app"] = ab.app.name
-        fields["behavior"] = ab.id
-        fields["tree"] = ab.stream.name
-        fields["command"] = ab.type.name if ab.type else "iu"
-        fields["text"] = ab.command.text if ab.command else None
-        fields["unit"] = ab.unit.id if ab.unit else None
-        self.records.append(fields)
+        self.records.append(fields | self._of(ab, phase))
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
-        record: Record = {
-            "time": self.now,
-            "phase": "end",
-            "actor": "robot",
-            "app": ab.app.name,
-            "behavior": ab.id,
-            "tree": ab.stream.name,
-            "command": ab.type.name if ab.type else "iu",
-            "text": ab.command.text if ab.command else None,
-            "unit": ab.unit.id if ab.unit else None,
-            "outcome": outcome,
-            "inbound": inbound or None,
-        }
+        record = self._of(ab, "end")
+        record["outcome"] = outcome
+        record["inbound"] = inbound or None
         if ab.feedback:
             record["goal"] = goal
         if data:
@@ -74,19 +55,9 @@ class Chronicle:
 
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
-        record: Record = {
-            "time": self.now,
-            "phase": "start",
-            "actor": "robot",
-            "app": ab.app.name,
-            "behavior": ab.id,
-            "tree": ab.stream.name,
-            "command": ab.type.name if ab.type else "iu",
-            "text": ab.command.text if ab.command else None,
-            "unit": ab.unit.id if ab.unit else None,
-            "devices": [*in_order(ab.devices)],
-            "rule": rule,
-        }
+        record = self._of(ab, "start")
+        record["devices"] = [*in_order(ab.devices)]
+        record["rule"] = rule
         if ab.feedback:
             record["parent"] = ab.parent
         if reaction is not None:
@@ -96,18 +67,19 @@ class Chronicle:
             record["resumed"], record["data"] = True, ab.since
         self.records.append(record)
 
-    def hold(self, ab: Behavior, rule: str, by: str) -> None:
-        """Record what keeps a waiting AB from starting."""
-        record: Record = {
+    def _of(self, ab: Behavior, phase: str) -> Record:
+        """What all records of an AB have."""
+        return {
             "time": self.now,
-            "phase": "hold",
-            "actor": "mediator",
+            "phase": phase,
+            "actor": "robot",
             "app": ab.app.name,
             "behavior": ab.id,
-            "rule": rule,
-            "by": by,
+            "tree": ab.stream.name,
+            "command": ab.type.name if ab.type else "iu",
+            "text": ab.command.text if ab.command else None,
+            "unit": ab.unit.id if ab.unit else None,
         }
-        self.records.append(record)
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""

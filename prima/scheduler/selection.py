@@ -100,7 +100,7 @@ class Policy:
             *rank_priority(ab),
             *rank_reaction(ab, memory),
             *rank_continuing(ab, now),
-            *(place_in_line(ab) if ab.line is None else ab.place),
+            *place_in_line(ab),
         )
 
     def decided(self, winner: Rank, loser: Rank) -> str:

@@ -72,6 +72,7 @@ class Selector:
         """Start what may start, in the order of S2, until nothing more may."""
         self.started, self.given_up = [], []
         memory = self.memory
+        memory.waiting.settle(now)
         for unit in [ab for ab in memory.running.values() if ab.inner]:
             self._advance(unit, now)
         while memory.waiting.all and self._pass(now):
@@ -105,21 +106,20 @@ class Selector:
         In a line all need the same devices: whoever comes after the first that F2 and K1
         let start has to wait for that one's.
         """
-        memory, waiting = self.memory, self.memory.waiting
-        apart = waiting.fresh(now)
-        if waiting.reactions:
-            apart += waiting.reactions.values()
-        found = {ab: self.policy.rank(ab, memory, now) for ab in apart}
-        for line in waiting.lines.values():
-            let = self._let(line)
-            if let is EVERYBODY:
-                for rank, ab in line.entries[:1] if line.devices else line.entries:
-                    found.setdefault(ab, rank)
-            elif isinstance(let, Application):
-                for ab in waiting.of(let):
-                    if ab.entry is not None:
-                        found.setdefault(ab, ab.entry[0])
-        return sorted(((rank, ab) for ab, rank in found.items()), key=itemgetter(0))
+        waiting = self.memory.waiting
+        found = [entry for line in waiting.lines.values() for entry in self._let_in(line)]
+        found += self._ranked(waiting.apart(), now)
+        found.sort(key=itemgetter(0))
+        return found
+
+    def _let_in(self, line: Line) -> list[Entry]:
+        """Those of a line that may be the next."""
+        let = self._let(line)
+        if isinstance(let, Application):
+            return [ab.entry for ab in let.members.values() if ab.entry and ab.line is line]
+        if let is NOBODY:
+            return []
+        return line.entries[:1] if line.devices else line.entries
 
     def _ranked(self, found: Iterable[Behavior], now: int) -> list[Entry]:
         ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
@@ -127,35 +127,30 @@ class Selector:
 
     def _let(self, line: Line) -> Application | str:
         """Whose ABs of a line F2 and K1 let start: everybody's, one application's, nobody's."""
-        memory = self.memory
+        holder = self.memory.holder
         allowed: Application | str = EVERYBODY
-        if memory.floor and not outranks(line.priority, memory.floor[-1]):
-            allowed = memory.floor[-1].app
+        if holder is not None and not outranks(line.priority, holder):
+            allowed = holder.app
         if line.leaves:
-            for stream in memory.engaged.values():
+            for stream in self.memory.engaged.values():
                 if stream.engages_user():
                     if allowed not in (EVERYBODY, stream.app):
                         return NOBODY
                     allowed = stream.app
         return allowed
 
-    def _behind(self, line: Line, winner: Behavior, rank: Rank, now: int) -> Losers:
+    def _behind(self, line: Line, winner: Behavior, rank: Rank) -> Losers:
         """Those of a line who rank below a winner that is gone from it, and must wait."""
         let: Application | str = NOBODY
         if line.devices.isdisjoint(winner.devices):
             let = self._let(line)
             if let is EVERYBODY:
                 return [], 0
-        waiting, start = self.memory.waiting, line.below(rank)
-        apart = waiting.fresh(now)  # ranked one by one
-        if isinstance(let, Application):
-            apart = list({*apart, *waiting.of(let)})
-        first = line.entries[start : start + LOSERS_NAMED + len(apart)]
-        count = len(line.entries) - start
-        if apart:
-            count -= sum(line.stands_behind(rank, ab) for ab in apart)
-            first = [entry for entry in first if entry[1] not in apart][:LOSERS_NAMED]
-        return first, count
+        entries, start = line.entries, line.below(rank)
+        if not isinstance(let, Application):
+            return entries[start : start + LOSERS_NAMED], len(entries) - start
+        behind = [entry for entry in entries[start:] if entry[1].app is not let]
+        return behind[:LOSERS_NAMED], len(behind)
 
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
@@ -293,7 +288,8 @@ class Selector:
         changed = ab.blocked[0] != rule or "." not in by
         ab.blocked = refusal
         if changed:  # the next loop of the same feedback Command is no news
-            self.chronicle.hold(ab, rule, by)
+            name = ab.app.name
+            self.chronicle.add("hold", "mediator", app=name, behavior=ab.id, rule=rule, by=by)
 
     def _start(self, ab: Behavior, rank: Rank, lower: list[Entry], now: int, many: bool) -> bool:
         """Start an AB and record why; true when others rank otherwise now, or may start.
@@ -306,7 +302,7 @@ class Selector:
             many: whether so many wait that not each of them is looked at.
         """
         memory, policy = self.memory, self.policy
-        holder = memory.floor[-1] if memory.floor else None
+        holder = memory.holder
         composed = self._composing and composes_with_floor(ab, memory)
         by_floor_rule = holder is not None and holder.app is not ab.app and not composed
         others = bool(memory.running)
@@ -314,10 +310,11 @@ class Selector:
         waiting = memory.waiting
         lined = many and ab.reaction is None and not by_floor_rule
         if many and lower:  # what is ranked by the lines alone is left to them
-            lower = [entry for entry in lower if not by_lines(entry[1], now)]
+            lower = [entry for entry in lower if entry[1].line is None]
         if many and not lined:  # or looked for now
-            others_below = self._ranked((one for one in waiting if by_lines(one, now)), now)
-            lower += [entry for entry in others_below if entry[0] > rank]
+            for line in waiting.lines.values():
+                behind = line.entries[line.below(rank) :]
+                lower += [entry for entry in behind if entry[1] is not ab]
             lower.sort(key=itemgetter(0))
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
@@ -335,7 +332,7 @@ class Selector:
         count = len(losers)
         if lined:
             for line in waiting.lines.values():
-                firsts, more = self._behind(line, ab, rank, now)
+                firsts, more = self._behind(line, ab, rank)
                 losers += firsts
                 count += more
             if lower or len(waiting.lines) > 1:
@@ -488,11 +485,6 @@ class Selector:
                 self.chronicle.start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
-
-
-def by_lines(ab: Behavior, now: int) -> bool:
-    """Whether an AB's place in its line says all of its rank (S2d to S2f)."""
-    return ab.reaction is None and ab.freed != now
 
 
 def yields(ab: Behavior, reaction: Behavior) -> bool:

@@ -1,9 +1,9 @@
 """Who waits, kept in order: of ABs that need the same devices only few can be the next.
 
 ABs that need the same devices, have the same priority and leave the user alike are one
-:class:`Line`. In a line the rules tell ABs apart by S2c to S2f alone, so that the first that may
-start is found without a look at the others. Reactions stand in no line: there are few of them,
-and S2b ranks them by what happens elsewhere.
+:class:`Line`. In a line the rules tell ABs apart by S2d to S2f alone, so that the first that may
+start is found without a look at the others. Reactions stand in no line, and neither does what
+S2c puts first for an instant: there are few of them, and they are ranked by what happens elsewhere.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from bisect import bisect_left, insort
 from collections.abc import Iterator
 
-from prima.scheduler.behavior import Application, Behavior, Line, Rank
+from prima.scheduler.behavior import Behavior, Line, Rank
 
 LATER: Rank = (1,)
 """S2c: the parent has not ended in this instant."""
@@ -28,44 +28,53 @@ class Waiting:
         """By devices, priority, and whether they leave the user."""
         self.reactions: dict[str, Behavior] = {}
         self._fresh: dict[str, Behavior] = {}
-        """Those that were freed in the latest instant in which any was (S2c)."""
-        self._freed = -1
-        """That instant."""
+        """Those that were freed in this instant, which S2c puts before others of their kind."""
+        self._now = 0
+        """The instant, as far as anybody has told."""
+
+    def settle(self, now: int) -> None:
+        """It is another instant: who was freed in an earlier one gets in line."""
+        if self._now != now:
+            self._now, fresh = now, self._fresh
+            if fresh:
+                self._fresh = {}
+                for ab in fresh.values():
+                    self._get_in_line(ab)
 
     def add(self, ab: Behavior) -> None:
         """An AB begins to wait."""
         self.all[ab.name] = ab
         if ab.reaction is not None:
             self.reactions[ab.name] = ab
-            return
+        elif ab.freed < self._now:
+            self._get_in_line(ab)
+        else:
+            self.settle(ab.freed)
+            self._fresh[ab.name] = ab
+
+    def _get_in_line(self, ab: Behavior) -> None:
         kind = (ab.devices, ab.priority, ab.leaves)
         line = self.lines.get(kind)
         if line is None:
             line = self.lines[kind] = Line(*kind)
-        ab.line, ab.place = line, place_in_line(ab)
-        ab.entry = ((*rank_priority(ab), *NO_REACTION, *LATER, *ab.place), ab)
+        ab.line = line
+        ab.entry = ((*rank_priority(ab), *NO_REACTION, *LATER, *place_in_line(ab)), ab)
         insort(line.entries, ab.entry)
-        if ab.freed > self._freed:
-            self._freed, self._fresh = ab.freed, {ab.name: ab}
-        elif ab.freed == self._freed and ab.freed >= 0:
-            self._fresh[ab.name] = ab
 
     def remove(self, ab: Behavior) -> None:
         """An AB waits no longer; one that did not wait is none of ours."""
-        name, line = ab.name, ab.line
+        name, line, entry = ab.name, ab.line, ab.entry
         if self.all.pop(name, None) is None:
             return
-        if line is None:
-            del self.reactions[name]
+        if line is None or entry is None:
+            if self._fresh.pop(name, None) is None:
+                del self.reactions[name]
             return
-        if self._fresh:
-            self._fresh.pop(name, None)
         entries = line.entries
-        assert ab.entry is not None
-        del entries[0 if entries[0][1] is ab else bisect_left(entries, ab.entry)]
+        del entries[0 if entries[0] is entry else bisect_left(entries, entry)]
         if not entries:
             del self.lines[line.devices, line.priority, line.leaves]
-        ab.line = None
+        ab.line = ab.entry = None
 
     def moved(self, ab: Behavior) -> None:
         """Something has changed by which an AB is ranked."""
@@ -73,13 +82,9 @@ class Waiting:
             self.remove(ab)
             self.add(ab)
 
-    def of(self, app: Application) -> list[Behavior]:
-        """The waiting ABs of an application."""
-        return [ab for ab in app.members.values() if ab.name in self.all]
-
-    def fresh(self, now: int) -> list[Behavior]:
-        """The ABs that go before others of their line because of S2c, in this instant."""
-        return [*self._fresh.values()] if self._freed == now else []
+    def apart(self) -> list[Behavior]:
+        """The ABs that stand in no line."""
+        return [*self._fresh.values(), *self.reactions.values()]
 
     def __iter__(self) -> Iterator[Behavior]:
         return iter(self.all.values())
