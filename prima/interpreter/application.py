@@ -41,6 +41,7 @@ from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.reactions import DONE, Hop
+from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.messages import (
     Action,
     CloseUnit,
@@ -182,7 +183,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if self.over:
             return []
         watches = self.handling.watches()
-        self.untold = self.untold or bool(watches) or self.document.sensing
+        self.untold = self.untold or bool(watches) or sensors_read(self.document) != NOTHING_READ
         if not watches:
             return []
         raised: list[str] = []

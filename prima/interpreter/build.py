@@ -83,8 +83,6 @@ HANDLED = frozenset(["event", "_event", "_message"])
 """Variables that tell of it."""
 DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|valueOf|\\u")
 """What code has that may know the scope of a form, and put something into it."""
-SENSOR = pattern(r"sensor|application|\bap_|\beval\b|\\u")
-"""What code has that may look at sensors."""
 ONLY_NEXT = frozenset(["next"])
 
 
@@ -253,7 +251,6 @@ class Builder:
             scripted=self.scripted,
             counting=self.counting,
             curious=self.any_has(EVENT),
-            sensing=self.any_has(SENSOR),
             tampering=self.any_has(DIALOG),
         )
 
@@ -723,10 +720,9 @@ class Builder:
     def assign(self, node: Node) -> Assign:
         """An assign; what it names may be a part of a variable."""
         name = node.get("name")
-        if name in HANDLED:
+        if name in HANDLED or "." in name:
             self.words.append(name)
         if "." in name:
-            self.words.append(name)
             scope, _, part = name.partition(".")
             self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
         return Assign(name, self.code(node.get("expr"), node, "expr"), node)

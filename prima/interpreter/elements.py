@@ -380,10 +380,8 @@ class Document:
     """Whether all its code can be evaluated without an engine; None until somebody has looked."""
     curious: bool = False
     """Whether any code may look at the event that is being handled."""
-    sensing: bool = False
-    """Whether any code may look at sensors."""
     sensors: tuple[frozenset[str] | None] | None = None
-    """Which of them; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
+    """Which sensors any code may look at; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
     tampering: bool = False
     """Whether code that an engine evaluates may put variables into the scope of a form."""
     dialog_names: frozenset[str] | None = None

@@ -24,6 +24,10 @@ UNCLEAR = pattern(
 """By what code may look at ``sensor`` without saying so."""
 
 
+NOTHING_READ: frozenset[str] = frozenset()
+"""What :func:`sensors_read` gives for a document that depends on no sensor."""
+
+
 def hides_sensors(document: Document) -> bool:
     """Whether the document may have a variable of its own by a name that conditions look at."""
     return HIDING.search(document.node.source.text) is not None

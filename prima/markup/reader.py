@@ -69,8 +69,6 @@ BOMS = (
     (b"\0<\0?", "utf-16-be"),
 )
 """How files of some encodings begin (XML 1.0, appendix F)."""
-MOST_FILES = b'<?xml version="1.0" encoding="utf-8"?>'
-"""How most files begin that declare their encoding."""
 LATE_DECLARATION = pattern(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
 TEMPLATE = pattern(r"<%|<\?php|<\?=")
 
@@ -89,8 +87,7 @@ def decode(file: str, data: bytes) -> str:
     if len(data) > LIMITS.bytes:
         raise too_large(file, len(data))
     encoding = next((name for bom, name in BOMS if data.startswith(bom)), "")
-    usual = data[: len(MOST_FILES)].lower() == MOST_FILES
-    declared = None if usual else ENCODING.match(data)
+    declared = ENCODING.match(data)
     if not encoding:
         encoding = declared[1].decode().lower() if declared else "utf-8"
         if declared and _codec(encoding).startswith("utf-16"):
