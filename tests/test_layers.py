@@ -65,6 +65,7 @@ INSIDE = {
     ],
     "interpreter": [
         {"vocabulary", "names", "grammar", "evaluation"},
+        {"scripts"},
         {"expressions", "leads", "ecmascript"},
         {"elements", "srgs", "compiling"},
         {"events", "plain"},

@@ -28,6 +28,7 @@ from prima.interpreter.evaluation import (
     whole,
 )
 from prima.interpreter.names import assigned_names, declared_names
+from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
@@ -116,7 +117,7 @@ class Engine:
         self._conditions: dict[tuple[str, int], Any] = {}
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
-        self._scripts: dict[str, Any] = {}
+        self._scripts: dict[str, tuple[Any, Hoisted]] = {}
         helpers = context.eval(HELPERS)
         context.set("__h", helpers)
         self._help = {
@@ -322,26 +323,44 @@ class Engine:
 
     def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
         """Run a script; what it declares at its top level becomes variables of ``scope``."""
-        function = self._scripts.get(code)
-        if function is None:
-            # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
-            # scope, which here is the script's own (VoiceXML 5.3.12).
-            loose = "".join(
-                f"if(typeof {name}==='undefined'&&!({self._has(name)}))$$.{name}=undefined;"
-                for name in sorted(assigned_names(code))
-            )
-            names = sorted(declared_names(code))
-            exports = "".join(f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in names)
+        kept = self._scripts.get(code)
+        if kept is None:
             self._check(check_script, code)
-            inner = f"(function(){{\n{code}\n;{exports}}})()"
-            body = f"(function({self._names},$$){{{self._withs}{{{loose}{inner}}}}})"
-            function = self._scripts[code] = self._call(self._context.eval, (body,))
+            kept = self._scripts[code] = self._script(code)
+        function, script = kept
         try:
             self._call(function, (*scopes, scope), MAX_SCRIPT_SECONDS)
         except ScriptError as error:
             if len(error.places) > 1:  # the outermost function is ours
-                error.line, error.column = error.places[-2]
+                line, column = error.places[-2]
+                error.line, error.column = line, script.column(line, column)
             raise
+
+    def _script(self, code: str) -> tuple[Any, Hoisted]:
+        """The function of a script: of all scopes, and of that whose variables it declares."""
+        script = hoisted(code)
+        try:
+            return self._call(self._context.eval, (self._wrapped(script),)), script
+        except ScriptError:  # it is written in a way that cannot be seen through
+            script = Hoisted(code, others=sorted(declared_names(code)))
+            return self._call(self._context.eval, (self._wrapped(script),)), script
+
+    def _wrapped(self, script: Hoisted) -> str:
+        # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
+        # scope, which here is the script's own (VoiceXML 5.3.12).
+        loose = "".join(
+            f"if(typeof {name}==='undefined'&&!({self._has(name)}))$$.{name}=undefined;"
+            for name in sorted(assigned_names(script.code))
+        )
+        declare = "".join(
+            f"if(!({json.dumps(name)} in $$))$$.{name}=undefined;" for name in script.variables
+        )
+        give = "".join(f"$$.{name}={name}{HIDDEN};" for name in script.functions)
+        export = "".join(
+            f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in script.others
+        )
+        inner = f"(function(){{{give}\n{script.code}\n;{export}}})()"
+        return f"(function({self._names},$$){{{declare}{self._withs}{{{loose}{inner}}}}})"
 
     def _has(self, name: str) -> str:
         """Code that tells whether any scope has a variable."""
@@ -415,7 +434,7 @@ def check_script(context: Any, code: str) -> None:
         ScriptError: with the line and column inside the script.
     """
     _check(context, code, f"return [function () {{\n{code}\n}}]", 1)
-    _check(context, code, f"if (0) {{\n{code}\n}} else {{}}", 1)
+    _check(context, code, f"return (function () {{\n{code}\n}})", 1)
 
 
 def _check(context: Any, code: str, body: str, before: int) -> None:

@@ -170,7 +170,7 @@ def _kept_names(code: str) -> Mapping[str, int]:
 
 
 def _free_names(code: str) -> dict[str, int]:
-    reader = _Reader(code)
+    reader = Reader(code)
     used = reader.used()
     own = reader.declared() | reader.parameters() | GLOBALS
     return {name: start for name, start in used.items() if name not in own}
@@ -178,7 +178,7 @@ def _free_names(code: str) -> dict[str, int]:
 
 def declared_names(code: str) -> set[str]:
     """Names that a script declares at its top level (and perhaps deeper)."""
-    return _Reader(code).declared() if DECLARES.search(code) else set()
+    return Reader(code).declared() if DECLARES.search(code) else set()
 
 
 def assigned_names(code: str) -> set[str]:
@@ -188,7 +188,7 @@ def assigned_names(code: str) -> set[str]:
     """
     if not ASSIGNS.search(code):
         return set()
-    reader = _Reader(code)
+    reader = Reader(code)
     outside, inside = reader.assigned()
     return (outside | inside - reader.declared() - reader.parameters()) - GLOBALS
 
@@ -197,10 +197,11 @@ ASSIGNS = pattern(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
 DECLARES = pattern(r"\b(?:var|let|const|function|class)\b")
 
 
-class _Reader:
+class Reader:
     """Reads names from tokens; where it cannot tell, it takes a name for declared."""
 
     def __init__(self, code: str) -> None:
+        self.code = code
         self.tokens = tokens_of(code)
         self.texts = [token.text for token in self.tokens] + [""]
         self.ends = self._pairs()
@@ -314,13 +315,24 @@ class _Reader:
             names |= self._targets(index)
             index = self.ends.get(index, index) + 1
             while (text := self._text(index)) not in (",", ";", ")", "]", "}", ""):
-                if text in ("var", "let", "const", "of", "in"):
+                if text in ("var", "let", "const", "of", "in") or self._next_statement(index):
                     return names  # what stands there is no declarator, or the loop's own
                 index = self.ends.get(index, index) + 1
             if text != ",":
                 return names
             index += 1
         return names
+
+    def _next_statement(self, index: int) -> bool:
+        """Whether a line begins there that does not go on with the one before."""
+        word = IDENTIFIER.match(self.texts[index]) and self.texts[index] not in ("in", "instanceof")
+        return bool(word) and self._begins_line(index)
+
+    def _begins_line(self, index: int) -> bool:
+        """Whether a line begins there, and the one before may be over."""
+        before = self._text(index - 1)
+        ends = OPERAND.match(before[-1:]) is not None and before not in BEFORE_OPERAND
+        return self.tokens[index].fresh and ends
 
     def parameters(self) -> set[str]:
         """Names of the parameters of functions, arrows, methods and catches."""

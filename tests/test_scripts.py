@@ -1,0 +1,99 @@
+"""Scripts declare variables of the scope that they stand in, which all other code shares."""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.interpreter.evaluation import SCOPES, ScriptError
+from prima.interpreter.expressions import Engine
+from prima.interpreter.scripts import hoisted
+
+
+class Scopes:
+    """An engine with one scope of each kind; scripts stand in the document's."""
+
+    def __init__(self) -> None:
+        self.engine = Engine()
+        self.all = tuple(self.engine.named(name) for name in SCOPES)
+        self.document = self.all[SCOPES.index("document")]
+
+    def run(self, *scripts: str) -> None:
+        for code in scripts:
+            self.engine.script(code, self.document, self.all)
+
+    def value(self, code: str) -> object:
+        return self.engine.value(code, self.all)
+
+
+@pytest.mark.parametrize(
+    ("scripts", "code", "value"),
+    [
+        (["var t = 0; function add(x) { t += x; }", "add(5)", "add(7)"], "t", 12),
+        (["var x;"], "'x' in document && x === undefined", True),
+        (["var x = 1;", "var x;"], "x", 1),
+        (["var A = A || {n: 0}; A.n++", "var A = A || {n: 0}; A.n++"], "A.n", 2),
+        (["function f() { return later; }", "var later = 3;"], "f()", 3),
+        (["function f() { return g(); } function g() { return 1; }", "function g() { return 2; }"], "f()", 2),
+        (["var f = 1; function f() {}"], "f", 1),
+        (["function f() { return 1; } function f() { return 2; }"], "f()", 2),
+        (["function f(n) { return n <= 1 ? 1 : n * f(n - 1); }"], "f(5)", 120),
+        (["for (var i = 0, n = 3; i < n; i++) { var q = i; } for (var k in {z: 1});"], "[i, q, k]", [3, 2, "z"]),
+        (["if (true) { function f() { return 8; } var y = 1; }"], "[f(), y]", [8, 1]),
+        (["var [p, r] = [1, 2]; let l = 5; const c = 6; class K {}"], "[p, r, l, c, typeof K]", [1, 2, 5, 6, "function"]),
+        (["for (var [a, b] of [[1, 2]]);"], "[a, b]", [1, 2]),
+        (["var x\n(function () { x = 9; })()"], "x", 9),
+        (["var x\n[1].forEach(function (n) { x = n; })"], "x", 1),
+        (["var a = 1\nb = 2, c = 3"], "[a, b, c]", [1, 2, 3]),
+        (["'use strict'; var x = 4; function f() { return x; }"], "f()", 4),
+        (["async function f() {} function* g() { yield 1; }"], "[typeof f, g().next().value]", ["function", 1]),
+        (["var o = {m() { var inner = 1; return inner; }, f: function g() { var inner; }}"], "[o.m(), typeof inner, typeof g]", [1, "undefined", "undefined"]),
+        (["var f = function (x) { var y = x; return y; }, g = x => { var z = x; return z; }"], "[f(1), g(2), typeof y, typeof z]", [1, 2, "undefined", "undefined"]),
+        (["var s = 'var no = 1', r = /var no/, t = `var no`; // var no"], "typeof no", "undefined"),
+        (["(function named() { var x = 1; })()"], "[typeof named, typeof x]", ["undefined", "undefined"]),
+        (["class K { m() { var x = 1; return x; } }"], "[new K().m(), typeof x]", [1, "undefined"]),
+    ],
+)  # fmt: skip
+def test_what_a_script_declares_is_a_variable_of_its_scope(
+    scripts: list[str], code: str, value: object
+) -> None:
+    scopes = Scopes()
+    scopes.run(*scripts)
+    assert scopes.value(code) == value
+
+
+def test_functions_see_what_becomes_of_their_scripts_variables() -> None:
+    scopes = Scopes()
+    scopes.run("var lang = 'en'; function greet() { return lang; }")
+    scopes.engine.assign_declared("lang", "'ja'", scopes.all)
+    assert scopes.value("greet()") == "ja"
+    scopes.engine.unset(scopes.document, "lang")
+    assert scopes.value("greet()") is None
+
+
+def test_what_a_script_declares_hides_what_is_further_out() -> None:
+    scopes = Scopes()
+    application = scopes.all[SCOPES.index("application")]
+    scopes.engine.set(application, "n", 1)
+    scopes.run("var n = 2;")
+    assert scopes.value("[n, application.n]") == [2, 1]
+    scopes.run("function f() { var m = 3; return m; }")
+    scopes.engine.set(application, "m", 4)
+    scopes.run("f();")
+    assert scopes.value("'m' in document") is False
+
+
+def test_what_was_declared_before_an_error_is_there() -> None:
+    scopes = Scopes()
+    with pytest.raises(ScriptError) as caught:
+        scopes.run("var a = 1; function f() { return 3; }\nfunction g() {}   nope();")
+    assert (caught.value.line, caught.value.column) == (2, 19)
+    assert scopes.value("[a, f()]") == [1, 3]
+
+
+def test_a_script_keeps_its_lines() -> None:
+    code = "var a = 1, b\n(f)\nfunction f(x) { var c }\n  async function g() {}\nfunction* h() {}"
+    script = hoisted(code)
+    assert script.code == (
+        "    a = 1, b;\n(f)\nfunction f$$(x) { var c }\n  async function g$$() {}\nfunction* h$$() {}"
+    )
+    assert (script.variables, script.functions) == (["a", "b", "f", "g", "h"], ["f", "g", "h"])
