@@ -393,7 +393,7 @@ def told_failure(failure: str) -> str:
     event = failure.split(": ")[1]
     handling = ""
     if ":" not in event and not event.startswith("error."):
-        handling = f'. Nothing handles it: write <on event="{event}">.'
+        handling = f'. Nothing handles it: write <on event="{event}">, in VoiceXML <catch>.'
     return f"{failure.rstrip(': ')}{handling}"
 
 

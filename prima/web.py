@@ -10,10 +10,10 @@ from urllib.error import HTTPError, URLError
 from urllib.parse import urlencode, urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, Request, build_opener
 
+from prima.interpreter.ecmascript import inward, stringify
 from prima.markup.limits import LIMITS
-from prima.messages import Data, Fetched
+from prima.messages import Data, Fetched, Json
 from prima.sim.services import Web, answer, host_of, not_allowed
-from prima.values import shown
 
 REAL_SECONDS = 10
 """How long a host may take, in real seconds."""
@@ -82,12 +82,19 @@ def _refuse(message: str) -> NoReturn:
 
 
 def _request(uri: str, method: str, values: Data) -> Request:
-    encoded = urlencode({name: shown(value) for name, value in values.items()})
+    encoded = urlencode({name: _text(value) for name, value in values.items()})
     if method == "post":
         return Request(uri, encoded.encode(), {"User-Agent": "PRIMA"}, method="POST")
     mark = "&" if "?" in uri else "?"
     whole = f"{uri}{mark}{encoded}" if encoded else uri
     return Request(whole, headers={"User-Agent": "PRIMA"})
+
+
+def _text(value: Json) -> str:
+    """A value as ECMAScript's text of it; data as JSON."""
+    if isinstance(value, str):
+        return value
+    return "undefined" if value is None else stringify(inward(value))
 
 
 def _body(opener: OpenerDirector, request: Request) -> bytes:

@@ -65,8 +65,8 @@ INSIDE = {
     ],
     "interpreter": [
         {"vocabulary", "names", "grammar", "evaluation"},
-        {"scripts"},
-        {"expressions", "leads", "ecmascript"},
+        {"scripts", "ecmascript"},
+        {"expressions", "leads"},
         {"elements", "srgs", "compiling"},
         {"events", "plain"},
         {"surroundings"},

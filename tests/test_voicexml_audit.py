@@ -447,3 +447,161 @@ def test_a_choice_with_two_targets_is_badfetch() -> None:  # 2.2.2
         '<choice next="#a" event="b">x</choice></menu>'
     )
     assert call.logs() == ["refused"]
+
+
+# 3.1.4: grammars of one precedence ----------------------------------------------------------
+
+THIS, OTHER = grammar("go", "out='this'"), grammar("go", "out='other'")
+LEAVES = f'<link event="left">{GO}</link>'
+BY_LINK = '<catch event="left"><log>link</log><exit/></catch>'
+
+
+@pytest.mark.parametrize(
+    ("document", "first"),
+    [
+        (f'<form>{LEAVES}{THIS}<field name="f"><prompt>Q?</prompt>{YES}</field></form>', "link"),
+        (f'<form><field name="f"><prompt>Q?</prompt>{LEAVES}{THIS}</field></form>', "link"),
+        (
+            f'<form><field name="f"><prompt>Q?</prompt>{THIS}{LEAVES}<filled><log expr="f"/></filled></field></form>',
+            "this",
+        ),
+        (
+            f'<form><field name="f"><prompt>Q?</prompt><option value="option">go</option>{THIS}<filled><log expr="f"/></filled></field></form>',
+            "option",
+        ),
+        (
+            f'<form><field name="f"><prompt>Q?</prompt>{YES}</field></form>'
+            f'<form scope="document">{grammar("go", "out.g=1")}<field name="g">{YES}<filled><log>form</log><exit/></filled></field></form>{LEAVES}',
+            "form",
+        ),
+        (
+            f'<form><field name="f"><prompt>Q?</prompt>{YES}</field></form>{LEAVES}'
+            f'<form scope="document">{grammar("go", "out.g=1")}<field name="g">{YES}</field></form>',
+            "link",
+        ),
+    ],
+)  # fmt: skip
+def test_of_grammars_of_one_precedence_the_first_in_the_document_wins(
+    document: str, first: str
+) -> None:
+    assert run(BY_LINK + document, "go").logs()[:1] == [first]
+
+
+def test_further_results_come_from_all_grammars_of_a_document() -> None:  # 3.1.4, 5.1.5
+    forms = "".join(
+        f'<form scope="document">{grammar("go", f"out.{name}=1")}<field name="{name}">{YES}<filled>'
+        f'<log expr="application.lastresult$.length"/><exit/></filled></field></form>'
+        for name in "gh"
+    )
+    asks = f'<form><field name="f"><prompt>Q?</prompt>{YES}</field></form>'
+    assert run(f'<property name="maxnbest" value="3"/>{asks}{forms}', "go").logs() == ["2"]
+
+
+# 2.3.4 and 6.4: what goes into a subdialog and comes out of it --------------------------------
+
+GIVES = """<form id="s"><var name="n" expr="null"/><var name="d" expr="new Date(0)"/>
+<var name="o" expr="{c: undefined, x: NaN, f: /a/}"/><var name="u"/>
+<block><return namelist="n d o u"/></block></form>"""
+
+
+@pytest.mark.parametrize(
+    "cond",
+    [
+        "s.n === null",
+        "s.d.getTime() === 0",
+        "'c' in s.o &amp;&amp; s.o.c === undefined",
+        "isNaN(s.o.x)",
+        "s.o.f.test('a')",
+        "'u' in s &amp;&amp; s.u === undefined",
+    ],
+)
+def test_what_a_subdialog_gives_back_is_what_it_was(cond: str) -> None:
+    text = f'<form><subdialog name="s" src="#s"/><block>{holds(cond)}</block></form>{GIVES}'
+    assert run(text).logs() == ["pass"]
+
+
+@pytest.mark.parametrize(
+    ("given", "cond"),
+    [
+        ("null", "p === null"),
+        ("undefined", "p === undefined"),
+        ("new Date(0)", "p.getTime() === 0"),
+        ("[1, undefined, null]", "p[1] === undefined &amp;&amp; p[2] === null"),
+        ("function () { return 3; }", "p() === 3"),
+        ("(function () { var o = {}; o.o = o; return o; })()", "p.o === p"),
+    ],
+)
+def test_a_parameter_is_what_it_was(given: str, cond: str) -> None:
+    text = f"""<form><subdialog name="s" src="#s"><param name="p" expr="{given}"/></subdialog></form>
+        <form id="s"><var name="p"/><block>{holds(cond)}</block></form>"""
+    assert run(text).logs() == ["pass"]
+
+
+def test_a_subdialog_changes_nothing_of_its_caller() -> None:
+    text = f"""<form><var name="o" expr="{{n: [1]}}"/><subdialog name="s" src="#s">
+        <param name="p" expr="o"/></subdialog><block>{holds("o.n[0] == 1 &amp;&amp; s.p.n[0] == 2")}
+        </block></form><form id="s"><var name="p"/><block><assign name="p.n" expr="[2]"/>
+        <return namelist="p"/></block></form>"""
+    assert run(text).logs() == ["pass"]
+
+
+def test_a_fetched_document_can_be_given_to_a_subdialog() -> None:  # 2.1, 5
+    text = f"""<form><data name="d" src="d.xml"/><subdialog name="s" src="#s">
+        <param name="p" expr="d"/></subdialog></form><form id="s"><var name="p"/>
+        <block>{holds("p.documentElement.nodeName == 'r'")}</block></form>"""
+    assert run(text, **{"d.xml": "<r/>"}).logs() == ["pass"]
+
+
+# Odds and ends ---------------------------------------------------------------------------------
+
+
+def test_an_element_of_an_array_can_be_assigned() -> None:  # 5.3.2
+    text = f"""<form><var name="o" expr="{{a: [1, {{b: 2}}]}}"/><block><assign name="o.a[1].b" expr="3"/>
+        <assign name="dialog.o.a[0]" expr="4"/><assign name="o['c']" expr="5"/>
+        {holds("o.a[0] == 4 &amp;&amp; o.a[1].b == 3 &amp;&amp; o.c == 5")}</block></form>"""
+    assert run(text).logs() == ["pass"]
+
+
+@pytest.mark.parametrize("name", ["x[1]", "o[f()]", "o[1", "1", "o, p", "o[1], p[2]"])
+def test_what_is_no_variable_is_not_assigned(name: str) -> None:
+    refused = "<catch event='error.semantic'><log>refused</log><exit/></catch>"
+    text = f"""{refused}<form><var name="o" expr="[]"/><block><assign name="{name}" expr="1"/>
+        </block></form>"""
+    assert run(text).logs() == ["refused"]
+
+
+def test_a_field_may_be_called_as_what_all_objects_have() -> None:  # 2.3.1
+    text = f"""<form><field name="constructor"><prompt>Q?</prompt>{YES}<filled>{PASS}</filled></field>
+        </form>"""
+    assert run(text, "yes").logs() == ["pass"]
+
+
+def test_what_is_undefined_in_an_array_stays_so() -> None:  # 2.1, 6
+    text = """<form><block><foreach item="i" array="[null, undefined, 1]">
+        <log expr="typeof i"/></foreach></block></form>"""
+    assert run(text).logs() == ["object", "undefined", "number"]
+
+
+def test_keys_are_enumerated_one_by_one() -> None:  # 2.2.4
+    text = """<menu><prompt><enumerate><value expr="_prompt"/> is <value expr="_dtmf"/>.</enumerate>
+        </prompt><choice dtmf="42" next="#a">news</choice></menu><form id="a"/>"""
+    call = Call(text)
+    call.play()
+    assert call.said()[:1] == ["news is 4 2."]
+
+
+def test_the_counters_of_a_menu_are_not_cleared() -> None:  # 5.2.2
+    text = """<menu><prompt>Q?</prompt><choice next="#x">go</choice><nomatch count="1"><log>one</log>
+        <clear/></nomatch><nomatch count="2"><log>two</log><exit/></nomatch></menu><form id="x"/>"""
+    assert run(text, "no", "no").logs() == ["one", "two"]
+
+
+def test_the_timeout_of_a_prompt_that_was_played_before_is_over() -> None:  # 4.1.7
+    text = f"""<form><transfer name="t" dest="tel:+1" type="bridge"><prompt timeout="2s">One moment.
+        </prompt></transfer><field name="f">{YES}</field></form>"""
+    call = Call(text)
+    call.play()
+    questions = [
+        one.command for one in call.orders if one.command and "timeout" in one.command.args
+    ]
+    assert [one.args["timeout"] for one in questions][-1:] == [5000]

@@ -713,9 +713,9 @@ case(
     "a recording's shadow variables tell of it",
     "2.3.6",
     """<form><record name="r"/><block><log expr="[typeof r$.duration, typeof r$.size,
-    r$.maxtime, typeof r$.termchar].join()"/></block></form>""",
+    r$.maxtime, r$.termchar === null].join()"/></block></form>""",
     "anything",
-    logs=["number,number,false,undefined"],
+    logs=["number,number,false,true"],
 )
 case(
     "silence at a recording is noinput",

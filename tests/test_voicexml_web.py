@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
+from urllib.parse import unquote_plus
 
 import pytest
 
@@ -292,6 +293,15 @@ def test_a_host_that_the_run_allows_is_asked(place: Path, host: str) -> None:
     assert run(place, submit(host, "/o"), "", [host]) == ["You asked /o?a=x+y&b=2."]
     assert run(place, submit(host, "/o?c=1"), "", ["127.0.0.1"]) == ["You asked /o?c=1&a=x+y&b=2."]
     assert run(place, submit(host, "/o", "post"), "", [host]) == ["You sent a=x+y&b=2."]
+
+
+def test_a_host_is_told_values_in_the_words_of_ecmascript(place: Path, host: str) -> None:
+    text = f"""<form><var name="a" expr="0.1 + 0.2"/><var name="b" expr="true"/>
+        <var name="c" expr="{{d: [1, 'e']}}"/><block>
+        <submit next="http://{host}/o" namelist="a b c"/></block></form>"""
+    (said,) = run(place, text, "", [host])
+    told = unquote_plus(said.partition("?")[2])
+    assert told == 'a=0.30000000000000004&b=true&c={"d":[1,"e"]}.'
 
 
 def test_no_host_is_asked_that_the_run_does_not_allow(place: Path, host: str) -> None:

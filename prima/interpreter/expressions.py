@@ -17,6 +17,7 @@ from typing import Any
 
 import _quickjs as quickjs
 
+from prima.interpreter.ecmascript import UNDEFINED
 from prima.interpreter.evaluation import (
     MAX_SCRIPT_SECONDS,
     PULSE,
@@ -27,7 +28,7 @@ from prima.interpreter.evaluation import (
     plain_number,
     whole,
 )
-from prima.interpreter.names import assigned_names, declared_names
+from prima.interpreter.names import IDENTIFIER, WORD, assigned_names, declared_names
 from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
@@ -38,7 +39,17 @@ TIME_LIMIT = 0.5
 HELPERS = r"""
 (function () {
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
-const number = Number, own = Object.hasOwn, freeze = Object.freeze;
+const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
+const prototype = Object.getPrototypeOf, plain = Object.prototype, Known = Map;
+// Data as a copy, also data that holds itself; what is no plain data stays what it is.
+const copy = (v, done) => {
+  if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
+  if (done.has(v)) return done.get(v);
+  const made = isArray(v) ? [] : {};
+  done.set(v, made);
+  for (const key of keys(v)) made[key] = copy(v[key], done);
+  return made;
+};
 const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
@@ -51,8 +62,10 @@ return {
   clock: function (o, t) { o.session = { time: t }; },
   set: function (o, k, v) { o[k] = v; },
   unset: function (o, k) { o[k] = undefined; },
-  has: function (o, k) { return k in o; },
-  defined: function (o, k) { return o[k] !== undefined; },
+  has: function (o, k) { return own(o, k); },
+  defined: function (o, k) { return own(o, k) && o[k] !== undefined; },
+  hand: function (o, k, from) { o[k] = from[k]; },
+  part: function (o, k) { o[k] = copy(o[k], new Known()); },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? stringify(v) : text(v); },
   parse: function (v) { return parse(v, unmarked); },
@@ -275,7 +288,7 @@ class Engine:
         return self.out(self._call(self._help["item"], (scope, name)))
 
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
-        """Evaluate an expression that gives an array; its elements as the engine's values.
+        """Evaluate an expression that gives an array; its elements, to be :meth:`put`.
 
         Raises:
             ScriptError: it is no array.
@@ -286,7 +299,11 @@ class Engine:
             raise ScriptError(f"{code} is not an array")
         if length > most:
             raise ScriptError(f"it has more than {most:,} elements")
-        return [self._call(self._help["item"], (array, index)) for index in range(int(length))]
+        found = [self._call(self._help["item"], (array, index)) for index in range(int(length))]
+        for index, value in enumerate(found):
+            if value is None and not self._call(self._help["defined"], (array, index)):
+                found[index] = UNDEFINED
+        return found
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Evaluate an expression and give its value to a variable of a scope.
@@ -317,9 +334,21 @@ class Engine:
             function = self._assigning[key] = self._compile(_assignment(name, code, names), names)
         self._call(function, scopes, MAX_SCRIPT_SECONDS)
 
+    def assign_copy(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
+        """As :meth:`assign`, but what is data is copied: others may change theirs."""
+        self.assign(scope, name, code, scopes)
+        self._call(self._help["part"], (scope, name))
+
+    def hand(self, scope: Scope, name: str, source: Scope) -> None:
+        """Give a variable the value that one of the same name has in another scope."""
+        self._call(self._help["hand"], (scope, name, source))
+
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the engine's own values."""
-        self._call(self._help["set"], (scope, name, value))
+        if value is UNDEFINED:
+            self.unset(scope, name)
+        else:
+            self._call(self._help["set"], (scope, name, value))
 
     def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
         """Run a script; what it declares at its top level becomes variables of ``scope``."""
@@ -389,15 +418,22 @@ def _head(scopes: tuple[str, ...]) -> tuple[str, str]:
     return ",".join(names), "".join(f"with({name})" for name in names)
 
 
+PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*')\])*""")
+"""A variable, or a part of what it holds."""
+
+
 def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
     """The body of an assignment that fails where the variable is not declared."""
-    head, dot, rest = name.partition(".")
+    scope, dot, rest = name.partition(".")
     where = [_short(scope) for scope in reversed(scopes)]
-    if dot and head in scopes:
-        where, head = [_short(head)], rest.partition(".")[0]
-    declared = " || ".join(f"{json.dumps(head)} in {scope}" for scope in where)
-    missing = json.dumps(f'the variable "{name}" is not declared')
-    target = f"{where[0]}.{rest}" if len(where) == 1 else name
+    target = name
+    if dot and scope in scopes:
+        where, target = [_short(scope)], f"{_short(scope)}.{rest}"
+    head = IDENTIFIER.match(rest if len(where) == 1 and dot else name)
+    if head is None or PLACE.fullmatch(name) is None:
+        raise ScriptError(f'"{name[:80]}" names no variable')
+    declared = " || ".join(f"{json.dumps(head[0])} in {scope}" for scope in where)
+    missing = json.dumps(f'the variable "{head[0]}" is not declared')
     return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
 
 

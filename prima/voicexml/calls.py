@@ -97,7 +97,7 @@ class Calls:
 
     def _announce(self, context: Context, call: Call) -> Flow:
         """Play what is queued; what a grammar takes meanwhile means that no call is made."""
-        queue, self.owner.queue = self.owner.queue, []
+        queue = self.owner.unqueue()
         if not queue:
             return
         if call.listens and queue[-1].type == "speak":

@@ -143,6 +143,15 @@ class Content(Speaker):
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
+    def copy(
+        self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
+    ) -> None:
+        """As :meth:`put`, for whoever may not change the original."""
+        try:
+            self.engine.assign_copy(scope, name, node.get(attribute), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, attribute) from None
+
     def assign(self, node: Node, context: Context, local: Scope) -> None:
         """Give a declared variable a value (5.3.2)."""
         try:
@@ -178,6 +187,8 @@ class Content(Speaker):
         if item.get("name"):
             self.engine.unset(context.dialog, item.get("name"))
         context.prompts.pop(item.index, None)
+        if item.tag == "menu":
+            return  # menu-level counters are not reset (5.2.2)
         context.counters = {
             key: count for key, count in context.counters.items() if key[0] != item.index
         }
@@ -246,7 +257,12 @@ class Content(Speaker):
         if not context.depth:
             message = f"{source(node)}: there is no subdialog to return from"
             raise Thrown("error.semantic", message, source(node))
-        values = self.named(node, context, local)
+        values = self.engine.scope()
+        for name in node.get("namelist").split():
+            try:
+                self.engine.assign_copy(values, name, name, context.scopes(local))
+            except ScriptError as error:
+                raise self.failure(error, node, "namelist") from None
         event = self.word(node, "event", context, local)
         raise GoBack(values, event, self.word(node, "message", context, local))
 

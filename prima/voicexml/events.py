@@ -154,7 +154,7 @@ class Events:
         elif takes("cancel", thrown.name):
             context.quiet = True
         elif isinstance(thrown, Unasked):
-            raise GoBack({}, thrown.name, thrown.message)
+            raise GoBack(None, thrown.name, thrown.message)
         elif takes("exit", thrown.name) or takes("connection.disconnect", thrown.name):
             raise GoOut(thrown.name)
         else:

@@ -117,7 +117,7 @@ def _asked(
     audio = _setting(owner, node, "fetchaudio")
     if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
-        queued, owner.queue = owner.queue, []
+        queued = owner.unqueue()
         yield from owner.owner.pass_time(queued, [said])
     return (yield from owner.owner.fetched())
 

@@ -100,31 +100,31 @@ class Inputs:
     # Which grammars listen --------------------------------------------------------------
 
     def active(self, context: Context) -> Iterator[Active]:
-        """All grammars that listen now, in the order of their precedence (3.1.4)."""
+        """All grammars that listen now, by their precedence, then in document order (3.1.4)."""
         item, form, page = context.item, context.form, context.page
         if item is not None:
-            yield from self._of(context, item, page)
-            yield from self._links(context, item, page)
+            yield from self._of(context, item, page, item)
             if item.get("modal", str(item.tag in ("record", "transfer")).lower()) == "true":
                 return
         if form is not None and form is not item:
-            yield from self._of(context, form, page)
-            yield from self._links(context, form, page)
+            yield from self._of(context, form, page, form)
         for wider in (page, context.root):
             if wider is not None:
-                yield from self._links(context, wider.root, wider)
-                for dialog in wider.dialogs.values():
-                    if dialog is not form:
-                        yield from self._shared(context, dialog, wider)
+                for node in wider.root.all("link", "form", "menu"):
+                    if node.tag == "link":
+                        yield from self._link(context, node, wider, wider.root)
+                    elif node is not form:
+                        yield from self._shared(context, node, wider)
         yield from self._universals(context)
 
     def _shared(self, context: Context, dialog: Node, page: Page) -> Iterator[Active]:
         """The grammars of another dialog that listen in the whole document (3.1.3)."""
         if dialog.get("scope") == "document":
-            yield from self._of(context, dialog, page)
+            yield from self._of(context, dialog, page, page.root)
+            return
         for grammar in dialog.all("grammar"):
-            if grammar.get("scope") == "document" and dialog.get("scope") != "document":
-                yield self._grammar(context, grammar, dialog, page, dialog)
+            if grammar.get("scope") == "document":
+                yield self._grammar(context, grammar, dialog, page, page.root)
 
     def _universals(self, context: Context) -> Iterator[Active]:
         names = self.owner.setting(context, "universals").split()
@@ -134,28 +134,30 @@ class Inputs:
                 link = Node("link", root.source, root.index, {"event": event}, key="link")
                 yield Active(phrase(name, name, False), link, context.page, root)
 
-    def _links(self, context: Context, node: Node, page: Page) -> Iterator[Active]:
-        for link in node.all("link"):
-            self.owner.content.demand(link)
-            for grammar in link.all("grammar"):
-                yield self._grammar(context, grammar, link, page, node)
-            if link.get("dtmf"):
-                yield Active(keys(link.get("dtmf"), link.get("dtmf")), link, page, node)
+    def _link(self, context: Context, link: Node, page: Page, level: Node) -> Iterator[Active]:
+        self.owner.content.demand(link)
+        for grammar in link.all("grammar"):
+            yield self._grammar(context, grammar, link, page, level)
+        if link.get("dtmf"):
+            yield Active(keys(link.get("dtmf"), link.get("dtmf")), link, page, level)
 
-    def _of(self, context: Context, node: Node, page: Page) -> Iterator[Active]:
-        """The grammars that stand in an item or dialog, its options and choices."""
-        for grammar in node.all("grammar"):
-            if node is context.form or grammar.get("scope") != "dialog":
-                yield self._grammar(context, grammar, node, page, node)
+    def _of(self, context: Context, node: Node, page: Page, level: Node) -> Iterator[Active]:
+        """The grammars that stand in an item or dialog: its own, of its options, choices, links."""
+        numbers = numbered(node)
+        for one in node.nodes:
+            match one.tag:
+                case "grammar" if node is context.form or one.get("scope") != "dialog":
+                    yield self._grammar(context, one, node, page, level)
+                case "option" | "choice" if node.tag in ("field", "menu"):
+                    dtmf = numbers[one.index]
+                    yield from self._option(context, one, node, page, level, dtmf)
+                case "link" if level is node:  # those of another dialog listen in it alone
+                    yield from self._link(context, one, page, level)
         if node.tag == "field" and node.get("type"):
-            yield Active(self._built_in(node, page), node, page, node)
-        if node.tag in ("field", "menu"):
-            numbers = numbered(node)
-            for option in node.all("option", "choice"):
-                yield from self._option(context, option, node, page, numbers[option.index])
+            yield Active(self._built_in(node, page), node, page, level)
 
     def _option(
-        self, context: Context, option: Node, node: Node, page: Page, dtmf: str
+        self, context: Context, option: Node, node: Node, page: Page, level: Node, dtmf: str
     ) -> Iterator[Active]:
         self.owner.content.demand(option)
         target = option if option.tag == "choice" else node
@@ -164,11 +166,11 @@ class Inputs:
         approximate = (option.get("accept") or node.get("accept")) == "approximate"
         grammars = option.all("grammar")
         for grammar in grammars:
-            yield self._grammar(context, grammar, target, page, node)
+            yield self._grammar(context, grammar, target, page, level)
         if words and not grammars:
-            yield Active(phrase(words, value, approximate), target, page, node)
+            yield Active(phrase(words, value, approximate), target, page, level)
         if dtmf:
-            yield Active(keys(dtmf, value), target, page, node)
+            yield Active(keys(dtmf, value), target, page, level)
 
     # Loading ---------------------------------------------------------------------------
 

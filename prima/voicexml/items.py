@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.content import source
 from prima.markup.tree import Node
@@ -13,7 +13,16 @@ from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
 from prima.voicexml.recorder import Recorder
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import MAX_DEPTH, Context, Flow, GoBack, GoDialog, Heard, Thrown
+from prima.voicexml.state import (
+    MAX_DEPTH,
+    Context,
+    Flow,
+    GoBack,
+    GoDialog,
+    Heard,
+    Params,
+    Thrown,
+)
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -91,9 +100,9 @@ class Items:
         self.fill(context, item, value, shadow(heard))
 
     def fill(
-        self, context: Context, item: Node, value: Json, shadow: dict[str, Json] | None = None
+        self, context: Context, item: Node, value: Any, shadow: dict[str, Json] | None = None
     ) -> None:
-        """Give an item's variable its value, and its shadow variables."""
+        """Give an item's variable its value, plain data or the engine's, and its shadow variables."""
         context.visited.add(item.index)
         name = item.get("name")
         if name:
@@ -154,21 +163,21 @@ class Items:
             self.owner.context = context
         if result.event:
             raise Thrown(result.event, result.message, source(item))
-        values = {name: value for name, value in result.values.items() if value is not None}
-        self.fill(context, item, values)
+        self.fill(context, item, result.values)
         yield from self.run_filled(context, [item])
 
-    def _params(self, context: Context, item: Node) -> dict[str, Json]:
+    def _params(self, context: Context, item: Node) -> Params:
         """What a subdialog is given, by value (6.4)."""
-        local = self.owner.local()
+        local, given = self.owner.local(), Params(self.engine.scope())
         for param in item.all("param"):
             self.owner.content.demand(param)
-        return {
-            param.get("name"): self.owner.content.value(param, "expr", context, local)
-            if "expr" in param.attributes
-            else param.get("value")
-            for param in item.all("param")
-        }
+            name = param.get("name")
+            given.names[name] = None
+            if "expr" in param.attributes:
+                self.owner.content.copy(given.values, name, param, "expr", context, local)
+            else:
+                self.engine.set(given.values, name, param.get("value"))
+        return given
 
 
 def _dialog_of(page: Page, owner: Node) -> Node | None:

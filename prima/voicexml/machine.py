@@ -26,6 +26,7 @@ from prima.voicexml.state import (
     GoDialog,
     GoItem,
     Heard,
+    Params,
     Resume,
     Thrown,
     Unasked,
@@ -110,6 +111,11 @@ class Machine:
             self.owner.count_output(len(text), self.document.node)
             self.queue.append(Command("speak", text=text, lang=lang, source=place))
 
+    def unqueue(self) -> list[Command]:
+        """What is queued, to be said in a wait that no question is part of."""
+        queue, self.queue, self.asking = self.queue, [], None
+        return queue
+
     def items(self, context: Context) -> list[Node]:
         """The form items of the active dialog."""
         form = context.form
@@ -150,7 +156,7 @@ class Machine:
             return
         for choice in choices:
             self.engine.set(local, "_prompt", words_of(choice))
-            self.engine.set(local, "_dtmf", keys[choice.index])
+            self.engine.set(local, "_dtmf", " ".join("".join(keys[choice.index].split())))
             self.content.read_all(node, context, local, speech)
             speech.parts.append(" " if choice is not choices[-1] else "")
 
@@ -258,24 +264,19 @@ class Machine:
     def _initialise(self, context: Context, form: Node) -> Flow:
         """Make a form's variables and those of its items, in document order (2.1.6.1)."""
         context.dialog = self.engine.named("dialog")
-        params, context.params = context.params or {}, None
+        params, context.params = context.params or Params(self.engine.scope()), None
         for node in form.nodes if form.tag == "form" else ():
-            if node.tag == "var" and node.get("name") in params:
-                self._set(context, node.get("name"), params.pop(node.get("name")))
+            name = node.get("name")
+            if node.tag == "var" and name in params.names:
+                del params.names[name]
+                self.engine.hand(context.dialog, name, params.values)
             elif node.tag in ("var", "script", "data"):
                 yield from self.documents.declare(node, context.dialog, context)
             elif node.tag in ITEMS:
                 self._declare_item(context, node)
-        for name in params:
+        for name in params.names:
             message = f'{source(form)}: no variable of the form is the parameter "{name}"'
             raise Unasked("error.semantic", message, source(form))
-
-    def _set(self, context: Context, name: str, value: Json) -> None:
-        """Give a variable of the dialog a value, which may be undefined."""
-        if value is None:
-            self.engine.unset(context.dialog, name)
-        else:
-            self.engine.set(context.dialog, name, value)
 
     def _declare_item(self, context: Context, item: Node) -> None:
         """Give an item's variable its first value; one without a name is but visited or not."""

@@ -154,7 +154,10 @@ class Speaker:
             return node.get(name)
         if dynamic not in node.attributes:
             return ""
-        return shown(self.value(node, dynamic, context, local))
+        try:
+            return self.engine.text(node.get(dynamic), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, dynamic) from None
 
     def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
         """The elements of a foreach's array, as the engine's values."""

@@ -73,8 +73,7 @@ class Recorder:
         if not said:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
-        if key and item.get("dtmfterm") != "false":
-            more["termchar"] = key
+        more["termchar"] = key if key and item.get("dtmfterm") != "false" else None
         if not key and heard.recognised:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}
         self._fill(context, item, said, data, more)
@@ -84,7 +83,7 @@ class Recorder:
         """Keep what was recorded until the user hung up."""
         said = str(event.data.get("recorded", ""))
         if said:
-            self._fill(context, item, said, event.data, {"maxtime": False})
+            self._fill(context, item, said, event.data, {"maxtime": False, "termchar": None})
 
     def _fill(
         self, context: Context, item: Node, said: str, data: Data, more: dict[str, Json]

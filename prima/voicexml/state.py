@@ -52,6 +52,14 @@ class Heard:
             self.mark, self.marktime = data["markname"], data.get("marktime")
 
 
+@dataclass(slots=True)
+class Params:
+    """What a subdialog is given and has not declared yet (2.3.4)."""
+
+    values: Scope
+    names: dict[str, None] = field(default_factory=dict)
+
+
 @dataclass(slots=True, eq=False)
 class Context:
     """One execution context: the application's own, or a subdialog's (2.3.4)."""
@@ -68,7 +76,7 @@ class Context:
     prompts: dict[int, int] = field(default_factory=dict)
     visited: set[int] = field(default_factory=set)
     """Items without a name that have been visited: their guards are set."""
-    params: dict[str, Json] | None = None
+    params: Params | None = None
     depth: int = 0
     quiet: bool = False
     """Whether the next item is visited without its prompts (5.3.6)."""
@@ -140,8 +148,9 @@ class GoItem(Leave):
 class GoBack(Leave):
     """A return: values, or an event."""
 
-    def __init__(self, values: dict[str, Json], event: str = "", message: str = "") -> None:
+    def __init__(self, values: Scope | None, event: str = "", message: str = "") -> None:
         super().__init__(event)
         self.values = values
+        """The object that the subdialog's variable gets."""
         self.event = event
         self.message = message
