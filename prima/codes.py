@@ -10,7 +10,7 @@ CODES: dict[str, str] = {
     " which needs no declaration.",
     "too-large": "Files are read up to a limit on bytes, elements and attributes, so that nobody's"
     " file can exhaust the machine.",
-    "too-deep": "Elements may be nested to a limit. Divide the document into forms and subdialogs.",
+    "too-deep": "Elements may be nested to a limit. Divide the document into smaller parts.",
     "doctype": "A DOCTYPE may name an external identifier, which is never fetched, but declare"
     " nothing itself: declarations are how XML is made to eat memory.",
     "entity": "Documents declare no entities. Only &amp; &lt; &gt; &quot; &apos; and character"

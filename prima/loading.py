@@ -298,15 +298,13 @@ def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
             raise LookupError(str(error).rstrip(".")) from None
 
     try:
-        load(data, base=path.name, fetch=fetch)
+        problems = load(data, base=path.name, fetch=fetch).warnings()
     except DocumentError as error:
-        return [
-            problem._replace(
-                place=problem.place._replace(file=str(path.parent / problem.place.file))
-            )
-            for problem in error.problems
-        ]
-    return []
+        problems = error.problems
+    return [
+        problem._replace(place=problem.place._replace(file=str(path.parent / problem.place.file)))
+        for problem in problems
+    ]
 
 
 def _prices(document: Document) -> list[Problem]:

@@ -47,7 +47,7 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [
-        {"limits", "opening", "vocabulary", "tree"},
+        {"limits", "opening", "uris", "vocabulary", "tree"},
         {"slips"},
         {"build", "check", "rnc", "schema"},
         {"reader"},

@@ -136,10 +136,13 @@ def test_a_folder_stands_for_its_documents(tmp_path: Path) -> None:
     (tmp_path / "d" / "e").mkdir(parents=True)
     (tmp_path / "d" / "a.xml").write_text(GOOD)
     (tmp_path / "d" / "e" / "b.xml").write_text(BAD)
+    (tmp_path / "d" / "f.gram").write_text("#ABNF 1.0;\nlanguage en;\n$r = x {out = };")
     (tmp_path / "d" / "notes.txt").write_text("no document")
-    done = prima("validate", "d", cwd=tmp_path)
+    done = prima("validate", "d", "--format", "short", cwd=tmp_path)
     assert done.returncode == 1
-    assert done.stdout.startswith("d/e/b.xml:3:12") and "files: 2; errors: 1" in done.stderr
+    first, second = done.stdout.splitlines()
+    assert first.startswith("d/e/b.xml:3:12") and second.startswith("d/f.gram:3:8: warning")
+    assert "files: 3; errors: 1, warnings: 1" in done.stderr
 
 
 def test_all_documents_that_come_along_are_clean() -> None:

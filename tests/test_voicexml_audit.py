@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import pytest
 
+from prima.errors import Problem
+from prima.voicexml.document import read_page
 from tests.voice import Call, vxml
 
 PASS = "<log>pass</log><exit/>"
@@ -605,3 +607,26 @@ def test_the_timeout_of_a_prompt_that_was_played_before_is_over() -> None:  # 4.
         one.command for one in call.orders if one.command and "timeout" in one.command.args
     ]
     assert [one.args["timeout"] for one in questions][-1:] == [5000]
+
+
+def test_words_around_what_is_meant_are_no_reason_for_a_nomatch() -> None:  # SRGS 2.2.3
+    text = f"""<form><field name="f"><prompt>Q?</prompt><grammar version="1.0" root="r"
+        xmlns="http://www.w3.org/2001/06/grammar" xml:lang="en"><rule id="r">
+        <ruleref special="GARBAGE"/> pizza</rule></grammar><filled>{PASS}</filled></field></form>"""
+    assert run(text, "well I would really like a pizza").logs() == ["pass"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    ["<say-as>1</say-as>", "<sub>x</sub>", "<phoneme>x</phoneme>", "<break>x</break>"],
+)
+def test_speech_that_lacks_what_it_needs_is_refused(wrong: str) -> None:  # 4.1.1
+    (problem,) = check_page(f"<form><block><prompt>{wrong}</prompt></block></form>")
+    assert (problem.severity, problem.code in ("missing-attribute", "stray-text")) == (
+        "error",
+        True,
+    )
+
+
+def check_page(body: str) -> list[Problem]:
+    return read_page("a.vxml", "a.vxml", vxml(body).encode()).problems

@@ -19,9 +19,9 @@ from prima.cli.common import (
     raise_limits,
     tell,
 )
-from prima.errors import Problem, UsageError
+from prima.errors import Problem, UsageError, one_of
 
-KINDS = (".xml", ".vxml")
+KINDS = (".xml", ".vxml", ".grxml", ".gram", ".abnf")
 """How the names of documents in a folder end."""
 WATCH_SECONDS = 0.3
 MANY = 50
@@ -140,7 +140,7 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
         found = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
         if not found:
             raise UsageError(
-                f"{name}: holds no documents (files whose names end in .xml or .vxml)."
+                f"{name}: holds no documents (files whose names end in {one_of(KINDS)})."
             )
         yield from found
 

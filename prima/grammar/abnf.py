@@ -49,11 +49,26 @@ def decode_abnf(file: str, data: bytes) -> str:
         message = f'The encoding "{encoding[:40]}" is not accepted.'
         raise refuse(GrammarError, Place(file), "encoding", message, "Save it as UTF-8.")
     try:
-        return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+        return _lines(data.decode(encoding))
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
+        line = _lines(data[: error.start].decode("latin-1")).count("\n") + 1
         message = f"A byte here is not {encoding.upper()}."
-        raise refuse(GrammarError, Place(file, line), "encoding", message) from None
+        remedy = "Save it as UTF-8, or name the encoding it has in the header."
+        raise refuse(GrammarError, Place(file, line), "encoding", message, remedy) from None
+
+
+def as_unicode(text: str) -> bytes:
+    """A text in this form as UTF-8, which is what its header says then; where nothing moves."""
+    header = HEADER.match(text)
+    if header is None or header[2] is None or not _is_accepted(header[2].lower()):
+        return text.encode(errors="surrogatepass")
+    blank = "UTF-8".ljust(len(header[2]))
+    named = text[: header.start(2)] + blank + text[header.end(2) :]
+    return named.encode(errors="surrogatepass")
+
+
+def _lines(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _is_accepted(encoding: str) -> bool:

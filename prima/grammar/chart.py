@@ -27,6 +27,8 @@ MAX_STEPS = 200_000
 """How many steps one utterance may take; one that needs more matches nothing."""
 MOST_READ = 300
 """How many characters a built-in type reads inside an utterance."""
+MOST_EMPTY = 1000
+"""How often what is repeated may match nothing; where it has to more often, all of it is one time."""
 GARBAGE_COST = 10.0
 """The cost of a word that GARBAGE takes: anything else is better."""
 
@@ -216,7 +218,8 @@ class Chart:
         if cell.end == cell.start:
             if done >= part.low:
                 return  # more of nothing is no more
-            done = part.low  # the times that are still needed may be of nothing as well
+            # The times that are still needed may be of nothing as well, each with its tags.
+            done = done + 1 if part.low - done <= MOST_EMPTY else part.low
         else:
             done += 1
             if part.high is None or part.high > len(self.said):

@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from prima.deferred import dataclass
+from prima.errors import Problem
 from prima.grammar.budget import Budget
 from prima.grammar.chart import GARBAGE_COST, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
+from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Mode, Reference
 from prima.grammar.ranking import best, frames
 from prima.grammar.semantics import Failure, Interpreter, SemanticError
@@ -20,6 +22,9 @@ MOST_ANALYSES = 64
 """How many analyses of an utterance are looked at for different meanings."""
 MOST_WORK = 20_000
 """How large those after the first may be together, in expansions that matched."""
+GARBAGE_SHARE = 0.5
+"""How much of the words that GARBAGE took is missing from the confidence: whoever writes GARBAGE
+means it, so that alone must not bring a match below VoiceXML's confidencelevel of 0.5."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +92,27 @@ class Grammar:
         """The meta data of the header (SRGS 4.11)."""
         return dict(self._document.meta)
 
+    def warnings(self) -> list[Problem]:
+        """Tags of this document that are no script, so that what needs them is not taken (SISR)."""
+        document = self._document
+        tags = [*document.globals, *document.tags]
+        if not tags or document.dialect == "literals":
+            return []
+        from prima.grammar.sandbox import Sandbox
+
+        sandbox = Sandbox(Budget())
+        legacy = document.dialect == "legacy"
+        return [
+            Problem(
+                tag.where(),
+                "warning",
+                "bad-expression",
+                f'"{" ".join(tag.code.split())[:60]}" is not ECMAScript: what needs it is not taken.',
+            )
+            for tag in tags
+            if not sandbox.checks(translate(tag.code) if legacy else tag.code)
+        ]
+
     def rule(self, name: str) -> Grammar:
         """The grammar with another of its rules as root."""
         if name not in self._document.rules:
@@ -130,7 +156,7 @@ class Grammar:
                     reader.text(),
                     tuple(reader.tokens),
                     value,
-                    round(1 - lost / max(len(said.ends), 1), 3),
+                    round(1 - GARBAGE_SHARE * lost / max(len(said.ends), 1), 3),
                     round(math.exp(GARBAGE_COST * lost - analysis.cost), 9),
                     mode,
                     error,

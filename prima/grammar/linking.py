@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from urllib.parse import unquote, urldefrag, urljoin
+from urllib.parse import unquote, urldefrag, urlsplit
 
 from prima.errors import PrimaError, did_you_mean
 from prima.grammar.builtin import built_in
@@ -18,6 +18,7 @@ from prima.grammar.errors import (
 from prima.grammar.leads import index_choices
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.model import Document, Reference, Rule
+from prima.markup.uris import join
 
 MOST_DOCUMENTS = 64
 MOST_BYTES = 20_000_000
@@ -189,7 +190,9 @@ def joined(base: str, uri: str, where: Where) -> str:
         GrammarError: one of them is no URI.
     """
     try:
-        return urljoin(base, uri)
+        urlsplit(uri)
+        urlsplit(base)
     except ValueError as error:
         message = f'"{uri[:80]}" is no URI: {error}.'
         raise refuse(GrammarError, where(), "bad-value", message) from None
+    return join(base, uri)

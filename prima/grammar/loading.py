@@ -22,7 +22,7 @@ from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse, too_large
-from prima.markup.tree import Node, Source
+from prima.markup.tree import Inner, Node, Source
 
 XML_TYPES = frozenset(
     ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
@@ -80,9 +80,7 @@ def load(
     if isinstance(source, Node):
         document, rule = _element(library, source, base, lang, mode, type, rule)
     else:
-        data = source.encode(errors="surrogatepass") if isinstance(source, str) else source
-        if isinstance(source, str) and "encoding" in source[:200]:
-            data = _DECLARED.sub(r"\1", source, count=1).encode(errors="surrogatepass")
+        data = source if isinstance(source, bytes) else _bytes(source)
         document = _document(lang, lenient, library, base, data, type)
         library.add(document)
     _language(library, document, languages)
@@ -149,8 +147,7 @@ def _element(
     if media in ABNF_TYPES or (not node.nodes and node.own_text.lstrip().startswith("#ABNF")):
         from prima.grammar.abnf import read_abnf
 
-        source = Source(node.source.file, node.own_text.strip() + "\n")
-        read_abnf(source, document, library.problems, where)
+        read_abnf(Inner(node), document, library.problems, where)
     else:
         read_xml(node, document, library.problems, inline=True)
         document.base = ""  # it is in the URI already
@@ -188,6 +185,17 @@ def _external(
 
 
 # Files
+
+
+def _bytes(text: str) -> bytes:
+    """A whole file's text as the bytes of one; whatever encoding it declares, it has none."""
+    if text.startswith("#ABNF"):
+        from prima.grammar.abnf import as_unicode
+
+        return as_unicode(text)
+    if "encoding" in text[:200]:
+        text = _DECLARED.sub(r"\1", text, count=1)
+    return text.encode(errors="surrogatepass")
 
 
 def _document(

@@ -44,7 +44,10 @@ def fold(text: str) -> str:
 
 
 def _letter(letter: str) -> str:
-    return " " if unicodedata.category(letter)[0] in "PSZC" else letter
+    category = unicodedata.category(letter)
+    if category == "Cf":
+        return ""  # a soft hyphen, a joiner: it stands inside of words
+    return " " if category[0] in "PSZC" else letter
 
 
 def tokens(text: str) -> list[str] | None:

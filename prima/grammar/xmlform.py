@@ -220,7 +220,9 @@ class _Reader:
         """Text as tokens (section 2.1)."""
         found = tokens(text)
         if found is None:
-            self.note(node, "bad-token", "A quote is opened and not closed.", 'Write the other ".')
+            message, remedy = "A quote is opened and not closed.", 'Write the other ".'
+            where = partial(node.text_place, text[text.rindex('"') :])
+            self.problems.note(where, "bad-token", message, remedy)
             return None
         if "" in found:
             remedy = 'Write <ruleref special="NULL"/> for nothing.'
@@ -246,7 +248,7 @@ class _Reader:
             if key is None or len(key) != 1:
                 message = f'"{token[:40]}" is no key of a telephone.'
                 remedy = "Keys are 0 to 9, *, #, and A to D, with spaces between them."
-                self.note(node, "bad-token", message, remedy)
+                self.problems.note(partial(node.text_place, token), "bad-token", message, remedy)
                 return None
         shown = [key for key in pressed if key]
         return Words("".join(shown), tuple(shown))
@@ -351,7 +353,8 @@ class _Reader:
                 remedy = "Put it in a <rule>."
                 if not node.nodes:
                     remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
-            self.note(node, "stray-text", f"Text cannot stand in <{node.tag}>.", remedy)
+            message = f"Text cannot stand in <{node.tag}>."
+            self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
 
     def _no_elements(self, node: Node) -> None:
         for child in node.nodes:

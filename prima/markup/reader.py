@@ -331,7 +331,7 @@ def _too_deep(place: Place) -> DocumentError:
         place,
         "too-deep",
         f"Elements are nested more than {LIMITS.depth} deep.",
-        "Divide the document into forms and subdialogs.",
+        "Divide the document into smaller parts.",
     )
 
 

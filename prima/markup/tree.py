@@ -81,6 +81,22 @@ class Source:
         return Place(self.file, line, offset - self.lines[line - 1] + 1)
 
 
+class Inner(Source):
+    """The text of an element, to be read as one of its own; places are those in the document."""
+
+    __slots__ = ("before", "node")
+
+    def __init__(self, node: Node) -> None:
+        text = node.own_text
+        self.before = len(text) - len(text.lstrip())
+        super().__init__(node.source.file, f"{text.strip()}\n")
+        self.node = node
+
+    def at(self, offset: int) -> Place:
+        """The place of a character of the text."""
+        return self.node.source.inside(self.node.index, "", self.before + offset)
+
+
 @dataclass(slots=True, eq=False)
 class Node:
     """An element: its tag (with its table key), attributes, and children in order."""
@@ -114,6 +130,14 @@ class Node:
         before = text.split("\n")[: max(line, 1) - 1]
         characters = sum(len(one) + 1 for one in before) + max(column, 1) - 1
         return self.source.inside(self.index, attribute, min(characters, len(text)))
+
+    def text_place(self, words: str) -> Place:
+        """Where the first of some words stands in the element, as far as that can be seen."""
+        first = next(iter(words.split()), "")
+        written = re.compile(rf"(?<=[\s>]){re.escape(first)}(?=[\s<])")
+        begin = MARKUP.match(self.source.text, self.source.tag(self.index))
+        found = written.search(self.source.text, begin.end() - 1) if begin and first else None
+        return self.source.at(found.start()) if found else self.place
 
     @property
     def nodes(self) -> list[Node]:

@@ -310,10 +310,18 @@ def _check_if(node: Node, problems: list[Problem]) -> None:
             problems.append(Problem(branch.place, "error", "after-else", message))
 
 
+def _check_say_as(node: Node, problems: list[Problem]) -> None:
+    """What it is has to be told; older documents do by ``type`` (4.1.1)."""
+    if not {"interpret-as", "type"} & node.attributes.keys():
+        message = '<say-as> needs the attribute "interpret-as".'
+        problems.append(Problem(node.place, "error", "missing-attribute", message))
+
+
 RULES: dict[str, Callable[[Node, list[Problem]], None]] = {
     "form": _check_form,
     "menu": _check_menu,
     "if": _check_if,
+    "say-as": _check_say_as,
     **dict.fromkeys(INPUT_ITEMS, _check_item),
 }
 """What holds between an element and its children."""
@@ -393,14 +401,13 @@ def _grammar_problems(node: Node, lang: str) -> list[Problem]:
 
     mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"
     try:
-        load(node, lang=node.get("xml:lang", lang), mode=mode, lenient=True)
+        return load(node, lang=node.get("xml:lang", lang), mode=mode, lenient=True).warnings()
     except GrammarError as error:
         return [
             problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())
             for problem in error.problems
             if problem.code != "not-fetched"
         ]
-    return []
 
 
 LATER = "When it is to listen, this will be error.badfetch or error.unsupported."

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import posixpath
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from urllib.parse import quote, urldefrag, urljoin, urlsplit
+from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Problem
 from prima.markup.check import check_root
 from prima.markup.reader import parse
 from prima.markup.tree import Node
+from prima.markup.uris import join
 from prima.messages import Json
 from prima.voicexml.check import check_code, check_tree, version_problem
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
@@ -81,30 +81,6 @@ class Page:
     def warnings(self) -> list[Problem]:
         """What is no error until it is reached; found only for who asks."""
         return [*self.later, *check_code(self.root, set(self.dialogs))]
-
-
-def legal(uri: str) -> str:
-    """A URI as it is; one that nothing can be found under, such as ``http://[``, made harmless."""
-    try:
-        urlsplit(uri)
-    except ValueError:
-        return quote(uri, safe="%/?#:=&")
-    return uri
-
-
-def join(base: str, uri: str) -> str:
-    """A URI seen from its base; one that leads out of the folder begins with ``..``."""
-    if not uri:
-        return base
-    uri = legal(uri)
-    if urlsplit(base).scheme or urlsplit(uri).scheme or uri.startswith(("#", "?", "/")):
-        return urljoin(base, uri)
-    path, mark, rest = uri.partition("#")
-    path, query, asked = path.partition("?")
-    folder = posixpath.dirname(base)
-    whole = posixpath.normpath(posixpath.join(folder, path))
-    end = "/" if path.endswith("/") else ""
-    return f"{whole}{end}{query}{asked}{mark}{rest}"
 
 
 def read_page(uri: str, file: str, data: bytes) -> Page:

@@ -11,6 +11,7 @@ from prima.commands import TABLE_4_2
 from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.markup.tree import Node
+from prima.markup.uris import join
 from prima.messages import Command, Cue, Json
 from prima.values import shown
 from prima.voicexml.check import alternatives
@@ -24,7 +25,7 @@ from prima.voicexml.cues import (
     milliseconds,
     rate_of,
 )
-from prima.voicexml.document import FetchError, join
+from prima.voicexml.document import FetchError
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE

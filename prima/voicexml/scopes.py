@@ -9,7 +9,8 @@ from urllib.parse import urldefrag
 from prima.interpreter.content import source
 from prima.interpreter.evaluation import Scope
 from prima.markup.tree import Node
-from prima.voicexml.document import Page, legal
+from prima.markup.uris import legal
+from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request, load_page
 from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown
 

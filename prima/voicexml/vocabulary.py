@@ -49,13 +49,13 @@ nomatch|cond count|{EXECUTABLE}|text|5.2.3
 prompt|bargein bargeintype cond count timeout xml:lang xml:base|{BLOCKS}|text|4.1
 audio|src expr {FETCH}|{BLOCKS}|text|4.1.3
 value|expr* class mode recsrc|||4.1.4
-break|strength time size||text|4.1.1
+break|strength time size|||4.1.1
 emphasis|level|{SPEECH}|text|4.1.1
 mark|name nameexpr|||4.1.1
-phoneme|ph alphabet||text|4.1.1
+phoneme|ph* alphabet||text|4.1.1
 prosody|pitch contour range rate duration volume|{BLOCKS}|text|4.1.1
 say-as|interpret-as format detail type|value|text|4.1.1
-sub|alias||text|4.1.1
+sub|alias*||text|4.1.1
 voice|xml:lang gender age variant name|{BLOCKS}|text|4.1.1
 p|xml:lang|{BLOCKS}|text|4.1.1
 s|xml:lang|{SPEECH}|text|4.1.1

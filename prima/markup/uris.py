@@ -1,0 +1,30 @@
+"""URIs as documents write them, most of them names of files beside the document."""
+
+from __future__ import annotations
+
+import posixpath
+from urllib.parse import quote, urljoin, urlsplit
+
+
+def legal(uri: str) -> str:
+    """A URI as it is; one that nothing can be found under, such as ``http://[``, made harmless."""
+    try:
+        urlsplit(uri)
+    except ValueError:
+        return quote(uri, safe="%/?#:=&")
+    return uri
+
+
+def join(base: str, uri: str) -> str:
+    """A URI seen from its base; one that leads out of the folder begins with ``..``."""
+    if not uri:
+        return base
+    uri = legal(uri)
+    if urlsplit(base).scheme or urlsplit(uri).scheme or uri.startswith(("#", "?", "/")):
+        return urljoin(base, uri)
+    path, mark, rest = uri.partition("#")
+    path, query, asked = path.partition("?")
+    folder = posixpath.dirname(base)
+    whole = posixpath.normpath(posixpath.join(folder, path))
+    end = "/" if path.endswith("/") else ""
+    return f"{whole}{end}{query}{asked}{mark}{rest}"
