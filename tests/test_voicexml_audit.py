@@ -630,3 +630,40 @@ def test_speech_that_lacks_what_it_needs_is_refused(wrong: str) -> None:  # 4.1.
 
 def check_page(body: str) -> list[Problem]:
     return read_page("a.vxml", "a.vxml", vxml(body).encode()).problems
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "remedy"),
+    [
+        ("timeout", "1", 'Write "1s".'),
+        ("confidencelevel", "1.1", "Write a number from 0 to 1."),
+        ("maxnbest", "x", "Write a whole number from 1."),
+        ("bargein", "yes", "Write false or true."),
+        ("fetchtimeout", "3s", None),
+        ("sensitivity", "0.5", None),
+        ("com.example.timeout", "?", None),
+    ],
+)
+def test_a_property_that_holds_nothing_is_warned_of(
+    name: str, value: str, remedy: str | None
+) -> None:  # 6.3
+    text = f'<property name="{name}" value="{value}"/><form><block/></form>'
+    found = read_page("a.vxml", "a.vxml", vxml(text).encode()).warnings()
+    assert [(one.severity, one.remedy) for one in found] == [("warning", remedy)] * (
+        remedy is not None
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "warned"), [("a-b", True), ("class", True), ("1x", True), ("größe", False), ("$", False)]
+)  # fmt: skip
+def test_a_variable_that_no_expression_can_name_is_warned_of(name: str, warned: bool) -> None:
+    text = f'<form><field name="{name}"><prompt>Q?</prompt>{YES}</field></form>'  # 5.1.1
+    found = read_page("a.vxml", "a.vxml", vxml(text).encode()).warnings()
+    assert [one.code for one in found] == ["bad-value"] * warned
+
+
+def test_a_confidence_that_nothing_can_reach_counts_for_nothing() -> None:  # 6.3.2
+    text = f"""<property name="confidencelevel" value="1.1"/><form><field name="f">
+        <prompt>Q?</prompt>{YES}<filled>{PASS}</filled></field></form>"""
+    assert run(text, "yes").logs() == ["pass"]

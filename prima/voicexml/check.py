@@ -16,10 +16,11 @@ from prima.interpreter.expressions import (
     check_script,
     plain_context,
 )
+from prima.interpreter.names import IDENTIFIER, RESERVED
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
-from prima.values import read_value
+from prima.values import NUMBER, read_value
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import (
     ALTERNATIVES,
@@ -209,6 +210,7 @@ _REMEDIES = {
     "rate": 'Write slow, fast or another name of a rate, a number, or a change such as "+10%".',
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
     "integer": "Write a whole number from 1.",
+    "share": "Write a number from 0 to 1.",
 }
 
 
@@ -220,6 +222,8 @@ def _fits(kind: str, text: str) -> bool:
             return read_value("duration", text.strip()) >= 0  # type: ignore[operator]
         except ValueError:
             return False
+    if kind == "share":
+        return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
     if kind == "rate":
         return is_rate(text)
     return text in kind.split()
@@ -370,6 +374,10 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
             problems += _grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):
             problems += _type_problems(node)
+        if node.key in NAMING and node.get("name"):
+            problems += _name_problems(node)
+        if node.key == "property":
+            problems += _property_problems(node)
         for name in ("next", "src"):
             target = node.get(name)
             if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
@@ -378,6 +386,46 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
                 place = node.attribute_place(name)
                 problems.append(Problem(place, "warning", "no-such-form", message, hint))
     return problems
+
+
+NAMING = frozenset([*FORM_ITEMS, "var", "data"])
+"""Elements whose name is a variable."""
+
+
+def _name_problems(node: Node) -> list[Problem]:
+    """A variable that no expression can name (5.1.1)."""
+    name = node.get("name")
+    if IDENTIFIER.fullmatch(name) and name not in RESERVED:
+        return []
+    message = f'"{name}" is no name of ECMAScript: no expression can read it.'
+    remedy = "Write letters, digits and _, and no word that ECMAScript has for itself."
+    return [Problem(node.attribute_place("name"), "warning", "bad-value", message, remedy)]
+
+
+PROPERTIES = {
+    **dict.fromkeys(
+        [
+            *("timeout", "interdigittimeout", "termtimeout", "completetimeout", "fetchtimeout"),
+            *("incompletetimeout", "maxspeechtimeout", "fetchaudiodelay", "fetchaudiominimum"),
+        ],
+        "time",
+    ),
+    **dict.fromkeys(["confidencelevel", "sensitivity", "speedvsaccuracy"], "share"),
+    "bargein": "true false",
+    "bargeintype": "speech hotword",
+    "maxnbest": "integer",
+}
+"""What properties of the Recommendation hold (6.3)."""
+
+
+def _property_problems(node: Node) -> list[Problem]:
+    """A property whose value is none: the default counts (6.3)."""
+    kind = PROPERTIES.get(node.get("name"))
+    if kind is None or _fits(kind, node.get("value")):
+        return []
+    problem = _bad_value(node, "value", node.get("value"), kind)
+    message = f'{node.get("name")} "{node.get("value")[:40]}" is not allowed.'
+    return [problem._replace(severity="warning", message=message)]
 
 
 def _type_problems(field: Node) -> list[Problem]:

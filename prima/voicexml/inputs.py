@@ -22,6 +22,7 @@ UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
+USUAL_CONFIDENCE = 0.5
 BUILT_IN = frozenset(["boolean", "currency", "date", "digits", "number", "phone", "time"])
 
 
@@ -72,7 +73,9 @@ class Inputs:
         """The best results of the first scope in which a grammar takes what was said."""
         wanted = self.owner.number(context, "maxnbest", 1)
         most = int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
-        least = self.owner.number(context, "confidencelevel", 0.5)
+        least = self.owner.number(context, "confidencelevel", USUAL_CONFIDENCE)
+        if not 0 <= least <= 1:
+            least = USUAL_CONFIDENCE
         first: Active | None = None
         results: list[Found] = []
         for active in self._active:
