@@ -336,12 +336,15 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
-        UsageError: two of the applications have one id, or one is of the other kind.
+        UsageError: a file cannot be read, two of the applications have one id, or one is of the
+            other kind.
     """
     from html import escape
 
     demo = documents_folder()
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
+    for _, path in given:
+        read_file(path)  # what is not there is no fault of a document
     applications = [f'<application src="{escape(path)}" kind="{kind}"/>' for kind, path in given]
     answers = [
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
@@ -429,6 +432,7 @@ class _Reading:
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
         target = _path(normpath(self.path.parent / name))
+        content = b""
         try:
             content = read_file(target)
             self.files[name] = _digest(content)

@@ -206,7 +206,7 @@ def limits() -> str:
         ("elements in a file", f"{LIMITS.elements:,}", "`too-large`"),
         ("attributes of an element", f"{LIMITS.attributes}", "`too-large`"),
         ("elements inside each other", f"{LIMITS.depth}", "`too-deep`"),
-        ("a time in an attribute", f"{LONGEST_MS // 3_600_000} h", "`bad-value`"),
+        ("a time in an attribute", f"{LONGEST_MS // 1000:,} s", "`bad-value`"),
         (
             "one evaluation of an expression or script",
             f"{expressions.TIME_LIMIT:g} s of processor time",
@@ -243,6 +243,16 @@ def limits() -> str:
             "an application's scripts in one instant, all together",
             f"{evaluation.MAX_SCRIPT_SECONDS:g} s",
             "the application ends",
+        ),
+        (
+            "an application's scripts in a run, all together",
+            f"{evaluation.MAX_RUN_SECONDS:g} s",
+            "the application ends",
+        ),
+        (
+            "scripts of all applications in one instant",
+            f"{evaluation.INSTANT_SECONDS:g} s",
+            "the run ends (exit code 3)",
         ),
         ("steps of content in one instant", f"{bounds.MAX_STEPS:,}", "the application ends"),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),

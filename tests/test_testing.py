@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from html import escape
@@ -450,13 +451,14 @@ def test_processes_give_the_same_results_in_the_same_order() -> None:
     assert one == several
 
 
-def die() -> None:
-    os._exit(3)  # as the watchdog ends a process whose script does not come back
+def die_soon() -> None:
+    threading.Timer(1, os._exit, (3,)).start()  # as the watchdog ends a process
 
 
-def test_a_process_that_is_ended_ends_the_tests() -> None:
+def test_a_process_that_is_ended_ends_the_tests(tmp_path: Path) -> None:
+    endless(tmp_path)
     with pytest.raises(RunError, match="does not come back"):
-        list(run_all([str(path) for path in DEMOS[:3]], Choice(), 2, die))
+        list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2, die_soon))
 
 
 def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:
@@ -806,3 +808,41 @@ def test_the_nearest_settings_count(workshop: Path) -> None:
     ignoring(workshop, 'ignore = ["*"]')
     ignoring(workshop / "drafts", "")
     assert find(["drafts"]) == ["drafts/a.xml"]
+
+
+ENDLESS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="loop"><form id="a">
+<block><send event="x" delay="1ms"/></block><on event="x">
+<script>for (var i = 0; i &lt; 1000000; i++);</script><send event="x" delay="1ms"/></on></form></prima>"""
+
+
+def endless(folder: Path) -> None:
+    """Two scenarios, a.xml and b.xml, that take hours."""
+    (folder / "loop.xml").write_text(ENDLESS)
+    for name in "ab":
+        (folder / f"{name}.xml").write_text(
+            '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml" robot="r.xml">'
+            '<robot at="middle"/><application src="loop.xml"/></scenario>'
+        )
+    for name, kind in (("w", "worlds/room"), ("r", "robots/papero")):
+        data = (ROOT / "documents" / f"{kind}.xml").read_bytes()
+        (folder / f"{name}.xml").write_bytes(data)
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs groups of processes")
+def test_interrupted_tests_leave_no_process_behind(tmp_path: Path) -> None:
+    endless(tmp_path)
+    command = [sys.executable, "-m", "prima", "test", "a.xml", "b.xml", "--jobs", "2"]
+    done = subprocess.Popen(
+        command, cwd=tmp_path, start_new_session=True, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(3)
+    os.killpg(done.pid, signal.SIGINT)
+    assert done.wait(10) == 130
+    for _ in range(100):
+        try:
+            os.killpg(done.pid, 0)
+        except ProcessLookupError:
+            break
+        time.sleep(0.1)
+    else:
+        pytest.fail("a process is left")

@@ -101,7 +101,8 @@ def main() -> None:
 
         lines = SourceLines()
         for problem in error.problems:
-            tell(render(problem, lines))
+            if problem.severity != "note":
+                tell(render(problem, lines))
         code = 1
     except UsageError as error:
         tell(f"prima: {error}")
@@ -126,6 +127,9 @@ def main() -> None:
     except OSError as error:
         tell(f"prima: cannot go on: {error.strerror}.")
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        code = 2
+    except UnicodeEncodeError:
+        tell("prima: the name of a file is not UTF-8 and cannot be written here; rename it.")
         code = 2
     except MemoryError:
         tell("prima: out of memory")

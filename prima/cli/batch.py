@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import os
 import signal
@@ -49,7 +50,7 @@ def listed(name: str) -> list[str]:
         raise UsageError(f"{name}: cannot be read: {getattr(error, 'strerror', error)}.") from None
     if len(data) > MOST_LISTED or b"\0" in data or data.lstrip()[:1] == b"<":
         raise UsageError(f"{name}: this is no list of scenarios: one path stands in each line.")
-    lines = [line.strip() for line in os.fsdecode(data).splitlines()]
+    lines = [line.strip() for line in os.fsdecode(data.removeprefix(codecs.BOM_UTF8)).splitlines()]
     paths = [line for line in lines if line and not line.startswith("#")]
     if not paths:
         raise UsageError(f"{name}: names no scenarios: write their paths, one in each line.")
@@ -101,9 +102,7 @@ def run_all(
 
 def begin_worker(patience: float) -> None:
     """Guard a process that makes runs; where so many share a core, a script takes longer."""
-    common.WATCHDOG_SECONDS *= patience
-    common.INSTANT_SECONDS *= patience
-    common.start_watchdog()
+    common.start_watchdog(patience)
 
 
 class _Table:

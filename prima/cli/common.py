@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from contextlib import ExitStack, suppress
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
@@ -20,8 +21,6 @@ POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
 POLICY_NAMES = ("prima", "fifo", "fair", "fixed", "none")
 WATCHDOG_SECONDS = 5.0
 """How long one evaluation of a document's script may hold the process up."""
-INSTANT_SECONDS = 20.0
-"""How long the scripts of one instant of a run may take together."""
 
 
 class Choice(click.Choice[str]):
@@ -80,8 +79,9 @@ def put(text: str) -> None:
 
 
 def tell(text: str) -> None:
-    """A message, to stderr."""
-    click.echo(clean(text), err=True)
+    """A message, to stderr; if nothing can be written there, nobody is told."""
+    with suppress(OSError):
+        click.echo(clean(text), err=True)
 
 
 def tell_cut(*transcripts: Transcript) -> None:
@@ -204,15 +204,28 @@ def same_file(one: str | Path, other: str | Path) -> bool:
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
     """Run with the transcript written line by line, so that nothing is lost on the way."""
-    try:
-        with open(output, "w", encoding="utf-8", buffering=1) as stream:
-            if not sys.stderr.isatty():
-                return rehearse(stream.write)
-            made = rehearse(_with_progress(stream.write))
-            click.echo(f"\r{' ' * 60}\r", err=True, nl=False)
-            return made
-    except OSError as error:
-        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+    with ExitStack() as files:
+        stream: IO[str] | None = None
+
+        def write(line: str) -> None:
+            nonlocal stream
+            try:
+                line.encode()
+                if stream is None:  # not before there is something: a run may be refused
+                    made = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
+                    stream = files.enter_context(made)
+                stream.write(line)
+            except OSError as error:
+                raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+            except UnicodeEncodeError:
+                message = "a transcript cannot name a file whose path is not UTF-8; rename it."
+                raise UsageError(f"{output}: {message}") from None
+
+        if not sys.stderr.isatty():
+            return rehearse(write)
+        made = rehearse(_with_progress(write))
+        click.echo(f"\r{' ' * 60}\r", err=True, nl=False)
+        return made
 
 
 def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
@@ -234,8 +247,10 @@ def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
     return note
 
 
-def start_watchdog() -> None:
+def start_watchdog(patience: float = 1.0) -> None:
     """End the process when a script escapes the engine's own limits (exit code 3).
+
+    The limits count ``patience`` times.
 
     The engine lets go of the interpreter lock while it evaluates, so this thread
     runs even if an evaluation never comes back. What was written is on disk.
@@ -243,7 +258,7 @@ def start_watchdog() -> None:
     import threading
     import time
 
-    from prima.interpreter.evaluation import PULSE
+    from prima.interpreter.evaluation import INSTANT_SECONDS, PULSE
 
     def watch() -> None:
         seen, since = -1, time.monotonic()
@@ -255,10 +270,13 @@ def start_watchdog() -> None:
                 instant, began = PULSE.instants, time.monotonic()
             if count % 2 == 0 or count != seen:
                 seen, since = count, time.monotonic()
-            stuck = time.monotonic() - since > WATCHDOG_SECONDS
-            if stuck or (count % 2 and time.monotonic() - began > INSTANT_SECONDS):
-                message = "prima: a document's script does not come back; the run is ended.\n"
-                os.write(2, message.encode())
+            reason = ""
+            if time.monotonic() - since > patience * WATCHDOG_SECONDS:
+                reason = "a document's script does not come back"
+            elif count % 2 and time.monotonic() - began > patience * INSTANT_SECONDS:
+                reason = f"the scripts of one instant take more than {INSTANT_SECONDS:g} s"
+            if reason:
+                os.write(2, f"prima: {reason}; the run is ended.\n".encode())
                 os._exit(3)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -189,7 +189,7 @@ def _run_one(
         for failure in transcript.failures:
             tell(f"prima: {told_failure(failure)}")
     if transcript.outcome == "limit":
-        raise RunError("the run made more records than a run may.")
+        raise RunError("the run made more records, or more text, than a run may.")
     if transcript.failures:
         raise Exit(3)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
-from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS
+from prima.interpreter.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.prelude import START
@@ -37,6 +38,8 @@ class Bounds(Generic[Evaluator]):
         self.steps = 0
         """Pieces of content gone through in this instant."""
         self._output = 0
+        self._spent = 0.0
+        """Seconds of scripts in the instants before."""
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
@@ -44,13 +47,16 @@ class Bounds(Generic[Evaluator]):
         self.steps = self._output = 0
         engine = self.engine
         engine.now = self.began + now
-        engine.spent = 0.0
+        self._spent += engine.spent
+        engine.spent = 0.0 if self._spent <= MAX_RUN_SECONDS else math.inf
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""
         self.steps += steps
         if self.steps > MAX_STEPS:
             self.give_up(node, "it loops without ever waiting")
+        if self._spent > MAX_RUN_SECONDS:
+            self.give_up(node, f"its scripts took more than {MAX_RUN_SECONDS:g} s in this run")
         if self.engine.spent > MAX_SCRIPT_SECONDS:
             self.give_up(node, "its scripts take too long without ever waiting")
 

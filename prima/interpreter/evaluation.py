@@ -13,6 +13,10 @@ Scope = Any
 
 MAX_SCRIPT_SECONDS = 3.0
 """What an application's code may take in one instant, all together."""
+MAX_RUN_SECONDS = 300.0
+"""What an application's code may take in a whole run."""
+INSTANT_SECONDS = 120.0
+"""What the code of all applications may take in one instant of a run, by the clock on the wall."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves its application's scopes."""
 SCOPES = ("application", "document", "dialog", "local")

@@ -333,6 +333,8 @@ class Matching:
         found: Ends = {start: None} if part.low == 0 else {}
         here: Ends = {start: None}
         for times in range(1, part.high + 1):
+            if self.left <= 0:
+                return {}
             here = yield from self._once(part.parts, here)
             new = {end: tag for end, tag in here.items() if end not in found}
             if times >= part.low:
@@ -346,6 +348,7 @@ class Matching:
             after: Ends = {}
             for start, tag in here.items():
                 for end, later in (yield part, start).items():
+                    self.left -= 1
                     after.setdefault(end, tag if later is None else later)
             here = after
         return here

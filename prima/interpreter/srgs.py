@@ -95,7 +95,7 @@ def _repeat(note: Note, node: Node) -> tuple[int, int]:
         note(
             node,
             "bad-value",
-            f'repeat "{text}" is not of the form 2, 0-1 or 1-.',
+            f'repeat "{text}" is not of the form 2, 0-1 or 1-, with numbers up to 999.',
             attribute="repeat",
         )
         return 1, 1

@@ -768,6 +768,8 @@ def _expectation(
 
 def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
     """One thing is expected, with what belongs to it."""
+    if node.key not in reader.vocabulary.elements:
+        return  # it is of another namespace; told already
     known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
     if not given and not set(node.attributes) <= known:
         return  # a word is misspelt; told already

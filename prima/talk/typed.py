@@ -289,7 +289,7 @@ def help_text(name: str = "") -> str:
     Raises:
         UsageError: there is no such command.
     """
-    name = name.removeprefix("/")
+    name = name.removeprefix("/").partition(" ")[0]  # whatever else stands behind it
     if name and name not in COMMANDS:
         _name(f"/{name}")
     chosen = [COMMANDS[name]] if name else list(COMMANDS.values())

@@ -25,6 +25,8 @@ PASSED_BY = frozenset({"node_modules", "__pycache__", "venv", "build", "dist"})
 
 def is_scenario(path: str | Path) -> bool:
     """Whether a file is a scenario, as far as its beginning tells; no error if it is unreadable."""
+    if not os.path.isfile(path):
+        return False  # what is no file may never come to an end
     try:
         with open(path, "rb") as stream:
             data = stream.read(GLANCE)

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from prima import api
-from prima.errors import DocumentError, RunError, UsageError
+from prima.errors import DocumentError, PrimaError, RunError, UsageError
 from prima.loading import Loaded, load_scenario
+from prima.pool import Died, spread
 from prima.testing.checking import Failure, check, make_run
 from prima.testing.coverage import Coverage, covered
 from prima.testing.golden import difference, golden_of, read_golden
 from prima.testing.watching import Marks, States, watching
-
-if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
 
 Status = Literal["passed", "failed", "error", "invalid"]
 STATUSES: tuple[Status, ...] = ("passed", "failed", "error", "invalid")
@@ -165,62 +164,22 @@ def run_all(
     if jobs == 1:
         yield from (run_one(path, choice) for path in paths)
         return
-    from multiprocessing import get_context
-
-    context = get_context("spawn")
-    workers, ends = [], []
-    with _uninterrupted():  # Ctrl-C is for this process alone, which ends the others
-        for first in range(jobs):
-            here, there = context.Pipe(duplex=False)
-            worker = context.Process(
-                target=_work, args=(paths[first::jobs], choice, begin, there), daemon=True
-            )
-            worker.start()
-            there.close()
-            workers.append(worker)
-            ends.append(here)
-    try:
-        for number in range(len(paths)):
-            found = ends[number % jobs].recv()
-            if not isinstance(found, Result):
+    with closing(spread(partial(_told, choice), paths, jobs, begin)) as made:
+        for _path, found in made:
+            if isinstance(found, Died):
+                message = "a document's script does not come back; the tests are ended."
+                raise RunError(message)
+            if isinstance(found, PrimaError):
                 raise found
             yield found
-    except EOFError:
-        raise RunError("a document's script does not come back; the tests are ended.") from None
-    finally:
-        for worker in workers:
-            worker.terminate()
 
 
-def _work(
-    paths: list[str], choice: Choice, begin: Callable[[], None] | None, end: Connection
-) -> None:
-    """Test some of the scenarios, in a process of its own."""
-    if begin is not None:
-        begin()
+def _told(choice: Choice, path: str) -> Result | UsageError | RunError:
+    """As :func:`run_one`, in a process of its own."""
     try:
-        for path in paths:
-            end.send(run_one(path, choice))
+        return run_one(path, choice)
     except (UsageError, RunError) as error:
-        end.send(error)
-    except BrokenPipeError:
-        return  # nobody waits any more
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Let processes begin that do not heed Ctrl-C."""
-    import signal
-
-    try:
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    except ValueError:  # not in the main thread, which alone is interrupted
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+        return error
 
 
 def result_data(result: Result) -> dict[str, Any]:
