@@ -125,3 +125,28 @@ def test_a_grammar_that_is_ambiguous_over_and_over_comes_to_an_end(tmp_path: Pat
     done = prima("run", "--ea", "g.xml", "--say", "a " * 900, cwd=tmp_path)
     assert done.returncode in (0, 1), done.stderr
     assert time.monotonic() - began < 20
+
+
+@pytest.mark.parametrize(
+    ("record", "told"),
+    [
+        ('"phase":"start","actor":"robot","app":null,"behavior":"x#1","command":"speak"', 'needs "app"'),
+        ('"phase":"request","actor":"robot","app":"x","behavior":"x#1","command":"speak","priority":"high"', 'needs "tree"'),
+        ('"phase":"collision","actor":"robot","app":"x","behavior":"x#1"', 'needs "by"'),
+        ('"phase":"stream-end","actor":"mediator","app":"x"', 'needs "tree"'),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("command", ["show", "report", "graph", "diff"])
+def test_a_record_that_lacks_something_is_told(
+    command: str, record: str, told: str, tmp_path: Path
+) -> None:
+    (tmp_path / "t.jsonl").write_text(f'{{"time":0,{record}}}\n')
+    more = {"graph": ["--what", "streams"], "diff": ["t.jsonl"]}.get(command, [])
+    done = prima(command, "t.jsonl", *more, cwd=tmp_path)
+    assert done.returncode == 2 and told in done.stderr and "t.jsonl:1" in done.stderr
+
+
+def test_a_time_beyond_all_is_no_time(tmp_path: Path) -> None:
+    (tmp_path / "t.jsonl").write_text('{"time":1e300,"phase":"over","actor":"mediator"}\n')
+    done = prima("graph", "t.jsonl", "--what", "streams", cwd=tmp_path)
+    assert done.returncode == 2 and "t.jsonl:1" in done.stderr

@@ -61,7 +61,7 @@ ORDER = [
 NEEDED = {
     "start": ("behavior", "command", "app"),
     "end": ("behavior", "command", "app"),
-    "request": ("behavior", "command", "app", "priority"),
+    "request": ("behavior", "command", "app", "tree", "priority"),
     "decision": ("winner", "rule", "losers", "losers_count"),
     "event": ("event",),
     "halted": ("behavior",),
@@ -76,7 +76,8 @@ NEEDED = {
     "listening": ("behavior",),
     "sensed": ("data",),
     "starve": ("behavior",),
-    "collision": ("behavior",),
+    "collision": ("behavior", "by"),
+    "stream-end": ("tree",),
     "run": ("data",),
 }
 """The fields without which a record of a phase says nothing."""
@@ -153,7 +154,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
                 record = _closely(text) if odd else quick(text)
             except ValidationError:
                 record = _closely(text)
-            missing = [name for name in NEEDED.get(record["phase"], ()) if name not in record]
+            missing = [name for name in NEEDED.get(record["phase"], ()) if record.get(name) is None]
             if missing:
                 raise ValueError(f'{record["phase"]} needs "{missing[0]}"')
         except (ValueError, RecursionError) as error:

@@ -45,6 +45,10 @@ PHASES = [
 ]
 
 
+LONGEST = 1e9
+"""Seconds that a run may last: no drawing of a longer one would come to an end."""
+
+
 class Record(BaseModel):
     """One line of a transcript. Fields that do not apply are left out.
 
@@ -54,7 +58,9 @@ class Record(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    time: float = Field(ge=0, allow_inf_nan=False, description="Seconds since the run began.")
+    time: float = Field(
+        ge=0, le=LONGEST, allow_inf_nan=False, description="Seconds since the run began."
+    )
     phase: Literal[
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
         "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",
