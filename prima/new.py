@@ -123,26 +123,31 @@ def _scenario(path: Path) -> list[Path]:
 
 
 def _documents(folder: Path) -> dict[str, list[Path]]:
-    """The documents of a folder that have no error, by what they are, in their names' order."""
+    """The documents of a folder that have no error, by what they are, in their names' order.
+
+    Of applications with one id only the first can be run, so that others are left out.
+    """
     found: dict[str, list[Path]] = {"fa": [], "ea": [], "world": [], "robot": []}
+    taken: set[str] = set()
     for path in sorted([*folder.glob("*.xml"), *folder.glob("*.vxml")]):
-        kind = _kind(path)
-        if kind in found:
+        kind, name = _kind(path)
+        if kind in found and not (kind in ("fa", "ea") and name in taken):
             found[kind].append(path)
+            taken.add(name)
     return found
 
 
-def _kind(path: Path) -> str:
-    """What a document is; nothing where it has errors: it could not be run."""
+def _kind(path: Path) -> tuple[str, str]:
+    """What a document is, and its id; nothing where it has errors: it could not be run."""
     try:
         data = read_file(path)
         root = parse(str(path), data)
         if any(problem.severity == "error" for problem in validate([path])):
-            return ""
+            return "", ""
     except (DocumentError, UsageError):
-        return ""
+        return "", ""
     if is_voicexml(data):
-        return "ea"
+        return "ea", path.stem
     if root.namespace == DIALOGUE.namespace:
-        return root.get("kind")
-    return {WORLD.namespace: "world", ROBOT.namespace: "robot"}.get(root.namespace, "")
+        return root.get("kind"), root.get("id")
+    return {WORLD.namespace: "world", ROBOT.namespace: "robot"}.get(root.namespace, ""), ""

@@ -85,6 +85,13 @@ def test_ids_are_made_of_names(name: str, made: str) -> None:
     assert identifier(name, "ea") == made
 
 
+def test_a_scenario_takes_in_one_application_of_an_id(tmp_path: Path) -> None:
+    prima("new", "ea", "tour", cwd=tmp_path)
+    (tmp_path / "copy.xml").write_bytes((tmp_path / "tour.xml").read_bytes())
+    prima("new", "scenario", "visit", cwd=tmp_path)
+    assert prima("run", "visit.xml", cwd=tmp_path).returncode == 0
+
+
 def test_a_scenario_leaves_out_what_has_errors(tmp_path: Path) -> None:
     prima("new", "ea", "cafe", cwd=tmp_path)
     (tmp_path / "broken.xml").write_text(
