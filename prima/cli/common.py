@@ -203,29 +203,32 @@ def same_file(one: str | Path, other: str | Path) -> bool:
 
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
-    """Run with the transcript written line by line, so that nothing is lost on the way."""
-    with ExitStack() as files:
-        stream: IO[str] | None = None
+    """Run with the transcript written line by line, so that nothing is lost on the way.
 
-        def write(line: str) -> None:
-            nonlocal stream
-            try:
-                line.encode()
-                if stream is None:  # not before there is something: a run may be refused
-                    made = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
-                    stream = files.enter_context(made)
-                stream.write(line)
-            except OSError as error:
-                raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
-            except UnicodeEncodeError:
-                message = "a transcript cannot name a file whose path is not UTF-8; rename it."
-                raise UsageError(f"{output}: {message}") from None
+    The file is opened when there is something to write: a run that is refused leaves it as it is.
+    """
+    stream: IO[str] | None = None
 
-        if not sys.stderr.isatty():
-            return rehearse(write)
-        made = rehearse(_with_progress(write))
-        click.echo(f"\r{' ' * 60}\r", err=True, nl=False)
-        return made
+    def write(line: str) -> None:
+        nonlocal stream
+        if stream is None:
+            line.encode()  # may be refused, too
+            opened = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
+            stream = files.enter_context(opened)
+        stream.write(line)
+
+    try:
+        with ExitStack() as files:
+            if not sys.stderr.isatty():
+                return rehearse(write)
+            made = rehearse(_with_progress(write))
+            click.echo(f"\r{' ' * 60}\r", err=True, nl=False)
+            return made
+    except OSError as error:
+        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+    except UnicodeEncodeError:
+        message = "a transcript cannot name a file whose path is not UTF-8; rename it."
+        raise UsageError(f"{output}: {message}") from None
 
 
 def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
