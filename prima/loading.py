@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from prima.session import AnyDocument
     from prima.sim.rehearsal import Cast
     from prima.sim.scenario import Area, Map, Profile, Scenario
+    from prima.voicexml.document import Page
 
 # What one use needs and another does not is imported where it is used: most commands are short.
 
@@ -247,7 +248,7 @@ def _validate_one(path: str) -> list[Problem]:
             from prima.voicexml.document import read_page
 
             page = read_page(_path(path).name, path, data)
-            return [*page.problems, *page.warnings()]
+            return [*page.problems, *page.warnings(), *_not_there(page, _path(path).parent)]
         if not application and is_grammar(data):
             return _grammar_problems(_path(path), data)
         root = None if application else parse(path, data)
@@ -273,6 +274,35 @@ def _validate_one(path: str) -> list[Problem]:
     return []
 
 
+NAMING_FILES = {
+    "src": frozenset(["script", "grammar", "data", "subdialog"]),
+    "next": frozenset(["goto", "link", "choice", "submit"]),
+    "application": frozenset(["vxml"]),
+}
+"""Attributes of VoiceXML elements that name a file, where they name nothing else."""
+
+
+def _not_there(page: Page, folder: Path) -> Iterator[Problem]:
+    """Warn of files that a VoiceXML document names and that are not in its folder."""
+    from urllib.parse import unquote
+
+    for node in page.root.walk():
+        for name, tags in NAMING_FILES.items():
+            uri = node.get(name).strip()
+            if node.tag not in tags or not uri or uri.startswith("#"):
+                continue
+            whole = page.resolve(uri, node)
+            file = unquote(whole.partition("#")[0].partition("?")[0])
+            inside = not file.startswith(("/", "../"))
+            if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
+                continue
+            message = f'There is no file "{file[:80]}" here: this will be error.badfetch.'
+            place = node.attribute_place(name)
+            yield Problem(place, "warning", "no-such-file", message, _nearby(folder / file))
+
+
+SCHEME = pattern(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
+"""How a URI begins that is no file's name."""
 GRAMMAR = pattern(rb"<(?:[\w.-]+:)?grammar[\s>/]")
 """How the root element of a grammar begins that is a file of its own."""
 OTHER_FORMS = (b"#ABNF", b"#JSGF", b";GSL", b"#GSL")

@@ -244,3 +244,32 @@ def test_a_language_without_a_voice_is_told(tmp_path: Path) -> None:
         f"{found.message} {found.remedy}"
         == 'The robot has no voice for "fr-CA". There is en and ja.'
     )
+
+
+@pytest.mark.parametrize(
+    ("content", "warned"),
+    [
+        ('<script src="a.js"/><form><block/></form>', False),
+        ('<script src="b.js"/><form><block/></form>', True),
+        ('<form><block><goto next="#x"/></block></form><form id="x"><block/></form>', False),
+        ('<form><block><goto next="a%20b.vxml#x"/></block></form>', False),
+        ('<form><block><goto next="c.vxml?y=1#x"/></block></form>', True),
+        ('<form><block><goto next="../d/a.js"/></block></form>', True),
+        ('<form><block><submit next="http://h.example/c"/></block></form>', False),
+        ('<form><block><submit next="service:shop"/></block></form>', False),
+        ('<form><block><audio src="none.wav">Hello.</audio></block></form>', False),
+        ('<form xml:base="e/"><subdialog name="s" src="f.vxml"/></form>', True),
+    ],
+)
+def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
+    content: str, warned: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "d").mkdir()
+    for name in ("a.js", "a b.vxml"):
+        (tmp_path / "d" / name).write_text("")
+    (tmp_path / "d" / "m.vxml").write_text(
+        f'<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">{content}</vxml>'
+    )
+    done = prima("validate", "d/m.vxml", cwd=tmp_path)
+    assert ("[no-such-file]" in done.stdout) == warned, done.stdout
+    assert "error:" not in done.stdout

@@ -667,3 +667,49 @@ def test_a_confidence_that_nothing_can_reach_counts_for_nothing() -> None:  # 6.
     text = f"""<property name="confidencelevel" value="1.1"/><form><field name="f">
         <prompt>Q?</prompt>{YES}<filled>{PASS}</filled></field></form>"""
     assert run(text, "yes").logs() == ["pass"]
+
+
+# 5.1.5 and 6.3.6: keys and words that nobody takes -----------------------------------------------
+
+NOTED = """<nomatch><log expr="[application.lastresult$.utterance,
+application.lastresult$.inputmode]"/><exit/></nomatch><noinput><log>nothing</log><exit/></noinput>"""
+
+
+@pytest.mark.parametrize(
+    ("modes", "said", "noted"),
+    [
+        ("dtmf voice", "1 2 #", "12,dtmf"),
+        ("dtmf voice", "*", "*,dtmf"),
+        ("dtmf voice", "12", "12,dtmf"),
+        ("dtmf voice", "perhaps", "perhaps,voice"),
+        ("dtmf", "1 2 #", "12,dtmf"),
+        ("dtmf", "perhaps", "nothing"),
+        ("voice", "12#", "nothing"),
+        ("voice", "12", "12,voice"),
+    ],
+)
+def test_what_nobody_takes_is_noted_as_what_it_is(modes: str, said: str, noted: str) -> None:
+    text = f"""<property name="inputmodes" value="{modes}"/><form>{NOTED}
+        <field name="f" type="digits?length=4"><prompt>Q?</prompt></field></form>"""
+    assert run(text, said).logs() == [noted]
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("['ham', 'eggs']", "ham,eggs"),
+        ("new String('box')", "box"),
+        ("new Error('full')", "Error: full"),
+        ("{toString: function () { return 'mine'; }}", "mine"),
+        ("{a: 1}", '{"a":1}'),
+        ("null", "null"),
+        ("Object.create(null)", "{}"),
+    ],
+)
+def test_a_value_is_said_in_its_own_words(value: str, said: str) -> None:  # 4.1.4
+    text = f'<form><var name="v" expr="{value}"/><block><value expr="v"/></block></form>'
+    assert run(text).said() == [said]
+
+
+def test_audio_may_play_while_data_is_fetched() -> None:  # 2.1, 5
+    assert check_page('<form><data src="a.xml" name="d" fetchaudio="b.wav"/></form>') == []

@@ -826,8 +826,9 @@ def test_a_tag_that_fails_is_told_and_the_grammar_does_not_match() -> None:
         )
     )
     call.answer("big")
-    assert call.logs() == ["no"]
-    assert ["none is not defined" in r["message"] for r in call.phases("error")] == [True]
+    told, handled = call.logs()
+    assert told.startswith("no match: ") and "none is not defined" in told
+    assert handled == "no"
 
 
 def test_a_grammars_srcexpr_that_fails_is_error_semantic() -> None:  # 2.1, 2
@@ -1055,7 +1056,7 @@ def test_a_recordings_text_may_hold_a_recording() -> None:  # 4.1.3
         ('<audio src="a.wav">Hi<desc>a bell</desc></audio>', "Hi"),
         ('<value expr="1 + 1"/>', "2"),
         ("<value expr=\"'a' + 'b'\"/>c", "abc"),
-        ('<value expr="[1, 2]"/>', "[1,2]"),
+        ('<value expr="[1, 2]"/>', "1,2"),
         ('<value expr="undefined"/>', "undefined"),
         ("Many\n   spaces", "Many spaces"),
         ("<![CDATA[1 < 2]]>", "1 < 2"),

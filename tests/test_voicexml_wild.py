@@ -210,13 +210,13 @@ NO_NAMESPACE = (
 )  # fmt: skip
 def test_no_namespace(tmp_path: Path, grammar: str) -> None:
     """It runs with one warning, whatever grammars it has; theirs may lack it, too."""
+    (tmp_path / "g.grxml").write_text(GRAMMAR.format(' version="1.0" xml:lang="en"'))
     text = NO_NAMESPACE.format(grammar)
     [problem] = problems(tmp_path, text)
     assert str(problem) == (
         f"{tmp_path}/app.vxml:2:1: warning: The root element <vxml> has no namespace: it is read as"
         ' VoiceXML. Write <vxml xmlns="http://www.w3.org/2001/vxml">. [no-namespace]'
     )
-    (tmp_path / "g.grxml").write_text(GRAMMAR.format(' version="1.0" xml:lang="en"'))
     made = prima.rehearse(prima.stage([], [str(tmp_path / "app.vxml")], ["blue"]))
     assert said(made)[-1] == '"You said blue."'
 

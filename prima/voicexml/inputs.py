@@ -62,12 +62,24 @@ class Inputs:
 
     def hear(self, context: Context, text: str) -> Heard | None:
         """What the most specific grammars take of an utterance, or None (3.1.4)."""
-        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
-        for said, mode in ways(text, self.owner.setting(context, "termchar")):
-            heard = self._best(context, said, mode) if mode in modes else None
+        for said, mode in self._ways(context, text):
+            heard = self._best(context, said, mode)
             if heard is not None:
                 return heard
         return None
+
+    def noted(self, context: Context, text: str) -> tuple[str, str] | None:
+        """What no grammar has taken, and whether by keys; None if nobody listens to such (6.3.6)."""
+        found = list(self._ways(context, text))
+        pressed = [one for one in found if one[1] == "dtmf"]
+        return pressed[-1] if pressed else next(iter(found), None)
+
+    def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
+        """An utterance as keys and as speech, as far as the application takes such input."""
+        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        for said, mode in ways(text, self.owner.setting(context, "termchar")):
+            if mode in modes:
+                yield said, mode
 
     def _best(self, context: Context, said: str, mode: str) -> Heard | None:
         """The best results of the first scope in which a grammar takes what was said."""
@@ -204,7 +216,7 @@ class Inputs:
 
     def _failed(self, node: Node, message: str) -> None:
         """A tag failed while the user was being understood: the grammar takes it not."""
-        self.owner.actions.append(Say("error", message, source(node)))
+        self.owner.actions.append(Say("log", f"no match: {message}", source(node)))
 
 
 def numbered(node: Node) -> dict[int, str]:

@@ -417,8 +417,11 @@ class Machine:
                 yield from self.items_of.process(context, heard)
             return
         if outcome == "nomatch":
-            utterance = str(resume.data.get("utterance", ""))
-            heard = Heard(utterance, utterance, item, context.page)
+            noted = self.inputs.noted(context, str(resume.data.get("utterance", "")))
+            if noted is None:
+                raise Thrown("noinput", "", source(item))
+            said, mode = noted
+            heard = Heard(said, said, item, context.page, mode=mode)
             heard.take_mark(resume.data)
             self.items_of.remember(context, heard)
         raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))

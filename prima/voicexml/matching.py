@@ -64,7 +64,7 @@ def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Match
         found: list[Found] = []
         for one in grammar.match(said, mode=cast(Literal["dtmf", "voice"], mode), most=most):
             if one.error is not None:
-                tell(node, f"{source(node)}: {one.error}")
+                tell(node, str(one.error))
                 continue
             found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
         return found[:most]

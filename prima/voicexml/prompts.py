@@ -56,8 +56,11 @@ SPOKEN = frozenset(
 """Elements that are said; all but ``prompt`` are a prompt even without one around (4.1.2)."""
 SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
 SHOWN = """function (v) { return v === undefined ? 'undefined'
-  : v !== null && v.nodeType !== undefined ? v.textContent : v; }""".replace("\n", "")
-"""What is said of a value in the engine: of a node of ``data`` its text."""
+  : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
+  : typeof v.toString === 'function' && v.toString !== Object.prototype.toString ? String(v)
+  : v; }""".replace("\n", "")
+"""What is said of a value in the engine: of a node of ``data`` its text, and of what has words of
+its own, as an array, these."""
 APART = frozenset(["p", "s", "paragraph", "sentence"])
 SENTENCE = Cue(0, "sentence")
 UNKNOWN_MS = 1000

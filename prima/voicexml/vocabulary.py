@@ -83,7 +83,7 @@ script|src srcexpr charset {FETCH}||text|5.3.12
 log|label expr|value|text|5.3.13
 throw|event eventexpr message messageexpr|||5.2.1
 foreach|array* item*|{EXECUTABLE} {BLOCKS}|text|VoiceXML 2.1, 6
-data|src srcexpr name method enctype namelist {FETCH}|||VoiceXML 2.1, 5
+data|src srcexpr name method enctype namelist fetchaudio {FETCH}|||VoiceXML 2.1, 5
 """
 GRAMMAR_PARTS = {"example", "one-of", "item", "rule", "ruleref", "tag", "token"}
 
