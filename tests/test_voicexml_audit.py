@@ -713,3 +713,30 @@ def test_a_value_is_said_in_its_own_words(value: str, said: str) -> None:  # 4.1
 
 def test_audio_may_play_while_data_is_fetched() -> None:  # 2.1, 5
     assert check_page('<form><data src="a.xml" name="d" fetchaudio="b.wav"/></form>') == []
+
+
+# 2.1, 7: what is said can be recorded --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "cond",
+    [
+        "f$.recording == 'yes'",
+        "f$.recordingsize == 3",
+        "f$.recordingduration &gt; 0",
+        "application.lastresult$.recording == 'yes'",
+        "application.lastresult$[0].recordingduration &gt; 0",
+    ],
+)
+def test_an_utterance_is_recorded_where_that_is_asked_for(cond: str) -> None:
+    field = f"<prompt>Q?</prompt>{YES}<filled>{holds(cond)}</filled>"
+    on = '<property name="recordutterance" value="true"/>'
+    assert run(f'{on}<form><field name="f">{field}</field></form>', "yes").logs() == ["pass"]
+    assert run(f'<form><field name="f">{field}</field></form>', "yes").logs() == ["fail"]
+
+
+def test_what_nobody_understood_is_recorded_and_played_back() -> None:
+    text = f"""<property name="recordutterance" value="true"/><form><field name="f"><prompt>Q?</prompt>
+        {YES}<nomatch>You said <audio expr="application.lastresult$.recording"/><exit/></nomatch>
+        </field></form>"""
+    assert run(text, "perhaps").said()[-1] == "You said perhaps"

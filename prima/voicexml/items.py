@@ -70,7 +70,12 @@ class Items:
         yield from self.owner.go(context, uri, node)
 
     def remember(self, context: Context, heard: Heard) -> None:
-        """Set ``application.lastresult$`` (5.1.5)."""
+        """Set ``application.lastresult$`` (5.1.5); what was said is recorded where that is asked for.
+
+        Of what is heard with ``recordutterance`` the words are the recording (2.1, 7.2).
+        """
+        if heard.mode == "voice" and self.owner.setting(context, "recordutterance") == "true":
+            heard.recorded = self.recorder.keep(heard.utterance)
         results = [shadow(heard)]
         for utterance, interpretation, confidence in heard.others:
             further = Heard(

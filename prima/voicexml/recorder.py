@@ -33,6 +33,13 @@ class Recorder:
         self.lengths: dict[str, int] = {}
         """What has been recorded, and how long it was (ms)."""
 
+    def keep(self, said: str, ms: float | None = None) -> int:
+        """Know what was said as a recording; gives how long it is (ms), a guess if nobody told."""
+        while len(self.lengths) >= MAX_KNOWN:
+            self.lengths.pop(next(iter(self.lengths)))
+        self.lengths[said] = MS_A_LETTER * len(said) if ms is None else int(ms)
+        return self.lengths[said]
+
     def check(self, item: Node) -> None:
         """Refuse a format in which nothing can be recorded.
 
@@ -88,10 +95,7 @@ class Recorder:
     def _fill(
         self, context: Context, item: Node, said: str, data: Data, more: dict[str, Json]
     ) -> None:
-        ms = int(data.get("duration", MS_A_LETTER * len(said)))
-        while len(self.lengths) >= MAX_KNOWN:
-            self.lengths.pop(next(iter(self.lengths)))
-        self.lengths[said] = ms
+        ms = self.keep(said, data.get("duration"))
         shadow = {"duration": ms, "size": len(said.encode()), **more}
         self.owner.items_of.fill(context, item, said, shadow)
 

@@ -25,4 +25,8 @@ def shadow(heard: Heard) -> dict[str, Json]:
         found["markname"] = heard.mark
     if heard.marktime is not None:
         found["marktime"] = heard.marktime
+    if heard.recorded is not None:
+        found["recording"] = heard.utterance
+        found["recordingsize"] = len(heard.utterance.encode())
+        found["recordingduration"] = heard.recorded
     return found

@@ -46,6 +46,9 @@ class Heard:
     marktime: int | None = None
     """How much (ms) was played from that mark on, if that is known (VoiceXML 2.1, 4)."""
 
+    recorded: int | None = None
+    """How long (ms) its recording is, if it was recorded (VoiceXML 2.1, 7)."""
+
     def take_mark(self, data: Data) -> None:
         """Take in what the device tells of marks, if it does (:class:`prima.messages.Heard`)."""
         if "markname" in data:
