@@ -430,11 +430,15 @@ def _property_problems(node: Node) -> list[Problem]:
 
 def _type_problems(field: Node) -> list[Problem]:
     """A built-in type that is none: the field throws error.unsupported.builtin (2.3.1)."""
-    from prima.grammar.builtin import TYPES, built_in
+    from prima.grammar.builtin import TYPES, Conflict, built_in
 
     kind = field.get("type")
     try:
         built_in(kind, "voice", "en")
+    except Conflict as error:
+        remedy = "At run time it is error.badfetch."
+        place = field.attribute_place("type")
+        return [Problem(place, "warning", "exclusive", str(error), remedy)]
     except ValueError as error:
         remedy = did_you_mean(kind, TYPES) or f"Write {one_of(TYPES)}, or a <grammar>."
         remedy += " At run time it is error.unsupported.builtin."

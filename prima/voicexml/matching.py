@@ -123,7 +123,8 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
     except GrammarError as error:
         if failures:
             raise failures[0] from None
-        raise Thrown(_event(error), f"{place}: {error}", place) from None
+        message = f"{place}: {error}" if uri else str(error)  # an own place, in the same file
+        raise Thrown(_event(error), message, place) from None
     return made
 
 
