@@ -686,6 +686,9 @@ def test_a_reference_out_of_the_folder_is_not_one_into_it() -> None:  # RFC 2396
         with pytest.raises(GrammarError):
             load(f"{ABNF}$r = $<{uri}>;", base="a/a.gram", fetch=fetch)
     assert asked == ["b.gram", "../b.gram", "b.gram"]
+    with pytest.raises(GrammarError):
+        load(f"{ABNF}$r = $<b.gram>;", base="d/page.vxml?path=/a/b", fetch=fetch)
+    assert asked[-1] == "d/b.gram"
 
 
 @pytest.mark.parametrize("encoding", ["ISO-8859-1", "windows-1252", "UTF-16", "Shift_JIS", "utf-8"])
@@ -704,6 +707,7 @@ def test_a_byte_that_is_none_is_told_with_its_line_and_a_remedy() -> None:
 def test_what_stands_inside_of_words_does_not_cut_them() -> None:
     grammar = load(ABNF + "$r = cooperate;")
     assert grammar.match("co\u00adoperate") and grammar.match("co\u200doperate")
+    assert load(ABNF + "$r = turn left;").match("turn\u200bleft")  # a space without width
 
 
 def test_places_of_inline_abnf_are_those_of_the_document() -> None:  # which begins in line 1

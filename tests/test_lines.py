@@ -169,3 +169,17 @@ def test_losers_are_all_named_when_one_start_leaves_few_waiting() -> None:
         found.append([one for one in crowd.decisions() if one["phase"] == "decision"])
     assert found[0] == found[1]
     assert [(one["rule"], one["losers_count"]) for one in found[0]] == [("S2f", 4), ("S2f", 3)]
+
+
+def test_who_may_start_once_the_channel_is_engaged_starts_in_the_same_instant() -> None:
+    """K1: a question keeps others from leaving, but not its own application."""
+    found = []
+    for few in (0, 1000):
+        crowd = Crowd(few)
+        crowd.ask(1, KINDS[3])
+        crowd.mediator.load("a0", "ea")
+        commands = [Command("q-and-a", {}, "Well?"), Command("topological-move", {"to": "door"})]
+        crowd.mediator.request("a0", Request(99, [Step(one) for one in commands], 1))
+        crowd.mediator.select()
+        found.append([one["command"] for one in crowd.decisions() if one["phase"] == "start"])
+    assert found[0] == found[1] == ["q-and-a", "topological-move"]

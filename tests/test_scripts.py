@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import time
+
 import pytest
 
 from prima.interpreter.evaluation import SCOPES, ScriptError
@@ -50,6 +53,25 @@ class Scopes:
         (["var f = function (x) { var y = x; return y; }, g = x => { var z = x; return z; }"], "[f(1), g(2), typeof y, typeof z]", [1, 2, "undefined", "undefined"]),
         (["var s = 'var no = 1', r = /var no/, t = `var no`; // var no"], "typeof no", "undefined"),
         (["(function named() { var x = 1; })()"], "[typeof named, typeof x]", ["undefined", "undefined"]),
+        (["this.foo = 3; (function (root) { root.Lib = {v: 1}; })(this);"], "[foo, Lib.v]", [3, 1]),
+        (["let count = 0; function next() { return ++count; }", "next(); next();"], "count", 2),
+        (["if (1) /a(){/.test('a'); var x = 1;"], "x", 1),
+        (["function pct() { return (4 / 2) * 100; } var i = 6, p = i++ / 3; var path = 'x/y';"], "[pct(), p, path]", [200, 2, "x/y"]),
+        (["var re = /^\\d+$/\nfunction f() { return 1; }\nvar n = 1\nn++\nfunction g() { return 2; }"], "[f(), g(), n]", [1, 2, 2]),
+        (["var a = {class: 'x', function: 1}; function f() { return a.class; }"], "f()", "x"),
+        (["var e = {}; e.class = 'a'; if (1) { var j = 1; } e.function = 2; function f() {}"], "[j, typeof f]", [1, "function"]),
+        (["var o = {delete(n) { var i = n; if (n > 0) o.delete(n - 1); return i; }, 'm'() { var q; }, 1() { var q; }, ['x']() { var q; }}; var r = o.delete(3);"], "[r, typeof q]", [3, "undefined"]),
+        (["var x = 1; var [x] = [2];"], "x", 2),
+        (["for (var [k, v] of [[1, 2]]); for (var k in {z: 1});"], "k", "z"),
+        (["var f; if (true) { function f() { return 1; } }"], "f()", 1),
+        (["function f() { return 1; } if (true) { function f() { return 2; } }"], "f()", 2),
+        (["if (false) { function log() {} } else { var log = null; }"], "log === null", True),
+        (["var has = 'x' in {x: 1}, n = 0, list;"], "[has, n, list === undefined]", [True, 0, True]),
+        (["var s = 1; if (s) /\"/.test('a'); var t = 'var x = 1'; var u = 2;"], "[t, u]", ["var x = 1", 2]),
+        (["if (true)\n function f() { return 1; }"], "f()", 1),
+        (["var $$ = 1; x = 3; function $f() { return $$; }"], "[$$, x, $f()]", [1, 3, 1]),
+        (["function b() { return 1; } var b$_ = 3;"], "[b(), b$_]", [1, 3]),
+        (["function outer() { class A extends (class B {}) { m() { var w; } } } var z = 1;"], "[typeof w, z]", ["undefined", 1]),
         (["class K { m() { var x = 1; return x; } }"], "[new K().m(), typeof x]", [1, "undefined"]),
     ],
 )  # fmt: skip
@@ -93,7 +115,34 @@ def test_what_was_declared_before_an_error_is_there() -> None:
 def test_a_script_keeps_its_lines() -> None:
     code = "var a = 1, b\n(f)\nfunction f(x) { var c }\n  async function g() {}\nfunction* h() {}"
     script = hoisted(code)
+    assert script is not None
     assert script.code == (
-        "    a = 1, b;\n(f)\nfunction f$$(x) { var c }\n  async function g$$() {}\nfunction* h$$() {}"
+        "    a = 1, b;\n(f)\nfunction f$_(x) { var c }\n  async function g$_() {}\nfunction* h$_() {}"
     )
     assert (script.variables, script.functions) == (["a", "b", "f", "g", "h"], ["f", "g", "h"])
+
+
+def test_code_that_seems_to_be_a_text_stays_within_its_function() -> None:
+    """A template that is misread must not become code of ours."""
+    scopes = Scopes()
+    code = "if(0)/`/;\n`\nfunction f{ `; `+'`;'}`;})()}});Array.prototype.EVIL=5;(function(){{(function(){//'`"
+    with contextlib.suppress(ScriptError):
+        scopes.run(code)
+    assert scopes.value("[].EVIL === undefined") is True
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "\n".join(f"v{n} = {n};" for n in range(6000)),
+        "\n".join(f"var v{n} = /a/" for n in range(4000)),
+        "var o = {};" + "\n".join(f"o.class = {n};" for n in range(6000)),
+        "\n".join(f"function f{n}() {{ var i; return {n}; }}" for n in range(4000)),
+    ],
+    ids=["assigned", "without semicolons", "members", "functions"],
+)
+def test_long_scripts_take_their_length(code: str) -> None:
+    scopes = Scopes()
+    began = time.process_time()
+    scopes.run(code)
+    assert time.process_time() - began < 5

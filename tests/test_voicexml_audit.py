@@ -531,6 +531,7 @@ def test_what_a_subdialog_gives_back_is_what_it_was(cond: str) -> None:
         ("[1, undefined, null]", "p[1] === undefined &amp;&amp; p[2] === null"),
         ("function () { return 3; }", "p() === 3"),
         ("(function () { var o = {}; o.o = o; return o; })()", "p.o === p"),
+        ("[1,,3,,]", "p.length == 4 &amp;&amp; !(1 in p)"),
     ],
 )
 def test_a_parameter_is_what_it_was(given: str, cond: str) -> None:
@@ -655,7 +656,7 @@ def test_a_property_that_holds_nothing_is_warned_of(
 
 
 @pytest.mark.parametrize(
-    ("name", "warned"), [("a-b", True), ("class", True), ("1x", True), ("größe", False), ("$", False)]
+    ("name", "warned"), [("a-b", True), ("class", True), ("1x", True), ("größe", False), ("$", False), ("of", False)]
 )  # fmt: skip
 def test_a_variable_that_no_expression_can_name_is_warned_of(name: str, warned: bool) -> None:
     text = f'<form><field name="{name}"><prompt>Q?</prompt>{YES}</field></form>'  # 5.1.1

@@ -45,8 +45,8 @@ def fold(text: str) -> str:
 
 def _letter(letter: str) -> str:
     category = unicodedata.category(letter)
-    if category == "Cf":
-        return ""  # a soft hyphen, a joiner: it stands inside of words
+    if category == "Cf" and letter != "\u200b":  # which may stand between words
+        return ""  # a soft hyphen, a joiner: it stands inside of a word
     return " " if category[0] in "PSZC" else letter
 
 

@@ -81,7 +81,7 @@ EVENT = pattern(r"event|_message|\beval\b|valueOf|\\u")
 """What code has that may look at the event that is being handled."""
 HANDLED = frozenset(["event", "_event", "_message"])
 """Variables that tell of it."""
-DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|valueOf|\\u")
+DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|\bthis\b|valueOf|\\u")
 """What code has that may know the scope of a form, and put something into it."""
 ONLY_NEXT = frozenset(["next"])
 

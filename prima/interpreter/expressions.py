@@ -40,12 +40,12 @@ HELPERS = r"""
 (function () {
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
-const prototype = Object.getPrototypeOf, plain = Object.prototype, Known = Map;
+const prototype = Object.getPrototypeOf, plain = Object.prototype, Known = Map, List = Array;
 // Data as a copy, also data that holds itself; what is no plain data stays what it is.
 const copy = (v, done) => {
   if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
   if (done.has(v)) return done.get(v);
-  const made = isArray(v) ? [] : {};
+  const made = isArray(v) ? new List(v.length) : {};
   done.set(v, made);
   for (const key of keys(v)) made[key] = copy(v[key], done);
   return made;
@@ -76,6 +76,8 @@ return {
 }; })()
 """
 
+INTO = "$into$"
+"""The scope whose variables a script declares, for our code around it."""
 MAY_ASK_TIME = re.compile(
     r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
@@ -368,32 +370,32 @@ class Engine:
     def _script(self, code: str) -> tuple[Any, Hoisted]:
         """The function of a script: of all scopes, and of that whose variables it declares."""
         script = hoisted(code)
-        try:
-            return self._call(self._context.eval, (self._wrapped(script),)), script
-        except ScriptError:  # it is written in a way that cannot be seen through
-            script = Hoisted(code, others=sorted(declared_names(code)))
-            return self._call(self._context.eval, (self._wrapped(script),)), script
+        if script is not None:
+            try:
+                if script.code != code:
+                    self._check(check_script, script.code)
+                return self._call(self._context.eval, (self._wrapped(script),)), script
+            except ScriptError:  # something in it is not what it seems
+                pass
+        script = Hoisted(code, others=sorted(declared_names(code)))
+        return self._call(self._context.eval, (self._wrapped(script),)), script
 
     def _wrapped(self, script: Hoisted) -> str:
         # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
         # scope, which here is the script's own (VoiceXML 5.3.12).
-        loose = "".join(
-            f"if(typeof {name}==='undefined'&&!({self._has(name)}))$$.{name}=undefined;"
-            for name in sorted(assigned_names(script.code))
+        loose = sorted(assigned_names(script.code) - {*script.variables})
+        known = "||".join(f"n in {_short(scope)}" for scope in self._scopes)
+        declare = (
+            f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){INTO}[n]=undefined;"
+            f"for(const n of {json.dumps(loose)})"
+            f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
         )
-        declare = "".join(
-            f"if(!({json.dumps(name)} in $$))$$.{name}=undefined;" for name in script.variables
-        )
-        give = "".join(f"$$.{name}={name}{HIDDEN};" for name in script.functions)
+        give = "".join(f"{INTO}.{name}={name}{HIDDEN};" for name in script.functions)
         export = "".join(
-            f"if(typeof {name}!=='undefined')$$.{name}={name};" for name in script.others
+            f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
         )
-        inner = f"(function(){{{give}\n{script.code}\n;{export}}})()"
-        return f"(function({self._names},$$){{{declare}{self._withs}{{{loose}{inner}}}}})"
-
-    def _has(self, name: str) -> str:
-        """Code that tells whether any scope has a variable."""
-        return "||".join(f"{json.dumps(name)} in {_short(scope)}" for scope in self._scopes)
+        inner = f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
+        return f"(function({self._names},{INTO}){{{declare}{self._withs}{{{inner}}}}})"
 
 
 def _marked(value: Json) -> Json:

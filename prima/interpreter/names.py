@@ -141,18 +141,40 @@ def tokens_of(code: str) -> list[Token]:
     """The pieces of code, comments left out."""
     found: list[Token] = []
     position, end = 0, 0
+    heads: list[bool] = []
+    """Of the round brackets that are open, whether they are the head of an if or a loop."""
+    head = False
     while match := TOKEN.search(code, position):
         last = found[-1].text if found else ""
-        divides = OPERAND.match(last[-1:]) is not None and last not in BEFORE_OPERAND
-        if match[0] == "/" and not divides:
+        if match[0] == "/" and (head or not _ends_operand(found)):
             match = PATTERN.match(code, match.start()) or match
         position = match.end()
+        if match[0] == "(":
+            heads.append(last in HEADED)
+        head = match[0] == ")" and bool(heads) and heads.pop()
         if match[0].startswith(("//", "/*")):
             continue
         fresh = not found or "\n" in code[end : match.start()]
         found.append(Token(match[0], match.start(), fresh))
         end = position
     return found
+
+
+HEADED = frozenset(["if", "while", "for", "with"])
+"""Behind the bracket that follows these a statement begins."""
+
+
+def _ends_operand(before: list[Token]) -> bool:
+    """Whether code may end an operand, so that a stroke behind it divides."""
+    if not before:
+        return False
+    last = before[-1]
+    if last.text in ("+", "-") and len(before) > 1:  # i++ is one, and a prefix has none behind it
+        return before[-2].text == last.text and before[-2].start + 1 == last.start
+    regular = last.text[0] == "/" and len(last.text) > 1
+    return regular or (
+        OPERAND.match(last.text[-1:]) is not None and last.text not in BEFORE_OPERAND
+    )
 
 
 LONG_CODE = 500
@@ -309,13 +331,15 @@ class Reader:
     def _declaration(self, index: int) -> set[str]:
         """The names of a list of declarators."""
         names: set[str] = set()
+        loop = self._text(index - 2) == "(" and self._text(index - 3) in ("for", "await")
+        ending = ("var", "let", "const", "of", "in") if loop else ("var", "let", "const")
         while index < len(self.tokens):
             if self.texts[index] in RESERVED:
                 return names
             names |= self._targets(index)
             index = self.ends.get(index, index) + 1
             while (text := self._text(index)) not in (",", ";", ")", "]", "}", ""):
-                if text in ("var", "let", "const", "of", "in") or self._next_statement(index):
+                if text in ending or self._next_statement(index):
                     return names  # what stands there is no declarator, or the loop's own
                 index = self.ends.get(index, index) + 1
             if text != ",":
@@ -330,9 +354,7 @@ class Reader:
 
     def _begins_line(self, index: int) -> bool:
         """Whether a line begins there, and the one before may be over."""
-        before = self._text(index - 1)
-        ends = OPERAND.match(before[-1:]) is not None and before not in BEFORE_OPERAND
-        return self.tokens[index].fresh and ends
+        return self.tokens[index].fresh and _ends_operand(self.tokens[max(index - 2, 0) : index])
 
     def parameters(self) -> set[str]:
         """Names of the parameters of functions, arrows, methods and catches."""

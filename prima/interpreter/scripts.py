@@ -9,13 +9,15 @@ the scope has already, and a ``function`` there under another name, from which t
 from __future__ import annotations
 
 from prima.deferred import dataclass, field
-from prima.interpreter.names import DECLARES, PAIRS, Reader
+from prima.interpreter.names import DECLARES, HEADED, PAIRS, Reader
 
-HIDDEN = "$$"
+HIDDEN = "$_"
 """What is added to the name of a function at the top."""
 CONTINUES = frozenset("([`+-/*.")
 """How a line may begin that goes on with an expression of the line before."""
 ENDS = frozenset(["", ";", "}"])
+STATEMENTS = HEADED | {"switch", "catch"}
+"""What has a head in brackets, and a block behind it."""
 BLOCKS = frozenset(["{", ")", "else", ":"])
 """Behind what a function may be declared in a block."""
 CLOSING = frozenset(PAIRS.values())
@@ -42,8 +44,8 @@ class Hoisted:
         return column
 
 
-def hoisted(code: str) -> Hoisted:
-    """Take a script's declarations out of it."""
+def hoisted(code: str) -> Hoisted | None:
+    """Take a script's declarations out of it; None where its text cannot be seen through."""
     return _Hoister(code).hoist() if DECLARES.search(code) else Hoisted(code)
 
 
@@ -58,20 +60,25 @@ class _Hoister(Reader):
         self.depth = 0
         """In how many brackets the piece stands that is looked at."""
 
-    def hoist(self) -> Hoisted:
+    def hoist(self) -> Hoisted | None:
+        """See :func:`hoisted`."""
         script, index = self.script, 0
+        brackets = sum(text in PAIRS or text in CLOSING for text in self.texts)
+        if len(self.ends) != brackets:
+            return None
         while index < len(self.tokens):
             text = self.texts[index]
             self.depth += (text in PAIRS) - (text in CLOSING)
             if text in ("var", "let", "const") and self._text(index - 1) != ".":
                 self._declared(index)
-            elif text in ("function", "class"):
+            elif text in ("function", "class") and self._is_keyword(index):
                 self._named(index)
             index = self._next(index)
         script.variables = [*dict.fromkeys([*script.variables, *script.functions])]
-        script.others = [
-            *dict.fromkeys(one for one in script.others if one not in script.variables)
-        ]
+        script.others = [*dict.fromkeys(script.others)]
+        hidden = {f"{name}{HIDDEN}" for name in script.functions}
+        if not hidden.isdisjoint(self.texts) or not {*script.variables}.isdisjoint(script.others):
+            return None  # a name stands for two things
         pieces, at = [], 0
         for start, end, text in sorted(self.edits):
             pieces += [self.code[at:start], text]
@@ -80,13 +87,17 @@ class _Hoister(Reader):
         return script
 
     def _declared(self, index: int) -> None:
-        """Variables are declared; those of ``var`` belong to the scope whatever they stand in."""
+        """Variables are declared; those of ``var`` belong to the scope whatever they stand in.
+
+        At the top ``let`` and ``const`` are the same, so that functions and other code share them.
+        """
         kind, names = self.texts[index], sorted(self._declaration(index + 1))
-        if kind == "var" and names and self._text(index + 1) not in PAIRS:
+        ours = kind == "var" or self.depth == 0
+        if ours and names and self._text(index + 1) not in PAIRS:
             start = self.tokens[index].start
             self.edits += [(start, start + len(kind), " " * len(kind)), *self._closed(index + 1)]
             self.script.variables += names
-        elif kind == "var" or self.depth == 0:
+        elif ours:
             self.script.others += names
 
     def _named(self, index: int) -> None:
@@ -96,7 +107,8 @@ class _Hoister(Reader):
         if not self._is_name(name):
             return
         before = self._text(index - 1 - (self._text(index - 1) == "async"))
-        alone = before in ENDS or self._begins_line(index)
+        headed = before == ")" and self._text(self.ends.get(index - 1, 0) - 1) in HEADED
+        alone = before in ENDS or (self._begins_line(index) and not headed)
         function = self.texts[index] == "function"
         if alone and function and self.depth == 0:
             end = self.tokens[at].start + len(name)
@@ -109,17 +121,32 @@ class _Hoister(Reader):
     def _next(self, index: int) -> int:
         """Where to look next: behind the body of a function that begins here."""
         text = self.texts[index]
-        if text == "function":
-            return self._function_end(index) + 1
-        if text == "class":
-            rest = range(index, len(self.tokens))
-            opening = next((at for at in rest if self.texts[at] == "{"), index)
-            return self.ends.get(opening, index) + 1
+        if text in ("function", "class") and self._is_keyword(index):
+            at = self._function_end(index) if text == "function" else self._class_body(index)
+            return max(at, index) + 1
         if text == "=>" and self._text(index + 1) == "{":
             return self.ends.get(index + 1, index) + 1
-        if self._is_name(text) and self._is_method(index):
-            return self.ends[self.ends[index + 1] + 1] + 1
+        if self._is_method(index) and self._may_be_method(index):
+            return self.ends.get(self.ends[index + 1] + 1, index) + 1
         return index + 1
+
+    def _is_keyword(self, index: int) -> bool:
+        """Whether ``function`` or ``class`` is no member's name there."""
+        return self._text(index - 1) not in (".", "?.") and self._text(index + 1) != ":"
+
+    def _class_body(self, index: int) -> int:
+        """Where the body of a class ends."""
+        at = index + 1
+        while at < len(self.tokens) and self.texts[at] != "{":
+            at = self.ends.get(at, at) + 1
+        return self.ends.get(at, index)
+
+    def _may_be_method(self, index: int) -> bool:
+        """Whether what stands before ``( ... ) {`` is a method's name, not the head of a statement."""
+        text = self.texts[index]
+        if text == "function" or text in PAIRS or text in (")", "}"):
+            return False
+        return text not in STATEMENTS or self._text(index - 1) == ","
 
     def _closed(self, index: int) -> list[tuple[int, int, str]]:
         """What ends declarators without a value where the next line would go on with them."""

@@ -24,7 +24,7 @@ def join(base: str, uri: str) -> str:
         return urljoin(base, uri)
     path, mark, rest = uri.partition("#")
     path, query, asked = path.partition("?")
-    folder = posixpath.dirname(base)
+    folder = posixpath.dirname(base.partition("#")[0].partition("?")[0])
     whole = posixpath.normpath(posixpath.join(folder, path))
     end = "/" if path.endswith("/") else ""
     return f"{whole}{end}{query}{asked}{mark}{rest}"

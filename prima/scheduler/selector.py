@@ -318,10 +318,11 @@ class Selector:
             lower.sort(key=itemgetter(0))
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
+        # Where the channel is engaged (K1), others of a line may be the first that may start.
+        changed = many and ab.engages and not ab.stream.engaged
         resumed = self._run(ab, now)
-        changed = False
         if reaction is not None or by_floor_rule:
-            changed = self._take_floor(ab, reaction, by_floor_rule)
+            changed = self._take_floor(ab, reaction, by_floor_rule) or changed
         losers = [
             entry
             for entry in lower

@@ -388,6 +388,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     return problems
 
 
+SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
+"""Words that are names, too, in the ECMAScript of documents."""
 NAMING = frozenset([*FORM_ITEMS, "var", "data"])
 """Elements whose name is a variable."""
 
@@ -395,7 +397,7 @@ NAMING = frozenset([*FORM_ITEMS, "var", "data"])
 def _name_problems(node: Node) -> list[Problem]:
     """A variable that no expression can name (5.1.1)."""
     name = node.get("name")
-    if IDENTIFIER.fullmatch(name) and name not in RESERVED:
+    if IDENTIFIER.fullmatch(name) and name not in RESERVED - SOMETIMES:
         return []
     message = f'"{name}" is no name of ECMAScript: no expression can read it.'
     remedy = "Write letters, digits and _, and no word that ECMAScript has for itself."
