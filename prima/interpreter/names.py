@@ -306,7 +306,7 @@ class Reader:
         """The names of members that stand in the bodies of classes."""
         found: set[int] = set()
         for index, text in enumerate(self.texts):
-            if text != "class":
+            if text != "class" or not self._is_keyword(index):
                 continue
             start = next((at for at in range(index, len(self.texts)) if self.texts[at] == "{"), -1)
             at, end = start + 1, self.ends.get(start, -1)
@@ -316,6 +316,10 @@ class Reader:
                     found.add(at)
                 at = self.ends.get(at, at) + 1
         return found
+
+    def _is_keyword(self, index: int) -> bool:
+        """Whether ``function`` or ``class`` is no member's name there."""
+        return self._text(index - 1) not in (".", "?.") and self._text(index + 1) != ":"
 
     def declared(self) -> set[str]:
         """Names that var, let, const, function and class declare."""

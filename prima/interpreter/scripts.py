@@ -57,6 +57,7 @@ class _Hoister(Reader):
         self.script = Hoisted(code)
         self.edits: list[tuple[int, int, str]] = []
         """From where to where which text is put."""
+        self.shares = not {"function", "=>", "class"}.isdisjoint(self.texts)
         self.depth = 0
         """In how many brackets the piece stands that is looked at."""
 
@@ -89,11 +90,13 @@ class _Hoister(Reader):
     def _declared(self, index: int) -> None:
         """Variables are declared; those of ``var`` belong to the scope whatever they stand in.
 
-        At the top ``let`` and ``const`` are the same, so that functions and other code share them.
+        At the top ``let`` and ``const`` do where functions may share them; a function's own
+        variables are quicker, and they are given to the scope at the end.
         """
         kind, names = self.texts[index], sorted(self._declaration(index + 1))
         ours = kind == "var" or self.depth == 0
-        if ours and names and self._text(index + 1) not in PAIRS:
+        moves = kind == "var" or (ours and self.shares)
+        if moves and names and self._text(index + 1) not in PAIRS:
             start = self.tokens[index].start
             self.edits += [(start, start + len(kind), " " * len(kind)), *self._closed(index + 1)]
             self.script.variables += names
@@ -129,10 +132,6 @@ class _Hoister(Reader):
         if self._is_method(index) and self._may_be_method(index):
             return self.ends.get(self.ends[index + 1] + 1, index) + 1
         return index + 1
-
-    def _is_keyword(self, index: int) -> bool:
-        """Whether ``function`` or ``class`` is no member's name there."""
-        return self._text(index - 1) not in (".", "?.") and self._text(index + 1) != ":"
 
     def _class_body(self, index: int) -> int:
         """Where the body of a class ends."""
