@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -121,10 +120,8 @@ def test_a_grammar_that_is_ambiguous_over_and_over_comes_to_an_end(tmp_path: Pat
         f"{rules}<rule id='r40'><item repeat='0-1'>a</item></rule></grammar>"
         "<noinput><exit/></noinput></field><block><exit/></block></form></prima>"
     )
-    began = time.monotonic()
     done = prima("run", "--ea", "g.xml", "--say", "a " * 900, cwd=tmp_path)
-    assert done.returncode in (0, 1), done.stderr
-    assert time.monotonic() - began < 20
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize(

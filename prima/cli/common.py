@@ -263,6 +263,8 @@ def start_watchdog(patience: float = 1.0) -> None:
 
     from prima.interpreter.evaluation import INSTANT_SECONDS, PULSE
 
+    longest = patience * INSTANT_SECONDS
+
     def watch() -> None:
         seen, since = -1, time.monotonic()
         instant, began = -1, time.monotonic()
@@ -276,8 +278,8 @@ def start_watchdog(patience: float = 1.0) -> None:
             reason = ""
             if time.monotonic() - since > patience * WATCHDOG_SECONDS:
                 reason = "a document's script does not come back"
-            elif count % 2 and time.monotonic() - began > patience * INSTANT_SECONDS:
-                reason = f"the scripts of one instant take more than {INSTANT_SECONDS:g} s"
+            elif count % 2 and time.monotonic() - began > longest:
+                reason = f"the scripts of one instant take more than {longest:g} s"
             if reason:
                 os.write(2, f"prima: {reason}; the run is ended.\n".encode())
                 os._exit(3)

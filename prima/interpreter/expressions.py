@@ -65,7 +65,7 @@ return {
   has: function (o, k) { return own(o, k); },
   defined: function (o, k) { return own(o, k) && o[k] !== undefined; },
   hand: function (o, k, from) { o[k] = from[k]; },
-  part: function (o, k) { o[k] = copy(o[k], new Known()); },
+  detach: function (o, k) { o[k] = copy(o[k], new Known()); },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? stringify(v) : text(v); },
   parse: function (v) { return parse(v, unmarked); },
@@ -336,10 +336,9 @@ class Engine:
             function = self._assigning[key] = self._compile(_assignment(name, code, names), names)
         self._call(function, scopes, MAX_SCRIPT_SECONDS)
 
-    def assign_copy(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
-        """As :meth:`assign`, but what is data is copied: others may change theirs."""
-        self.assign(scope, name, code, scopes)
-        self._call(self._help["part"], (scope, name))
+    def detach(self, scope: Scope, name: str) -> None:
+        """Let a variable hold a copy of its data, so that nobody else changes it with theirs."""
+        self._call(self._help["detach"], (scope, name))
 
     def hand(self, scope: Scope, name: str, source: Scope) -> None:
         """Give a variable the value that one of the same name has in another scope."""

@@ -143,15 +143,6 @@ class Content(Speaker):
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
-    def copy(
-        self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
-    ) -> None:
-        """As :meth:`put`, for whoever may not change the original."""
-        try:
-            self.engine.assign_copy(scope, name, node.get(attribute), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
-
     def assign(self, node: Node, context: Context, local: Scope) -> None:
         """Give a declared variable a value (5.3.2)."""
         try:
@@ -260,7 +251,8 @@ class Content(Speaker):
         values = self.engine.scope()
         for name in node.get("namelist").split():
             try:
-                self.engine.assign_copy(values, name, name, context.scopes(local))
+                self.engine.assign(values, name, name, context.scopes(local))
+                self.engine.detach(values, name)
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
         event = self.word(node, "event", context, local)

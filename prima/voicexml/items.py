@@ -179,7 +179,8 @@ class Items:
             name = param.get("name")
             given.names[name] = None
             if "expr" in param.attributes:
-                self.owner.content.copy(given.values, name, param, "expr", context, local)
+                self.owner.content.put(given.values, name, param, "expr", context, local)
+                self.engine.detach(given.values, name)
             else:
                 self.engine.set(given.values, name, param.get("value"))
         return given
