@@ -22,6 +22,7 @@ from prima.grammar import (
 )
 from prima.markup.reader import parse
 from prima.markup.tree import Node
+from tests.work import steps
 
 SRGS = "http://www.w3.org/2001/06/grammar"
 HEAD = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r"'
@@ -555,30 +556,29 @@ def language(part: object, known: dict[str, Said]) -> Said:
 
 
 @pytest.mark.parametrize("form", ["xml", "abnf"])
-def test_ten_thousand_alternatives_in_ten_milliseconds(form: str) -> None:
-    items = [
-        f"the {word} of {number}"
-        for number in range(2500)
-        for word in ("lord", "lady", "house", "dog")
-    ]
-    if form == "xml":
-        listed = "".join(f"<item>{item}<tag>{item}</tag></item>" for item in items)
-        grammar = load(
-            xml(
-                f'<rule id="r">find <ruleref uri="#w"/> now</rule><rule id="w"><one-of>{listed}</one-of></rule>'
+def test_an_answer_is_no_more_work_among_thousands(form: str) -> None:
+    def work(numbers: int) -> int:
+        items = [f"the {word} of {n}" for n in range(numbers) for word in ("lord", "lady", "house")]
+        if form == "xml":
+            listed = "".join(f"<item>{item}<tag>{item}</tag></item>" for item in items)
+            grammar = load(
+                xml(
+                    '<rule id="r">find <ruleref uri="#w"/> now</rule>'
+                    f'<rule id="w"><one-of>{listed}</one-of></rule>'
+                )
             )
-        )
-    else:
-        grammar = load(
-            f"{ABNF}$r = find $w now;\n$w = {'|'.join(f'{item} {{{item}}}' for item in items)};"
-        )
-    took = []
-    for number in (7, 1200, 2499, 1, 2):
-        began = perf_counter()
-        found = grammar.match(f"find the lady of {number} now")
-        took.append(perf_counter() - began)
-        assert found[0].interpretation == f"the lady of {number}"
-    assert min(took) < 0.01
+        else:
+            listed = "|".join(f"{item} {{{item}}}" for item in items)
+            grammar = load(f"{ABNF}$r = find $w now;\n$w = {listed};")
+        grammar.match("find the lady of 3 now")  # the first time, beginnings are gathered
+
+        def match() -> None:
+            (found,) = grammar.match("find the lady of 7 now")
+            assert found.interpretation == "the lady of 7"
+
+        return steps(match)
+
+    assert work(2500) < 1.5 * work(25)
 
 
 @pytest.mark.parametrize(
@@ -597,13 +597,9 @@ def test_however_ten_thousand_alternatives_begin(one: str, said: str) -> None:
     rules = "".join(f"$x{number} = [please] w{number};" for number in range(count))
     alternatives = "|".join(one.format(number) for number in range(count))
     grammar = load(f"{ABNF}{rules if '$x' in one else ''}$r = {alternatives};")
-    took = []
-    for _ in range(5):
-        began = perf_counter()
-        assert grammar.match(said)
-        took.append(perf_counter() - began)
+    assert grammar.match(said)
     assert not grammar.match(f"{said} w5 z")
-    assert min(took) < 0.01
+    assert steps(lambda: grammar.match(said)) < (20_000 if count > 100 else 200_000)
 
 
 @pytest.mark.parametrize(
@@ -630,15 +626,12 @@ def test_beginnings_are_looked_for_in_bounded_time(body: str) -> None:
     assert process_time() - began < 10
 
 
-def test_loading_takes_time_in_proportion() -> None:
-    def spent(count: int) -> float:
-        text = xml('<rule id="r"><one-of>' + "<item>a b</item>" * count + "</one-of></rule>")
-        began = process_time()
-        load(text)
-        return process_time() - began
-
-    small = min(spent(2000) for _ in range(3))
-    assert min(spent(16_000) for _ in range(3)) < 8 * 4 * small
+def test_the_work_of_loading_grows_with_the_length() -> None:
+    short, long = (
+        xml('<rule id="r"><one-of>' + "<item>a b</item>" * count + "</one-of></rule>")
+        for count in (200, 2000)
+    )
+    assert steps(lambda: load(long)) < 11 * steps(lambda: load(short))
 
 
 RULE = '<rule id="r">x<tag>y</tag></rule>'

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import sys
-from types import FrameType
-from typing import Any
 
 import pytest
 
@@ -13,6 +10,7 @@ from prima.interpreter.evaluation import SCOPES, ScriptError
 from prima.interpreter.expressions import Engine
 from prima.interpreter.names import assigned_names
 from prima.interpreter.scripts import hoisted
+from tests.work import steps
 
 
 class Scopes:
@@ -135,23 +133,8 @@ def test_code_that_seems_to_be_a_text_stays_within_its_function() -> None:
 
 
 def work(code: str) -> int:
-    """Steps of Python's that it takes to look through a script."""
-    count = 0
-
-    def note(frame: FrameType, event: str, _argument: object) -> Any:
-        nonlocal count
-        frame.f_trace_opcodes, frame.f_trace_lines = True, False
-        count += event == "opcode"
-        return note
-
-    before = sys.gettrace()
-    sys.settrace(note)
-    try:
-        hoisted(code)
-        assigned_names(code)
-    finally:
-        sys.settrace(before)
-    return count
+    """Steps that it takes to look through a script."""
+    return steps(lambda: (hoisted(code), assigned_names(code)))
 
 
 @pytest.mark.parametrize(
