@@ -17,6 +17,11 @@ Json = Any
 Data = Mapping[str, Json]
 Record = dict[str, Json]
 """One line of the transcript while it is still being made: field name to value."""
+Fate = Literal["ended", "done", "cancelled", "failed", "interrupted", "unit-timeout"]
+"""What an application may be told of its Commands."""
+Verb = Literal["start", "abort", "interrupt", "stop", "send"]
+"""What devices may be told to do."""
+NO_DEVICES: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -332,45 +337,89 @@ Inbound = (
 # What the mediator orders -----------------------------------------------------
 
 
-@dataclass(slots=True)
 class Order:
     """To the devices: start an AB's Command, abort it, or stop what still moves (F5).
 
     ``interrupt`` is an abort of what will start again: the device tells how much it had done.
     """
 
-    verb: Literal["start", "abort", "interrupt", "stop", "send"]
-    behavior: str
-    command: Command | None = None
-    devices: frozenset[str] = frozenset()
-    loop: int = 0
-    resumed: bool = False
-    beside: bool = False
-    """Whether another motion goes on on the same devices, to be composed with (X5)."""
-    app: str = ""
-    data: Json = None
-    """For ``send``: the service and what it is sent. For a ``start`` after an interruption: the
-    mark to go on from, as the device told it (:class:`Halted`)."""
+    __slots__ = (
+        "app",
+        "behavior",
+        "beside",
+        "command",
+        "data",
+        "devices",
+        "loop",
+        "resumed",
+        "verb",
+    )
+
+    def __init__(
+        self,
+        verb: Verb,
+        behavior: str,
+        command: Command | None = None,
+        devices: frozenset[str] = NO_DEVICES,
+        loop: int = 0,
+        resumed: bool = False,
+        beside: bool = False,
+        app: str = "",
+        data: Json = None,
+    ) -> None:
+        """Make an order.
+
+        Args:
+            verb: what to do.
+            behavior: the AB's name in the transcript.
+            command: its Command.
+            devices: those that the Command occupies.
+            loop: which loop of a feedback Command begins.
+            resumed: whether the Command starts afresh after an interruption.
+            beside: whether another motion goes on on the same devices, to be composed with (X5).
+            app: the application.
+            data: for ``send``: the service and what it is sent. For a ``start`` after an
+                interruption: the mark to go on from, as the device told it (:class:`Halted`).
+        """
+        self.verb = verb
+        self.behavior = behavior
+        self.command = command
+        self.devices = devices
+        self.loop = loop
+        self.resumed = resumed
+        self.beside = beside
+        self.app = app
+        self.data = data
 
 
 # What the mediator tells an application ------------------------------------------
 
 
-@dataclass(slots=True)
 class Notice:
     """The fate of Commands: ``ended``, ``done`` (a whole run), ``cancelled`` or ``failed``.
 
-    ``interrupted`` tells how much was done of one that will start again (X2).
+    ``interrupted`` tells how much was done of one that will start again (X2). ``cause`` is the
+    event that a refused request was to react to: what is asked for instead does (C5).
     """
 
-    what: Literal["ended", "done", "cancelled", "failed", "interrupted", "unit-timeout"]
-    run: int
-    command: Command | None = None
-    data: Data = field(default_factory=dict)
-    event: str = ""
-    message: str = ""
-    cause: int | None = None
-    """The event that a refused request was to react to: what is asked for instead does (C5)."""
+    __slots__ = ("cause", "command", "data", "event", "message", "run", "what")
+
+    def __init__(
+        self,
+        what: Fate,
+        run: int,
+        command: Command | None = None,
+        data: Data | None = None,
+        event: str = "",
+        message: str = "",
+    ) -> None:
+        self.what = what
+        self.run = run
+        self.command = command
+        self.data: Data = {} if data is None else data
+        self.event = event
+        self.message = message
+        self.cause: int | None = None
 
 
 @dataclass(slots=True)

@@ -170,10 +170,10 @@ def chance(patch: pytest.MonkeyPatch) -> None:
     """S5 is gone: what was before decides."""
     seen: list[Behavior] = []
 
-    def rank(ab: Behavior) -> tuple[int, ...]:
+    def rank(ab: Behavior) -> int:
         if not any(one is ab for one in seen):
             seen.append(ab)
-        return (ab.serial * (-1 if len(seen) > 2 else 1),)
+        return ab.serial * (-1 if len(seen) > 2 else 1)
 
     patch.setattr(waiting, "rank_declared", rank)
 

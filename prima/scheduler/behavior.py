@@ -14,13 +14,12 @@ from typing import Literal
 
 from prima.commands import CommandType
 from prima.deferred import dataclass, field
-from prima.messages import Command, Data, Group
+from prima.messages import Command, Data, Group, Record
 from prima.scheduler.effects import Effects
 
 Rank = tuple[int, ...]
 """Where a waiting AB stands by the numbers of a policy's rule, S2a to S2f: the smallest first."""
 HIGH = 1
-NO_DEVICES: frozenset[str] = frozenset()
 
 
 @lru_cache(maxsize=1000)
@@ -172,6 +171,8 @@ class Behavior:
     """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
     entry: Entry | None = None
     """By which it stands there."""
+    told: Record | None = None
+    """What its records have in common: see :mod:`prima.scheduler.chronicle`."""
 
     def __post_init__(self) -> None:
         self.id = self.name
@@ -212,4 +213,5 @@ class Line:
 
     def below(self, rank: Rank) -> int:
         """Where those begin that stand behind a rank."""
-        return bisect_left(self.entries, (rank,))
+        entries = self.entries
+        return 0 if not entries or rank < entries[0][0] else bisect_left(entries, (rank,))

@@ -40,7 +40,9 @@ class Chronicle:
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        self.records.append(fields | self._of(ab, phase))
+        record = self._of(ab, phase)
+        record.update(fields)
+        self.records.append(record)
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
@@ -67,19 +69,28 @@ class Chronicle:
             record["resumed"], record["data"] = True, ab.since
         self.records.append(record)
 
-    def _of(self, ab: Behavior, phase: str) -> Record:
-        """What all records of an AB have."""
-        return {
+    def hold(self, ab: Behavior, rule: str, by: str) -> None:
+        """Record that a waiting AB may not start, and because of what."""
+        record: Record = {
             "time": self.now,
-            "phase": phase,
-            "actor": "robot",
+            "phase": "hold",
+            "actor": "mediator",
             "app": ab.app.name,
             "behavior": ab.id,
-            "tree": ab.stream.name,
-            "command": ab.type.name if ab.type else "iu",
-            "text": ab.command.text if ab.command else None,
-            "unit": ab.unit.id if ab.unit else None,
+            "rule": rule,
+            "by": by,
         }
+        self.records.append(record)
+
+    def _of(self, ab: Behavior, phase: str) -> Record:
+        """What all records of an AB have; most of it stays the same while it lives."""
+        if ab.told is None:
+            ab.told = described(ab)
+        record = ab.told.copy()
+        record["time"] = self.now
+        record["phase"] = phase
+        record["behavior"] = ab.id
+        return record
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
@@ -127,6 +138,25 @@ class Chronicle:
             "losers_count": count,
         }
         self.records.append(record)
+
+
+def described(ab: Behavior) -> Record:
+    """What the records of an AB have in common, with places for what most of them have."""
+    return {
+        "time": 0,
+        "phase": "",
+        "actor": "robot",
+        "app": ab.app.name,
+        "behavior": "",
+        "tree": ab.stream.name,
+        "command": ab.type.name if ab.type else "iu",
+        "text": ab.command.text if ab.command else None,
+        "unit": ab.unit.id if ab.unit else None,
+        "rule": None,
+        "devices": None,
+        "outcome": None,
+        "inbound": None,
+    }
 
 
 def occurred(

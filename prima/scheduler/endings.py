@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 
-from prima.deferred import dataclass
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import (
     GONE,
@@ -23,13 +22,15 @@ from prima.scheduler.selection import Policy
 from prima.scheduler.selector import Selector
 
 
-@dataclass(slots=True)
 class Told:
     """Notices for one application, to be handled in the window of ``stream`` if any (C3)."""
 
-    app: str
-    stream: Stream | None
-    notices: list[Notice]
+    __slots__ = ("app", "notices", "stream")
+
+    def __init__(self, app: str, stream: Stream | None, notices: list[Notice]) -> None:
+        self.app = app
+        self.stream = stream
+        self.notices = notices
 
 
 class Endings:

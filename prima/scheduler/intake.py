@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from prima.commands import TABLE_4_2, CommandType, check_arguments
 from prima.errors import did_you_mean
-from prima.messages import Command, Group, OpenUnit, Request, Step
-from prima.scheduler.behavior import GONE, NO_DEVICES, Application, Behavior, Run, Stream
+from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
+from prima.scheduler.behavior import GONE, Application, Behavior, Run, Stream
 
 Table = Mapping[str, CommandType]
 

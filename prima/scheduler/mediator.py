@@ -8,8 +8,17 @@ applications) and the chronicle's records.
 
 from __future__ import annotations
 
-from prima.messages import CloseUnit, Command, LeaveState, Notice, OpenUnit, Order, Request
-from prima.scheduler.behavior import NO_DEVICES, Application, Behavior, Run, Stream
+from prima.messages import (
+    NO_DEVICES,
+    CloseUnit,
+    Command,
+    LeaveState,
+    Notice,
+    OpenUnit,
+    Order,
+    Request,
+)
+from prima.scheduler.behavior import Application, Behavior, Run, Stream
 from prima.scheduler.endings import Told
 from prima.scheduler.failures import Failures, allowance
 from prima.scheduler.intake import Refused, check_steps, link, parent_of, substitute

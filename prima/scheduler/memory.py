@@ -147,6 +147,11 @@ class Memory:
         self.waiting.remove(ab)
         ab.state = LINKED
 
+    def free(self, devices: frozenset[str]) -> bool:
+        """Whether nothing that runs occupies one of some devices, units' own Commands aside."""
+        occupied = self.occupied
+        return not any(device in occupied for device in devices)
+
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit

@@ -15,26 +15,24 @@ from prima.scheduler.memory import Memory
 from prima.scheduler.waiting import (
     LATER,
     NO_REACTION,
-    place_in_line,
+    place,
     rank_declared,
-    rank_priority,
-    rank_request,
 )
 
 Refusal = tuple[str, str]
 """The rule that keeps an AB from starting, and what it is kept back by."""
 
 
-def rank_reaction(ab: Behavior, memory: Memory) -> Rank:
+def rank_reaction(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
     """S2b: reactions, the latest event's first; of one event, the active application's."""
     if ab.reaction is None:
         return NO_REACTION
     return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
 
 
-def rank_continuing(ab: Behavior, now: int) -> Rank:
+def rank_continuing(ab: Behavior, now: int) -> int:
     """S2c: a parent that has ended in this instant goes before others."""
-    return (0,) if ab.freed == now else LATER
+    return 0 if ab.freed == now else LATER
 
 
 def outranks(priority: int, stream: Stream) -> bool:
@@ -96,19 +94,15 @@ class Policy:
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """Where a waiting AB stands: the smallest goes first (S2)."""
-        return (
-            *rank_priority(ab),
-            *rank_reaction(ab, memory),
-            *rank_continuing(ab, now),
-            *place_in_line(ab),
-        )
+        reacting, event, whose = rank_reaction(ab, memory)
+        return place(ab, reacting, event, whose, rank_continuing(ab, now))
 
     def decided(self, winner: Rank, loser: Rank) -> str:
-        """The rule by which one rank goes before another."""
-        for rule, mine, other in zip(self.rules, winner, loser, strict=True):
-            if mine != other:
-                return rule
-        return self.rules[-1]
+        """The rule by which one rank goes before another; they differ in the serial number at least."""
+        place = 0
+        while winner[place] == loser[place]:
+            place += 1
+        return self.rules[place]
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, K1)."""
@@ -138,7 +132,7 @@ class Fifo(Policy):
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The earlier request goes first."""
-        return (*rank_request(ab), *rank_declared(ab))
+        return (ab.requested, rank_declared(ab), ab.serial)
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """Nothing but devices keeps an AB from starting."""
@@ -164,7 +158,7 @@ class Fair(Fifo):
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
-        return (ab.app.last_turn, *rank_request(ab), *rank_declared(ab))
+        return (ab.app.last_turn, ab.requested, rank_declared(ab), ab.serial)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +172,7 @@ class Fixed(Fifo):
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
         top = ab.app.name == self.first if self.first else ab.app.order == 0
-        return (0 if top else 1, *rank_request(ab), *rank_declared(ab))
+        return (0 if top else 1, ab.requested, rank_declared(ab), ab.serial)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from operator import itemgetter
 
 from prima.messages import Command, Group, Order
 from prima.scheduler.behavior import (
@@ -109,7 +108,8 @@ class Selector:
         waiting = self.memory.waiting
         found = [entry for line in waiting.lines.values() for entry in self._let_in(line)]
         found += self._ranked(waiting.apart(), now)
-        found.sort(key=itemgetter(0))
+        if len(found) > 1:
+            found.sort()
         return found
 
     def _let_in(self, line: Line) -> list[Entry]:
@@ -123,7 +123,8 @@ class Selector:
 
     def _ranked(self, found: Iterable[Behavior], now: int) -> list[Entry]:
         ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
-        return sorted(ranked, key=itemgetter(0))
+        ranked.sort()  # no two ranks are equal: they end with the serial number
+        return ranked
 
     def _let(self, line: Line) -> Application | str:
         """Whose ABs of a line F2 and K1 let start: everybody's, one application's, nobody's."""
@@ -156,7 +157,7 @@ class Selector:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
-        if not held and self.memory.occupied.keys().isdisjoint(ab.devices):
+        if not held and self.memory.free(ab.devices):
             return None
         kept = min(ab.devices & held.keys(), default="") if held else ""
         other = self._occupant(ab)
@@ -288,8 +289,7 @@ class Selector:
         changed = ab.blocked[0] != rule or "." not in by
         ab.blocked = refusal
         if changed:  # the next loop of the same feedback Command is no news
-            name = ab.app.name
-            self.chronicle.add("hold", "mediator", app=name, behavior=ab.id, rule=rule, by=by)
+            self.chronicle.hold(ab, rule, by)
 
     def _start(self, ab: Behavior, rank: Rank, lower: list[Entry], now: int, many: bool) -> bool:
         """Start an AB and record why; true when others rank otherwise now, or may start.
@@ -315,7 +315,7 @@ class Selector:
             for line in waiting.lines.values():
                 behind = line.entries[line.below(rank) :]
                 lower += [entry for entry in behind if entry[1] is not ab]
-            lower.sort(key=itemgetter(0))
+            lower.sort()
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
         # Where the channel is engaged (K1), others of a line may be the first that may start.
@@ -337,7 +337,7 @@ class Selector:
                 losers += firsts
                 count += more
             if lower or len(waiting.lines) > 1:
-                losers.sort(key=itemgetter(0))
+                losers.sort()
         if resumed:
             memory.rank_anew(ab.stream)
         if not policy.exclusive:

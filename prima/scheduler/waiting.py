@@ -13,9 +13,9 @@ from collections.abc import Iterator
 
 from prima.scheduler.behavior import Behavior, Line, Rank
 
-LATER: Rank = (1,)
+LATER = 1
 """S2c: the parent has not ended in this instant."""
-NO_REACTION: Rank = (1, 0, 0)
+NO_REACTION = (1, 0, 0)
 """S2b: it reacts to nothing."""
 
 
@@ -58,7 +58,7 @@ class Waiting:
         if line is None:
             line = self.lines[kind] = Line(*kind)
         ab.line = line
-        ab.entry = ((*rank_priority(ab), *NO_REACTION, *LATER, *place_in_line(ab)), ab)
+        ab.entry = (place(ab, *NO_REACTION, LATER), ab)
         insort(line.entries, ab.entry)
 
     def remove(self, ab: Behavior) -> None:
@@ -84,7 +84,9 @@ class Waiting:
 
     def apart(self) -> list[Behavior]:
         """The ABs that stand in no line."""
-        return [*self._fresh.values(), *self.reactions.values()]
+        apart = list(self._fresh.values())
+        apart += self.reactions.values()
+        return apart
 
     def __iter__(self) -> Iterator[Behavior]:
         return iter(self.all.values())
@@ -96,27 +98,27 @@ class Waiting:
         return name in self.all
 
 
-def rank_priority(ab: Behavior) -> Rank:
-    """S2a: the higher priority goes first."""
-    return (-ab.priority,)
+def place(ab: Behavior, reacting: int, event: int, whose: int, continuing: int) -> Rank:
+    """Where an AB stands (S2), given what S2b and S2c say of it."""
+    return (
+        -ab.priority,  # S2a: the higher priority goes first
+        reacting,
+        event,
+        whose,
+        continuing,
+        rank_suspended(ab),
+        ab.requested,  # S2e: the earlier request goes first
+        rank_declared(ab),
+        ab.serial,
+    )
 
 
-def place_in_line(ab: Behavior) -> Rank:
-    """The last parts of a rank, S2d to S2f: where an AB stands among those of its kind."""
-    return (*rank_suspended(ab), *rank_request(ab), *rank_declared(ab))
-
-
-def rank_suspended(ab: Behavior) -> Rank:
+def rank_suspended(ab: Behavior) -> int:
     """S2d: the stream suspended last goes first; the numbers of suspensions begin with 1."""
     suspended = ab.stream.suspended
-    return (1,) if suspended is None else (-suspended,)
+    return 1 if suspended is None else -suspended
 
 
-def rank_request(ab: Behavior) -> Rank:
-    """S2e: the earlier request goes first."""
-    return (ab.requested,)
-
-
-def rank_declared(ab: Behavior) -> Rank:
-    """S2f: the order in which applications were declared, then the serial number."""
-    return (ab.app.order, ab.serial)
+def rank_declared(ab: Behavior) -> int:
+    """S2f: the order in which applications were declared; the serial number comes after it."""
+    return ab.app.order
