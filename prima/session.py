@@ -121,7 +121,7 @@ class Session:
             else:
                 self._take(value)
         mediator = self.mediator
-        if self._due or mediator.deadlines or mediator.holds:
+        if self._due or mediator.memory.running or mediator.holds:
             self._time_out(now)
         if mediator.told:
             self._settle()

@@ -16,7 +16,20 @@ from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
-from tests.generated import Play, Run, Script, World, drive, perform, plays, scripts
+from tests.core import in_python
+from tests.generated import (
+    Ask,
+    Close,
+    Open,
+    Play,
+    Run,
+    Script,
+    World,
+    drive,
+    perform,
+    plays,
+    scripts,
+)
 from tests.test_properties import examples
 
 
@@ -39,6 +52,30 @@ def test_documents_are_mediated_alike_however_many_are_looked_at(play: Play) -> 
 @examples(30)
 def test_requests_are_mediated_alike_however_many_are_looked_at(script: Script) -> None:
     assert decided(lambda: drive(script), 0) == decided(lambda: drive(script), 1000)
+
+
+def test_who_resumes_in_an_instant_keeps_its_place_in_it_however_many_are_looked_at() -> None:
+    """S2d: a stream's second branch starts where the first one has just resumed it."""
+    sensing = Ask(("active-sensing-human",), ((),))
+    branches = Ask(("active-sensing-human", "q-and-a"), ((), ()))
+    asked = (
+        ((), (), (sensing,)),
+        (
+            (Open(frozenset({"speaker"}), None), Close(), sensing),
+            (Ask(("turn-and-speak",), ((),)), branches),
+            (),
+        ),
+    )
+    script = Script(((), (), ()), tuple((0, deeds) for deeds in asked), (), World())
+    found = decided(lambda: drive(script), 0)
+    assert found == decided(lambda: drive(script), 1000)
+    resumed = next(one for one in found if one["phase"] == "resume" and one["app"] == "ea")
+    rules = [
+        (one["winner"], one["rule"])
+        for one in found
+        if one["phase"] == "decision" and one["time"] == resumed["time"]
+    ]
+    assert rules == [("ea#2.1", "S2d"), ("ea#3", "S2d")]
 
 
 TRACKING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ea">
@@ -145,6 +182,7 @@ class Counting(Policy):
         return super().rank(ab, memory, now)
 
 
+@in_python
 def test_the_work_of_a_decision_does_not_grow_with_those_who_wait() -> None:
     looked = []
     for count in (50, 500):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from functools import lru_cache
-from typing import Literal
+from typing import Final, Literal
 
 from prima.commands import CommandType
 from prima.deferred import dataclass, field
@@ -19,21 +19,21 @@ from prima.scheduler.effects import Effects
 
 Rank = tuple[int, ...]
 """Where a waiting AB stands by the numbers of a policy's rule, S2a to S2f: the smallest first."""
-HIGH = 1
+HIGH: Final = 1
 
 
 @lru_cache(maxsize=1000)
 def in_order(devices: frozenset[str]) -> tuple[str, ...]:
-    """Devices in the order in which they are looked at and told."""
+    """Devices in the order of their names."""
     return tuple(sorted(devices))
 
 
 State = Literal["linked", "waiting", "running", "gone"]
 """The states of an AB in working memory (thesis Figure 4.3), and out of it."""
-LINKED: State = "linked"
-WAITING: State = "waiting"
-RUNNING: State = "running"
-GONE: State = "gone"
+LINKED: Final = "linked"
+WAITING: Final = "waiting"
+RUNNING: Final = "running"
+GONE: Final = "gone"
 
 
 @dataclass(slots=True, eq=False)
@@ -165,22 +165,31 @@ class Behavior:
     motion: str = ""
     """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not within a unit."""
 
+    in_order: tuple[str, ...] = ()
+    """The devices in the order in which they are looked at and told."""
     id: str = ""
     """The AB's name in the transcript; a loop of a feedback Command has its number."""
     line: Line | None = None
     """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
     entry: Entry | None = None
     """By which it stands there."""
+    late: int | None = None
+    """When it will have run for longer than it may (U5, E1), once it has started."""
     told: Record | None = None
     """What its records have in common: see :mod:`prima.scheduler.chronicle`."""
 
     def __post_init__(self) -> None:
         self.id = self.name
+        self.use(self.devices)
         row = self.type
         if row is not None:
             self.feedback, self.leaves = row.feedback, row.leaves
             self.engages, self.priority = row.engages, row.priority
             self.motion = row.motion if self.unit is None else ""
+
+    def use(self, devices: frozenset[str]) -> None:
+        """Say which devices the AB needs."""
+        self.devices, self.in_order = devices, in_order(devices)
 
     def next_loop(self) -> None:
         """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""

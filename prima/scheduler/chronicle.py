@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from prima.messages import Cue, Data, Json, Record
-from prima.scheduler.behavior import Behavior, Entry, Stream, in_order
+from typing import Final
 
-LOSERS_NAMED = 8
+from prima.messages import Cue, Data, Json, Record
+from prima.scheduler.behavior import Behavior, Entry, Stream
+
+LOSERS_NAMED: Final = 8
 """How many losers of a decision are named; all are counted."""
 
 
@@ -58,7 +60,7 @@ class Chronicle:
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
         record = self._of(ab, "start")
-        record["devices"] = [*in_order(ab.devices)]
+        record["devices"] = [*ab.in_order]
         record["rule"] = rule
         if ab.feedback:
             record["parent"] = ab.parent
@@ -103,7 +105,7 @@ class Chronicle:
             cues=shown_cues(command.cues) if command and command.cues else None,
             parent=ab.parent,
             parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
-            devices=[*in_order(ab.devices)],
+            devices=[*ab.in_order],
             priority="high" if ab.priority else "low",
             reactive=ab.reaction is not None,
             cause=ab.reaction,
@@ -134,7 +136,7 @@ class Chronicle:
             "app": winner.app.name,
             "winner": winner.id,
             "rule": rule,
-            "losers": [ab.id for _, ab in losers],
+            "losers": [ab.id for _, ab in losers[:LOSERS_NAMED]],
             "losers_count": count,
         }
         self.records.append(record)

@@ -45,8 +45,6 @@ class Endings:
         self.told: deque[Told] = deque()
         self._maker = Maker(table)
         self._selector = Selector(self.memory, policy, self._maker, chronicle, bound)
-        self.deadlines: dict[str, int] = {}
-        """When ABs will have run for longer than they may (U5, E1), by name."""
         self.holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
         self._restoring = policy.has("x1")
@@ -125,7 +123,6 @@ class Endings:
     def _remove(self, ab: Behavior) -> None:
         unit = ab.unit
         self.memory.remove(ab)
-        self.deadlines.pop(ab.name, None)
         self._touched[ab.stream.name] = ab.stream
         for child in ab.children:
             child.waits_for.discard(ab.name)
@@ -204,7 +201,6 @@ class Endings:
             self._finish(ab, data)
         else:
             self.memory.release(ab)
-            self.deadlines.pop(ab.name, None)
             ab.freed = self._now()
             self.memory.wait(ab)
         return True

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from prima.messages import Notice, Order
 from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
 from prima.scheduler.endings import Endings, Told, in_group
 
-HANG_MS = 120_000
+HANG_MS: Final = 120_000
 """How long a Command may run beyond its own stated times before it has failed (E1)."""
-MS_A_LETTER = 500
+MS_A_LETTER: Final = 500
 """How long a letter of what is said may take at the most."""
 
 
@@ -57,23 +59,27 @@ class Failures(Endings):
 
     def deadline(self) -> int | None:
         """The next instant at which a unit, a device or an event waited for is too late."""
-        return min((*self.deadlines.values(), *self.holds.values()), default=None)
+        running = self.memory.running.values()
+        late = [ab.late for ab in running if ab.late is not None]
+        return min((*late, *self.holds.values()), default=None)
 
     def expire(self) -> bool:
         """U5, E1: end what has run longer than it may; tells whether there was any such."""
         now = self._now()
-        if min((*self.deadlines.values(), *self.holds.values()), default=now + 1) > now:
+        due = self.deadline()
+        if due is None or due > now:
             return False
         self.changed = True
         for name in [name for name, due in self.holds.items() if due <= now]:
             self._let_go(self.memory.streams[name], "over")
-        late = [name for name, due in self.deadlines.items() if due <= now]
-        for name in late:
-            self.deadlines.pop(name, None)
-            ab = self.memory.running.get(name)
-            if ab is not None and ab.group is not None:
+        running = self.memory.running
+        for ab in [ab for ab in running.values() if ab.late is not None and ab.late <= now]:
+            if ab.name not in running:  # it ended with another one
+                continue
+            ab.late = None
+            if ab.group is not None:
                 self._unit_timeout(ab)
-            elif ab is not None:
+            else:
                 self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
                 device = min(ab.devices, default="none")
                 self._fail(ab, f"error.device.{device}", "The device did not end in time.")
@@ -138,11 +144,10 @@ class Failures(Endings):
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
         self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")
-        self.memory.release(ab)
-        self.deadlines.pop(ab.name, None)
         if given_up:
             self._remove(ab)
         else:
+            self.memory.release(ab)
             ab.listening = False
             self.memory.wait(ab)
 

@@ -144,7 +144,7 @@ class Maker:
     def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:
         """The AB of a unit that spans questions and states (U5)."""
         unit = self.behavior(app, stream, Group([], asked.longest, asked.source), now, asked.state)
-        unit.devices = asked.devices
+        unit.use(asked.devices)
         unit.spans = True
         unit.open = True
         return unit

@@ -295,10 +295,9 @@ class Mediator(Failures):
             self._selector.take_floor(stream, "X3")
 
     def _set_deadlines(self) -> None:
-        for name in self._selector.given_up:
-            self.deadlines.pop(name, None)
+        now = self._now()
         for ab in self._selector.started:
             if ab.command is not None:
-                self.deadlines[ab.name] = self._now() + allowance(ab)
+                ab.late = now + allowance(ab)
             elif ab.longest is not None:
-                self.deadlines[ab.name] = self._now() + ab.longest
+                ab.late = now + ab.longest

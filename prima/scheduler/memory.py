@@ -12,7 +12,6 @@ from prima.scheduler.behavior import (
     Application,
     Behavior,
     Stream,
-    in_order,
 )
 from prima.scheduler.waiting import Waiting
 
@@ -69,7 +68,7 @@ class Memory:
         self.running[ab.name] = ab
         self._active = ab.app
         unit = ab.unit
-        for device in ab.devices:
+        for device in ab.in_order:
             if unit is not None and device in unit.devices:
                 unit.busy[device] = ab
             else:
@@ -77,9 +76,9 @@ class Memory:
 
     def release(self, ab: Behavior) -> None:
         """Give back what a running AB occupies."""
-        self.running.pop(ab.name, None)
+        del self.running[ab.name]
         occupied, unit = self.occupied, ab.unit
-        for device in ab.devices:
+        for device in ab.in_order:
             if occupied.get(device) is ab:
                 del occupied[device]
             if unit is not None and unit.busy.get(device) is ab:
@@ -101,9 +100,9 @@ class Memory:
             self.release(ab)
         else:
             self.waiting.remove(ab)
-        self.behaviors.pop(name, None)
-        ab.app.members.pop(name, None)
-        ab.stream.members.pop(name, None)
+        del self.behaviors[name]
+        del ab.app.members[name]
+        del ab.stream.members[name]
         if ab.unit is not None:
             ab.unit.inner.pop(name, None)
         ab.state = GONE
@@ -147,15 +146,10 @@ class Memory:
         self.waiting.remove(ab)
         ab.state = LINKED
 
-    def free(self, devices: frozenset[str]) -> bool:
-        """Whether nothing that runs occupies one of some devices, units' own Commands aside."""
-        occupied = self.occupied
-        return not any(device in occupied for device in devices)
-
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit
-        for device in in_order(ab.devices):
+        for device in ab.in_order:
             if unit is not None and device in unit.devices:
                 other = unit.busy.get(device)
             else:

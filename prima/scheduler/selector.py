@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 from prima.messages import Command, Group, Order
 from prima.scheduler.behavior import (
@@ -14,7 +15,6 @@ from prima.scheduler.behavior import (
     Line,
     Rank,
     Stream,
-    in_order,
 )
 from prima.scheduler.chronicle import LOSERS_NAMED, Chronicle
 from prima.scheduler.effects import Body
@@ -22,11 +22,12 @@ from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy, Refusal, composes_with_floor, outranks
 
-STARVING_LOOPS = 20
+STARVING_LOOPS: Final = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
 FEW = 8
 """So many waiting ABs are all looked at; each that may not start is recorded with the reason."""
-EVERYBODY, NOBODY = "everybody", "nobody"
+EVERYBODY: Final = "everybody"
+NOBODY: Final = "nobody"
 COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
 
@@ -54,8 +55,6 @@ class Selector:
         self.orders: list[Order] = []
         self.started: list[Behavior] = []
         """What the latest selection started."""
-        self.given_up: list[str] = []
-        """Names of ABs that the latest selection interrupted or took out."""
         self.halting: dict[str, tuple[Behavior, list[Command], int]] = {}
         """Parts of interrupted units whose devices have still to tell how much was done: the unit,
         what of it had been finished, and of how many Commands it is."""
@@ -63,27 +62,40 @@ class Selector:
         self.in_view = False
         """Whether the camera sees the user, as far as it has told (V4)."""
         self._maker = maker
+        self._resumed: list[Stream] = []
+        """Streams that have resumed in this pass, whose other ABs rank otherwise afterwards."""
         self._suspensions = 0
         self._turns = 0
         self._starved = 0
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
-        self.started, self.given_up = [], []
+        self.started = []
         memory = self.memory
         memory.waiting.settle(now)
         for unit in [ab for ab in memory.running.values() if ab.inner]:
             self._advance(unit, now)
-        while memory.waiting.all and self._pass(now):
-            pass
+        more = True
+        while more and memory.waiting.all:
+            more = self._pass(now)
+            for stream in self._resumed:
+                memory.rank_anew(stream)
+            self._resumed.clear()
 
     def _pass(self, now: int) -> bool:
-        """Go through the waiting ABs once; true when what ranks them changed on the way."""
+        """Go through the waiting ABs once; true when what ranks them changed on the way.
+
+        Until then all stand where they stood in the beginning (S2).
+        """
         memory, policy = self.memory, self.policy
         many = self._lining and len(memory.waiting.all) > self.few
-        candidates = self._firsts(now) if many else self._ranked(memory.waiting, now)
+        ranked = self._ranked(memory.waiting.apart.values() if many else memory.waiting, now)
+        candidates = self._with_firsts(ranked) if many else ranked
         held: dict[str, Behavior] = {}
-        for index, (rank, ab) in enumerate(candidates, 1):
+        index = 0
+        while index < len(candidates):
+            rank, ab = candidates[index]
+            index += 1
             refusal = policy.refusal(ab, memory)
             if refusal is None:
                 if self._preparing and self._prepare(ab, now):
@@ -93,23 +105,29 @@ class Selector:
                     for device in ab.devices:
                         held.setdefault(device, ab)
             if refusal is None:
+                engaging = ab.engages and not ab.stream.engaged
                 if self._start(ab, rank, candidates[index:], now, many):
                     return True
+                if many and engaging:  # others of a line may be the first that may start (K1)
+                    ranked = [entry for entry in ranked if entry[1].state is WAITING]
+                    candidates, index, held = self._with_firsts(ranked), 0, {}
             elif ab.blocked != refusal:
                 self._hold(ab, refusal)
         return False
 
-    def _firsts(self, now: int) -> list[Entry]:
+    def _with_firsts(self, apart: list[Entry]) -> list[Entry]:
         """Of many waiting ABs those that may be the next, in the order of S2 (S1-S3, F, K).
 
         In a line all need the same devices: whoever comes after the first that F2 and K1
         let start has to wait for that one's.
+
+        Args:
+            apart: those that stand in no line.
         """
-        waiting = self.memory.waiting
-        found = [entry for line in waiting.lines.values() for entry in self._let_in(line)]
-        found += self._ranked(waiting.apart(), now)
-        if len(found) > 1:
-            found.sort()
+        found = apart.copy()
+        for line in self.memory.waiting.lines.values():
+            found += self._let_in(line)
+        found.sort()
         return found
 
     def _let_in(self, line: Line) -> list[Entry]:
@@ -157,9 +175,9 @@ class Selector:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
-        if not held and self.memory.free(ab.devices):
+        if not held and self.memory.conflict(ab) is None:
             return None
-        kept = min(ab.devices & held.keys(), default="") if held else ""
+        kept = next((device for device in ab.in_order if device in held), "")
         other = self._occupant(ab)
         if self._yielding and other is not None and not kept and self._give_way(ab):
             other = self._occupant(ab)
@@ -197,7 +215,6 @@ class Selector:
 
     def _interrupt(self, ab: Behavior, reaction: Behavior) -> None:
         self.chronicle.behavior("interrupt", ab, rule="X2", by=reaction.id)
-        self.given_up.append(ab.name)
         self._remember_parts(ab)
         self._empty(ab)
         if ab.command is not None:
@@ -234,7 +251,6 @@ class Selector:
             if inner.state is RUNNING and inner.command is not None:
                 self._stop_device(inner)
             self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state)
-            self.given_up.append(inner.name)
             self.memory.remove(inner)
 
     def _stop_device(self, ab: Behavior) -> None:
@@ -264,7 +280,7 @@ class Selector:
             made = self._maker.behavior(ab.app, ab.stream, command, now, ab.document_state)
             made.inserted, made.requested = rule, ab.requested
             if rule == "X4":  # the first word follows at once, so its devices are taken along
-                made.devices |= ab.devices
+                made.use(made.devices | ab.devices)
             if before is None:
                 made.parent, made.reaction, made.freed = ab.parent, ab.reaction, ab.freed
                 ab.reaction = None
@@ -292,7 +308,7 @@ class Selector:
             self.chronicle.hold(ab, rule, by)
 
     def _start(self, ab: Behavior, rank: Rank, lower: list[Entry], now: int, many: bool) -> bool:
-        """Start an AB and record why; true when others rank otherwise now, or may start.
+        """Start an AB and record why; true when others rank otherwise now.
 
         Args:
             ab: the AB.
@@ -318,11 +334,10 @@ class Selector:
             lower.sort()
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
-        # Where the channel is engaged (K1), others of a line may be the first that may start.
-        changed = many and ab.engages and not ab.stream.engaged
-        resumed = self._run(ab, now)
+        changed = False
+        self._run(ab, now)
         if reaction is not None or by_floor_rule:
-            changed = self._take_floor(ab, reaction, by_floor_rule) or changed
+            changed = self._take_floor(ab, reaction, by_floor_rule)
         losers = [
             entry
             for entry in lower
@@ -338,8 +353,6 @@ class Selector:
                 count += more
             if lower or len(waiting.lines) > 1:
                 losers.sort()
-        if resumed:
-            memory.rank_anew(ab.stream)
         if not policy.exclusive:
             rule = "none"
         elif composed:
@@ -350,7 +363,7 @@ class Selector:
             rule = policy.decided(rank, losers[0][0])
         else:
             rule = "S4" if others else "S1"
-        self.chronicle.decision(ab, rule, losers[:LOSERS_NAMED], count)
+        self.chronicle.decision(ab, rule, losers, count)
         self.chronicle.start(ab, rule, reaction)
         if ab.inner:
             self._advance(ab, now)
@@ -358,8 +371,8 @@ class Selector:
             changed = self._count_starving(ab) or changed
         return changed or policy.turning
 
-    def _run(self, ab: Behavior, now: int) -> bool:
-        """Let an AB run; true if its stream has resumed, so that its other ABs rank otherwise."""
+    def _run(self, ab: Behavior, now: int) -> None:
+        """Let an AB run."""
         if not self.policy.exclusive:
             self._collide(ab)
         self._turns += 1
@@ -378,9 +391,9 @@ class Selector:
         stream = ab.stream
         if ab.engages:
             self.memory.engage(stream)
-        resumed = stream.suspended is not None and ab.unit is None
-        if resumed:
+        if stream.suspended is not None and ab.unit is None:
             stream.suspended = None
+            self._resumed.append(stream)
             self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
         if ab.command is not None:
             order = Order(
@@ -390,11 +403,10 @@ class Selector:
             self.orders.append(order)
         elif first and not ab.spans:
             self._open_group(ab, now)
-        return resumed
 
     def _collide(self, ab: Behavior) -> None:
         """Without a mediator a later Command displaces an earlier one on its devices."""
-        for device in in_order(ab.devices):
+        for device in ab.in_order:
             other = self.memory.occupied.get(device)
             if other is not None and other is not ab and other is not ab.unit:
                 self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from bisect import bisect_left, insort
 from collections.abc import Iterator
+from typing import Final
 
 from prima.scheduler.behavior import Behavior, Line, Rank
 
-LATER = 1
+LATER: Final = 1
 """S2c: the parent has not ended in this instant."""
-NO_REACTION = (1, 0, 0)
+NO_REACTION: Final = (1, 0, 0)
 """S2b: it reacts to nothing."""
 
 
@@ -26,31 +27,30 @@ class Waiting:
         self.all: dict[str, Behavior] = {}
         self.lines: dict[tuple[frozenset[str], int, bool], Line] = {}
         """By devices, priority, and whether they leave the user."""
-        self.reactions: dict[str, Behavior] = {}
-        self._fresh: dict[str, Behavior] = {}
-        """Those that were freed in this instant, which S2c puts before others of their kind."""
+        self.apart: dict[str, Behavior] = {}
+        """Those that stand in no line: reactions, and what was freed in this instant (S2c)."""
         self._now = 0
         """The instant, as far as anybody has told."""
 
     def settle(self, now: int) -> None:
         """It is another instant: who was freed in an earlier one gets in line."""
         if self._now != now:
-            self._now, fresh = now, self._fresh
-            if fresh:
-                self._fresh = {}
-                for ab in fresh.values():
-                    self._get_in_line(ab)
+            self._now = now
+            if self.apart:
+                for ab in list(self.apart.values()):
+                    if ab.reaction is None:
+                        del self.apart[ab.name]
+                        self._get_in_line(ab)
 
     def add(self, ab: Behavior) -> None:
         """An AB begins to wait."""
         self.all[ab.name] = ab
-        if ab.reaction is not None:
-            self.reactions[ab.name] = ab
-        elif ab.freed < self._now:
+        if ab.reaction is None and ab.freed < self._now:
             self._get_in_line(ab)
-        else:
+            return
+        if ab.reaction is None:
             self.settle(ab.freed)
-            self._fresh[ab.name] = ab
+        self.apart[ab.name] = ab
 
     def _get_in_line(self, ab: Behavior) -> None:
         kind = (ab.devices, ab.priority, ab.leaves)
@@ -64,11 +64,11 @@ class Waiting:
     def remove(self, ab: Behavior) -> None:
         """An AB waits no longer; one that did not wait is none of ours."""
         name, line, entry = ab.name, ab.line, ab.entry
-        if self.all.pop(name, None) is None:
+        if name not in self.all:
             return
+        del self.all[name]
         if line is None or entry is None:
-            if self._fresh.pop(name, None) is None:
-                del self.reactions[name]
+            del self.apart[name]
             return
         entries = line.entries
         del entries[0 if entries[0] is entry else bisect_left(entries, entry)]
@@ -81,12 +81,6 @@ class Waiting:
         if ab.name in self.all:
             self.remove(ab)
             self.add(ab)
-
-    def apart(self) -> list[Behavior]:
-        """The ABs that stand in no line."""
-        apart = list(self._fresh.values())
-        apart += self.reactions.values()
-        return apart
 
     def __iter__(self) -> Iterator[Behavior]:
         return iter(self.all.values())
