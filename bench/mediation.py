@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
-from time import process_time
+from time import perf_counter
 
+from bench import core
 from bench.fresh import check
 
 CHAIN = 4
@@ -14,7 +15,7 @@ MOST = 100_000
 
 
 def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
-    """Decisions a second (of the processor's time) while ABs of so many applications wait.
+    """Decisions a second while ABs of so many applications wait.
 
     One more application's AB runs. Each decision is the end of what runs, told to the mediator,
     and a selection with its records and orders. All Commands are requested before; the clock
@@ -52,7 +53,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     lasted = 0.0
     while lasted < seconds and CHAIN * len(turns) < MOST:
         drained = []
-        began = process_time()
+        began = perf_counter()
         for _ in range(CHAIN):
             chronicle.now += 1
             mediator.ended(order.behavior, True, {})
@@ -60,7 +61,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
             mediator.select()
             (order,) = mediator.drain_orders()
             drained.append(chronicle.drain())
-        lasted += process_time() - began
+        lasted += perf_counter() - began
         winners = [
             record["app"]
             for records in drained
@@ -74,6 +75,12 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
         chronicle.drain()
     check(turns == expected_turns(times, len(turns)), "another application had its turn (S2e, S2f)")
     return CHAIN * len(turns) / lasted
+
+
+def compiled(waiting: int, seconds: float) -> float:
+    """The same with the compiled core."""
+    core.use()
+    return decisions(waiting, seconds)
 
 
 def cost(waiting: int, seconds: float) -> float:

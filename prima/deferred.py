@@ -67,6 +67,8 @@ def _dataclass(
         made_later += ["__setattr__", "__delattr__", "__getstate__", "__setstate__"]
 
     def wrap(written: type) -> type:
+        if hasattr(written, "__mypyc_attrs__"):
+            return _compiled(written, frozen=frozen, eq=eq, order=order)
         own = {
             name: value
             for name, value in vars(written).items()
@@ -131,6 +133,16 @@ def _dataclass(
         return made
 
     return wrap
+
+
+def _compiled(written: type, **how: bool) -> type:
+    """What the standard library makes of a class whose attributes are compiled: it needs no slots."""
+    from dataclasses import dataclass, field
+
+    for name, value in [*vars(written).items()]:
+        if isinstance(value, _Field):
+            setattr(written, name, field(**value.given))
+    return dataclass(**how)(written)
 
 
 KEPT = ("__slots__", "__init__", "__match_args__")

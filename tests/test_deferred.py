@@ -184,7 +184,7 @@ def test_defaults_that_are_values_with_a_meaning() -> None:
 
 
 def test_nothing_is_written_before_it_is_needed() -> None:
-    code = "import sys, prima.messages; print('dataclasses' in sys.modules)"
+    code = "import sys, prima.commands; print('dataclasses' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
 

@@ -21,8 +21,11 @@ from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy, Refusal
 from prima.scheduler.selector import Selector
+from tests.core import in_python
 from tests.generated import Ask, Leave, Play, Run, Script, World, drive, perform, plays, scripts
 from tests.invariants import check, numbers
+
+pytestmark = in_python
 
 Patch = Callable[[pytest.MonkeyPatch], None]
 
