@@ -200,3 +200,20 @@ def test_talk_is_not_saved_to_a_folder(tmp_path: Path) -> None:
     done = prima(tmp_path, "talk", "s.xml", "--save", "adir")
     assert done.returncode == 2
     assert "adir: this is a folder; name a file, as adir/visit.xml." in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "begins"),
+    [
+        ("run s.xml -o -", '{"time":'),
+        ("replay t.jsonl s.xml -o -", '{"time":'),
+        ("export t.jsonl --to csv -o -", "tier,kind,"),
+        ("graph app.xml --to dot -o -", "digraph"),
+        ("report t.jsonl -o -", "<!DOCTYPE html>"),
+        ("diff t.jsonl t.jsonl --format html -o -", "<!DOCTYPE html>"),
+    ],
+)
+def test_a_dash_is_stdout(made: Path, words: str, begins: str) -> None:
+    done = prima(made, *words.split())
+    assert done.returncode == 0 and done.stdout.startswith(begins), done
+    assert not (made / "-").exists()

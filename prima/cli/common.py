@@ -40,6 +40,11 @@ def suggesting(*words: str) -> Callable[[click.Context, click.Parameter, str], l
     return lambda _context, _parameter, begun: [one for one in words if one.startswith(begun)]
 
 
+def or_stdout(_context: click.Context, _option: click.Parameter, path: str | None) -> str | None:
+    """What is written to ``-`` goes where it goes without ``-o``: to stdout."""
+    return None if path == "-" else path
+
+
 PROGRESS_SECONDS = 0.5
 """How often a terminal is told how far a long run is."""
 format_option = click.option(

@@ -14,6 +14,7 @@ from prima.cli.common import (
     Choice,
     check_output,
     coloured,
+    or_stdout,
     start_watchdog,
     suggesting,
     tell_cut,
@@ -41,7 +42,13 @@ if TYPE_CHECKING:
     default="text",
     help="What to print; html is a page for the browser.",
 )
-@click.option("-o", "--output", type=click.Path(), help="Write the page here, with --format html.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    callback=or_stdout,
+    help="Write the page here, with --format html.",
+)
 def diff(
     before: str, after: str | None, policies: tuple[str, ...], form: str, output: str | None
 ) -> None:

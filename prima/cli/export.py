@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, suggesting, tell
+from prima.cli.common import check_output, or_stdout, suggesting, tell
 from prima.errors import UsageError, counted
 
 
@@ -22,7 +22,13 @@ from prima.errors import UsageError, counted
     help="eaf (ELAN), textgrid (Praat), vtt (captions), mcap (Foxglove) or csv;"
     " by default what OUTPUT's suffix tells.",
 )
-@click.option("-o", "--output", type=click.Path(), help="The file to write; else to stdout.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    callback=or_stdout,
+    help="The file to write; else to stdout.",
+)
 @click.option(
     "--lang",
     "langs",
@@ -43,7 +49,6 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
     """
     from prima import api
 
-    output = None if output == "-" else output
     form = to.lower() if to else Path(output or "").suffix.lower()[1:]
     if not form:
         raise UsageError("say in what format: --to eaf, textgrid, vtt, mcap or csv.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import Choice, check_output, tell, tell_cut
+from prima.cli.common import Choice, check_output, or_stdout, tell, tell_cut
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -26,7 +26,13 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
     help="An application's states; a transcript's tree of Atomic Behaviors, or its streams.",
 )
 @click.option("--row", type=int, help="The tree as it was at this row of the transcript's table.")
-@click.option("-o", "--output", type=click.Path(), help="The file to write; else to stdout.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    callback=or_stdout,
+    help="The file to write; else to stdout.",
+)
 def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
     """Draw the states of an application, or the trees and streams of a run.
 
@@ -41,7 +47,6 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     """
     from prima.graph import SUFFIXES, picture
 
-    output = None if output == "-" else output
     form = to or SUFFIXES.get(Path(output or "").suffix.lower())
     if output and form is None:
         raise UsageError(f"{output}: say in what format: --to svg, dot, mermaid or json.")

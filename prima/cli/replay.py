@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import click
 from click.exceptions import Exit
 
@@ -20,11 +22,13 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     """
     from prima import api
 
-    if output is not None:
+    if output not in (None, "-"):
         check_output(output, "replay", transcript, scenario)
     original = api.read(transcript)
     again = api.replay(original, scenario)
-    if output is not None:
+    if output == "-":
+        sys.stdout.write(again.dumps())
+    elif output is not None:
         run_into(output, lambda write: (write(again.dumps()), again)[1])
     same = again.dumps() == original.dumps()
     tell("the same, byte for byte" if same else "the replay differs")

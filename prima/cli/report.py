@@ -6,13 +6,13 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, start_watchdog, tell, tell_cut
+from prima.cli.common import check_output, or_stdout, start_watchdog, tell, tell_cut
 from prima.errors import UsageError
 
 
 @click.command()
 @click.argument("transcripts", metavar="TRANSCRIPT...", nargs=-1, type=click.Path())
-@click.option("-o", "--output", type=click.Path(), help="Write the page here.")
+@click.option("-o", "--output", type=click.Path(), callback=or_stdout, help="Write the page here.")
 @click.option(
     "--scenario",
     "scenarios",

@@ -101,7 +101,7 @@ def run(
     and the user says what --say tells, one after the other, to the questions.
 
     With -o the transcript is written as JSON lines while the run goes on, and
-    only a summary is printed. Exit code 3 if the run ended by an error or a limit.
+    only a summary is printed; after -o - they go to stdout. Exit code 3 if the run ended by an error or a limit.
 
     Several scenarios, a folder of them or several policies are a batch: all runs are
     made on all cores, whatever becomes of one of them, each with a row, and with a
@@ -142,6 +142,8 @@ def run(
         run_all(paths, policies, output or "", Options(bound, hosts, resume), workers or 0, form)
         return
     policy = policies[0] if policies else None
+    if output == "-":
+        output, form = None, "json"
     _run_one(next(iter(scenarios), None), fas, eas, says, output, policy, bound, why, hosts, form)
 
 
