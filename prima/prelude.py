@@ -2,7 +2,7 @@
 
 Built-ins that do not look at the engine's time limit are replaced by ones that bound
 their work. ``Math.random`` is seeded and no clock of the host can be read, so that a run can be
-repeated: ``Date`` is absent, or :data:`DATE`, whose clock is the run's.
+repeated: ``Date`` is :data:`DATE`, whose clock is the run's.
 """
 
 from __future__ import annotations

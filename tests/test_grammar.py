@@ -743,3 +743,13 @@ def test_tags_that_are_no_script_are_warned_of(tag: str, warned: bool) -> None:
     for head in (SCRIPT, ABNF):
         found = load(f"{head}$r = x {{!{{{tag}}}!}};").warnings()
         assert [one.code for one in found] == ["bad-expression"] * warned
+
+
+def test_tags_are_told_the_time_that_is_given() -> None:
+    grammar = load(
+        f"{SCRIPT}$r = today {{!{{out = new Date().toISOString()}}!}}"
+        " | years since 1969 {!{out = new Date().getUTCFullYear() - 1969}!};"
+    )
+    (today,) = grammar.match("today", now=1_109_671_200_000)
+    assert today.interpretation == "2005-03-01T10:00:00.000Z"
+    assert grammar.match("years since 1969")[0].interpretation == 1

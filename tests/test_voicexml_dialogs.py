@@ -2500,3 +2500,17 @@ def test_an_event_from_outside_does_not_cut_the_last_words() -> None:
 def test_an_application_that_never_waits_is_stopped(text: str) -> None:
     """C: the algorithm has no bound, the robot has."""
     assert Call(text).ended.startswith("error.semantic")
+
+
+def test_tags_of_grammars_are_told_the_runs_date() -> None:
+    grammar = (
+        '<grammar version="1.0" root="r" tag-format="semantics/1.0" xml:lang="en">'
+        '<rule id="r">today<tag>out = new Date().toISOString()</tag></rule></grammar>'
+    )
+    call = Call(
+        f'<form><field name="day"><prompt>When?</prompt>{grammar}'
+        '<filled><log expr="day"/></filled></field></form>'
+    )
+    call.answer("today")
+    (logged,) = call.logs()
+    assert logged.startswith("2005-03-01T10:00:")

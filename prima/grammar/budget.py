@@ -1,4 +1,4 @@
-"""How much time the tags of one utterance may take."""
+"""How much time the tags of one utterance may take, and what time it is for them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ TIME_LIMIT = 0.5
 class Budget:
     """The time that the tags of one utterance have taken, in all documents and analyses."""
 
+    now: int = 0
+    """The time that they are told (ms since 1970, UTC)."""
     spent: float = 0.0
 
     @property

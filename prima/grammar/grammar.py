@@ -120,8 +120,14 @@ class Grammar:
             raise refuse(GrammarError, self._where(), "no-such-rule", message)
         return Grammar(self._document, name, self._where, self._lenient)
 
-    def match(self, text: str, *, mode: str = "voice", most: int = 1) -> list[Match]:
+    def match(self, text: str, *, mode: str = "voice", most: int = 1, now: int = 0) -> list[Match]:
         """What an utterance may mean, best first; nothing if the grammar does not take it.
+
+        Args:
+            text: the utterance.
+            mode: ``voice`` or ``dtmf``.
+            most: how many matches are wanted.
+            now: the time that ``Date`` tells tags (ms since 1970, UTC).
 
         Raises:
             GrammarError: the grammar has no root rule.
@@ -135,7 +141,7 @@ class Grammar:
             return []
         found: list[Match] = []
         looked_at = 1 if most == 1 else min(most * 4, MOST_ANALYSES)
-        work, budget = 0, Budget()
+        work, budget = 0, Budget(now)
         for analysis in best(top, looked_at):
             work += analysis.size
             if found and (work > MOST_WORK or budget.over):

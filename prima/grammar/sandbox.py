@@ -1,7 +1,7 @@
 """A sandboxed ECMAScript engine for the tags of grammars: time, memory and stack are bounded.
 
 Built-ins that do not look at the time limit are replaced by ones that bound their work. ``Date``
-is absent and ``Math.random`` seeded, so that a match can be repeated.
+tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import _quickjs as quickjs
 
 from prima.grammar.budget import TIME_LIMIT, Budget
 from prima.messages import Json
-from prima.prelude import MEMORY_LIMIT, PRELUDE, STACK_LIMIT
+from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
 
 DONE = 1_000_000
 """What comes after a rule's last tag."""
@@ -65,7 +65,10 @@ class Sandbox:
         context.set_memory_limit(MEMORY_LIMIT)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
+        clock = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
+        clock()
+        clock(float(budget.now))
         self._context = context
         self._helpers = context.eval(HELPERS)
         self._functions: dict[str, Any] = {}

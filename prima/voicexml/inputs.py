@@ -210,7 +210,12 @@ class Inputs:
         key = (page.uri, node.index, uri)
         if key not in self._loaded:
             self._loaded[key] = matcher(
-                node, page, uri, lambda name: held(self.owner, name, node), self._failed
+                node,
+                page,
+                uri,
+                lambda name: held(self.owner, name, node),
+                self._failed,
+                lambda: self.owner.engine.now,
             )
         return self._loaded[key]
 

@@ -51,8 +51,10 @@ Fetch = Callable[[str], bytes]
 Tell = Callable[[Node, str], None]
 
 
-def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Matcher:
-    """The grammar of an element, or of the URI that it names.
+def matcher(
+    node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell, clock: Callable[[], int]
+) -> Matcher:
+    """The grammar of an element, or of the URI that it names; its tags are told the clock's time.
 
     Raises:
         Thrown: ``error.badfetch``, ``error.unsupported.format``,
@@ -62,7 +64,7 @@ def matcher(node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell) -> Match
 
     def match(said: str, mode: str, most: int) -> list[Found]:
         found: list[Found] = []
-        for one in grammar.match(said, mode=cast(Literal["dtmf", "voice"], mode), most=most):
+        for one in grammar.match(said, mode=mode, most=most, now=clock()):
             if one.error is not None:
                 tell(node, str(one.error))
                 continue
