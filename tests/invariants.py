@@ -77,6 +77,8 @@ class AB:
     connect: bool = False
     """Whether the robot has to see the user, or turn to him, before it starts (X4)."""
     inserted: str = ""
+    put_before: str = ""
+    """What it was put in before."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0
@@ -142,8 +144,12 @@ class Tree:
         return bool(self.members) or self.windows > 0 or self.until is not None
 
     def contending(self) -> list[AB]:
-        """Running and waiting ABs: linked ones hold nothing back."""
-        return [ab for ab in self.members.values() if ab.phase != LINKED]
+        """What runs and waits: linked ABs hold nothing back, but for what something was put in for."""
+        return [self.meant(ab) for ab in self.members.values() if ab.phase != LINKED]
+
+    def meant(self, ab: AB) -> AB:
+        """What an AB that was put in was put in for (X1, X4), while that is there; else itself."""
+        return self.members.get(ab.put_before, ab)
 
     def engages(self) -> bool:
         """K1: from the first engaging start to the end, unless all that contends leaves."""
@@ -326,6 +332,7 @@ class Checker:
             motion=record.get("motion", "") if unit is None else "",
             connect=bool(record.get("connect")),
             inserted=record.get("inserted", ""),
+            put_before=base(record.get("before") or ""),
         )
         tree.members[name] = ab
         self._wants_hold(tree, ab, record)
@@ -740,7 +747,8 @@ class Checker:
         if ab.cause is not None and ab.cause not in held:
             return None
         contending = holder.contending()
-        if contending and all(ab.high and not other.high for other in contending):
+        high = ab.tree.meant(ab).high
+        if contending and all(high and not other.high for other in contending):
             return None
         return None if self.carries_floor(ab) else holder
 

@@ -341,3 +341,20 @@ def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
     stage.select()
     assert stage.running == set()
     assert check(stage.records, "prima") == []
+
+
+def test_a_way_back_that_is_put_in_gives_up_neither_channel_nor_conversation() -> None:
+    # X1 puts a move, which leaves the user, before a conversation that resumes. K1 then took
+    # the stream for one that leaves him anyway, and another application's move went off; and F2
+    # took its place for a low one, so that neither went on where K1 kept the other.
+    sensing = "active-sensing-human"
+    talk = Ask(("q-and-a", "q-and-a", sensing), ((), (), ()))
+    reaction = Ask((sensing, sensing, "topological-move"), ((), (), ()))
+    asked = (Ask(("set-position",), ((),)), talk, Ask((sensing,), ((),)))
+    script = Script(
+        ((), ()), ((0, ((), ())), (0, (asked, ())), (4000, ((), (reaction,)))), (), World()
+    )
+    for policy in ("prima+x1", "prima+all"):
+        run = drive(script, policy)
+        assert check(run.records, policy) + run.problems == []
+        assert run.complete

@@ -62,8 +62,8 @@ class Stream:
         return bool(self.members) or self.windows > 0 or self.held_until is not None
 
     def contending(self) -> list[Behavior]:
-        """The stream's running and waiting ABs; linked ones compete for nothing."""
-        return [ab for ab in self.members.values() if ab.state is not LINKED]
+        """What runs and waits, as F2 and K1 see it; other linked ABs compete for nothing."""
+        return [one for ab in self.members.values() if ab.state is not LINKED for one in ab.meant()]
 
     def engages_user(self) -> bool:
         """Whether the stream keeps the channel (rule K1)."""
@@ -197,6 +197,15 @@ class Behavior:
             self.parent = self.id
         self.loop += 1
         self.id = f"{self.name}.{self.loop}"
+
+    def meant(self) -> list[Behavior]:
+        """The AB itself; of one that was put in (X1, X4) what it was put in for, while that is there."""
+        if not self.inserted:
+            return [self]
+        behind = [
+            one for child in self.children if child.state is not GONE for one in child.meant()
+        ]
+        return behind or [self]
 
     @property
     def restartable(self) -> bool:

@@ -48,7 +48,8 @@ def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
         return None
     if ab.reaction is not None and ab.reaction not in holder.causes:
         return None
-    return None if outranks(ab.priority, holder) else ("F2", holder.name)
+    priority = max(one.priority for one in ab.meant())
+    return None if outranks(priority, holder) else ("F2", holder.name)
 
 
 def composes_with_floor(ab: Behavior, memory: Memory) -> bool:
