@@ -27,10 +27,19 @@ class CompiledCore(BuildHookInterface[Any]):
         if version == "editable":
             self.app.display_warning("An editable installation has its core in Python.")
             return
+        from setuptools.errors import CompileError
+
         self.folder = tempfile.TemporaryDirectory()
         shutil.copytree(Path(self.root, "prima"), Path(self.folder.name, "prima"))
         made = Path(self.folder.name, "made")
-        for path in compiled(Path(self.folder.name), made):
+        try:
+            files = compiled(Path(self.folder.name), made)
+        except CompileError as error:
+            self.app.abort(
+                f"The core cannot be compiled: {error}. It takes a C compiler and the headers of "
+                "Python; without HATCH_BUILD_HOOK_ENABLE_CUSTOM the core in Python is installed."
+            )
+        for path in files:
             build_data["force_include"][str(path)] = str(path.relative_to(made))
         build_data["pure_python"] = False
         build_data["infer_tag"] = True
