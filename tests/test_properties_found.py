@@ -358,3 +358,22 @@ def test_a_way_back_that_is_put_in_gives_up_neither_channel_nor_conversation() -
         run = drive(script, policy)
         assert check(run.records, policy) + run.problems == []
         assert run.complete
+
+
+def test_a_word_waits_for_the_user_also_while_the_way_back_is_gone() -> None:
+    # X4 was left out while something that X1 had put in for another branch was there.
+    sensing = Ask(("active-sensing-human",), ((),))
+    first = Ask(("face-human", "active-sensing-human"), ((), ()))
+    asked = (
+        Ask((("face-human",), "q-and-a"), ((), ()), connect=True),
+        Ask(("q-and-a",), ((),), connect=True),
+    )
+    script = Script(
+        ((), (), ()),
+        ((0, ((first,), (), (sensing,))), (0, ((sensing, sensing), (), asked))),
+        (),
+        World(),
+    )
+    for policy in ("prima+x1+x4", "prima+all"):
+        run = drive(script, policy)
+        assert check(run.records, policy) + run.problems == []

@@ -258,9 +258,10 @@ class Selector:
 
     def _prepare(self, ab: Behavior, now: int) -> bool:
         """X1, X4: put in what has to come first; true if something was put in."""
-        if ab.inserted or any(one.inserted == "X1" for one in ab.stream.members.values()):
+        if ab.inserted:
             return False
-        if ab.stream.suspended is not None and self.policy.has("x1"):
+        on_its_way = any(one.inserted == "X1" for one in ab.stream.members.values())
+        if ab.stream.suspended is not None and self.policy.has("x1") and not on_its_way:
             own = ab.type.effects if ab.type is not None else frozenset()
             commands = ab.stream.effects.missing(own, self.body)
             if self._insert(ab, commands, "X1", now):
