@@ -12,11 +12,12 @@ SUFFIXES = (".so", ".pyd")
 
 def built() -> bool:
     """Whether a core is there, and is made of the Python files that are here now."""
-    made = FOLDER / "prima" / "scheduler"
-    sources = [*(ROOT / "prima" / "scheduler").glob("*.py")]
-    return any(path.suffix in SUFFIXES for path in made.glob("mediator.*")) and all(
-        (made / path.name).read_bytes() == path.read_bytes() for path in sources
-    )
+    made = FOLDER / "prima"
+    if not any(path.suffix in SUFFIXES for path in (made / "scheduler").glob("mediator.*")):
+        return False
+    source = ROOT / "prima"
+    pairs = [(made / path.relative_to(source), path) for path in source.rglob("*.py")]
+    return all(one.exists() and one.read_bytes() == path.read_bytes() for one, path in pairs)
 
 
 def use() -> None:

@@ -391,6 +391,9 @@ class Order:
         self.app = app
         self.data = data
 
+    def __repr__(self) -> str:
+        return f"Order({self.verb!r}, {self.behavior!r}, {self.command!r}, app={self.app!r})"
+
 
 # What the mediator tells an application ------------------------------------------
 
@@ -420,6 +423,11 @@ class Notice:
         self.event = event
         self.message = message
         self.cause: int | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"Notice({self.what!r}, {self.run!r}, {self.command!r}, {self.data!r}, {self.event!r})"
+        )
 
 
 @dataclass(slots=True)

@@ -217,3 +217,9 @@ def test_a_dash_is_stdout(made: Path, words: str, begins: str) -> None:
     done = prima(made, *words.split())
     assert done.returncode == 0 and done.stdout.startswith(begins), done
     assert not (made / "-").exists()
+
+
+def test_several_transcripts_do_not_go_to_stdout(made: Path) -> None:
+    done = prima(made, *"run s.xml --policy prima --policy fifo -o -".split())
+    assert done.returncode == 2 and "go into a folder" in done.stderr
+    assert not (made / "-").exists()

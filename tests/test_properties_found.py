@@ -7,7 +7,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from prima.messages import Command, Emergency, Group, Inbound, Occurred, Record, Step
+from prima.interpreter.reader import read_document
+from prima.messages import (
+    Command,
+    Emergency,
+    Ended,
+    Group,
+    Inbound,
+    Loaded,
+    Occurred,
+    Record,
+    Step,
+    Unloaded,
+)
+from prima.scheduler.selection import policy_named
+from prima.session import Session
 from tests.generated import (
     TABLE,
     Ask,
@@ -17,12 +31,11 @@ from tests.generated import (
     Play,
     Script,
     World,
-    command,
     drive,
     perform,
 )
 from tests.invariants import check
-from tests.stage import Stage, ask, chain, move, say
+from tests.stage import TRACK, Stage, ask, chain, command, move, say
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="{}">{}</prima>'
 IDLE = HEAD.format("fa", '<form id="f1"/>')
@@ -377,3 +390,69 @@ def test_a_word_waits_for_the_user_also_while_the_way_back_is_gone() -> None:
     for policy in ("prima+x1+x4", "prima+all"):
         run = drive(script, policy)
         assert check(run.records, policy) + run.problems == []
+
+
+def stepped(content: str, *steps: tuple[int, tuple[Inbound, ...]]) -> tuple[Session, list[Record]]:
+    """A session of one application that is told what its devices do, and its records."""
+    text = HEAD.format("ea", f'<form id="f"><block>{content}</block></form>')
+    document, _ = read_document("ea.xml", text.encode())
+    session = Session([document], policy_named("prima"), TABLE)
+    for now, inbound in steps:
+        session.step(now, inbound)
+    return session, session.drain()
+
+
+NESTED = (
+    "<iu>{}<par><speak>One.</speak><iu{}><gesture name='nod'/></iu></par></iu><speak>Over.</speak>"
+)
+
+
+def test_a_unit_of_which_only_what_was_out_of_time_is_left_ends_in_an_emergency() -> None:
+    # The emergency gave up the inner unit, which was out of time; with it the outer one ended,
+    # and was then put back among the waiting ones.
+    session, records = stepped(
+        NESTED.format("", " longest='1s'"),
+        (0, (Loaded("ea"),)),
+        (100, (Ended("ea#3"),)),
+        (1200, ()),
+        (1500, (Emergency(True),)),
+        (3000, (Emergency(False),)),
+    )
+    assert told(records, "ea#4")[-1] == (1500, "cancel")
+    assert told(records, "ea#1")[-1] == (1500, "end")
+    assert session.idle
+
+
+def test_an_application_that_is_loaded_again_gives_no_name_out_twice() -> None:
+    # What its former life still runs may make ABs when the new one has made some.
+    _, records = stepped(
+        NESTED.format("<speak>Zero.</speak>", ""),
+        (0, (Loaded("ea"),)),
+        (50, (Unloaded("ea"),)),
+        (60, (Loaded("ea"),)),
+        (100, (Ended("ea#3"),)),
+    )
+    names = [record["behavior"] for record in records if record["phase"] == "request"]
+    assert len(names) == len(set(names)) > 7
+
+
+def test_of_those_who_have_waited_too_long_the_first_by_rank_starts_first() -> None:
+    """E4, S2d: whose stream is suspended goes before one that has just resumed."""
+    stage = Stage(apps=dict.fromkeys("abcd", "ea"), bound=1)
+    stage.request("c", say("One."), say("Two."))
+    stage.request("a", TRACK)
+    stage.select()
+    stage.at(10).request("b", steps=[Step(say("Three.")), Step(say("Four."))])
+    stage.select()
+    stage.at(20).request("d", command("gesture", name="nod"), cause=1)
+    stage.select()
+    for now, name, goal in (
+        (30, "c#1", True),
+        (40, "a#1.1", False),
+        (50, "d#1", True),
+        (60, "b#1", True),
+    ):
+        stage.at(now).end(name, goal)
+        stage.select()
+    started = [record["behavior"] for record in stage.records if record["phase"] == "start"]
+    assert started.index("c#2") == len(started) - 1

@@ -6,13 +6,13 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, or_stdout, start_watchdog, tell, tell_cut
+from prima.cli.common import check_output, start_watchdog, tell, tell_cut
 from prima.errors import UsageError
 
 
 @click.command()
 @click.argument("transcripts", metavar="TRANSCRIPT...", nargs=-1, type=click.Path())
-@click.option("-o", "--output", type=click.Path(), callback=or_stdout, help="Write the page here.")
+@click.option("-o", "--output", type=click.Path(), help="Write the page here.")
 @click.option(
     "--scenario",
     "scenarios",
@@ -38,6 +38,7 @@ def report(transcripts: tuple[str, ...], output: str | None, scenarios: tuple[st
         raise UsageError("Name a transcript, as prima run -o writes it.")
     if output is None and sys.stdout.isatty():
         raise UsageError("Say where the page goes: -o report.html.")
+    output = None if output == "-" else output
     if output is not None:
         check_output(output, "page", *transcripts, *scenarios)
     if scenarios:

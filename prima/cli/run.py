@@ -133,7 +133,8 @@ def run(
             raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
         if output == "":
             raise UsageError("-o: name the folder that the transcripts go into.")
-        if output is not None and output.endswith(".jsonl") and not os.path.isdir(output):
+        is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
+        if output == "-" or is_file:
             raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
         from prima.batch import Options
         from prima.cli.batch import listed, run_all

@@ -87,8 +87,6 @@ class Application:
     units: dict[int, Behavior] = field(default_factory=dict)
     members: dict[str, Behavior] = field(default_factory=dict)
     """Its ABs in working memory, in the order of their requests."""
-    streams: int = 0
-    behaviors: int = 0
     last_turn: int = -1
     gone: bool = False
 

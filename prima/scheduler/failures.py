@@ -135,12 +135,16 @@ class Failures(Endings):
 
     def _halt(self, ab: Behavior) -> None:
         given_up = ab.silent or ab.last_loop or (ab.spans and not ab.open)
-        ab.open = ab.open or given_up  # it does not settle as done meanwhile
+        was_open, ab.open = ab.open, True  # it does not settle as done meanwhile
         for inner in list(ab.inner.values()):
             if given_up:
                 self._delete(inner, "E5")
             elif inner.state is RUNNING:
                 self._halt(inner)
+        ab.open = was_open
+        if ab.group is not None and not (ab.inner or ab.open or given_up):
+            self._settle(ab)  # all that was left of it had been given up
+            return
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
         self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")

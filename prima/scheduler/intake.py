@@ -97,11 +97,14 @@ class Maker:
     def __init__(self, table: Table) -> None:
         self.table = table
         self.serial = 0
+        # By application's name: one that is loaded again gives no name out twice.
+        self._behaviors: dict[str, int] = {}
+        self._streams: dict[str, int] = {}
 
     def stream(self, app: Application) -> Stream:
         """A new stream of the application."""
-        app.streams += 1
-        return Stream(f"{app.name}:{app.streams}", app)
+        number = self._streams[app.name] = self._streams.get(app.name, 0) + 1
+        return Stream(f"{app.name}:{number}", app)
 
     def behavior(
         self,
@@ -115,12 +118,12 @@ class Maker:
     ) -> Behavior:
         """One AB for a Command (U1) or for a group of them (U4)."""
         self.serial += 1
-        app.behaviors += 1
+        number = self._behaviors[app.name] = self._behaviors.get(app.name, 0) + 1
         group = what if isinstance(what, Group) else None
         command = None if isinstance(what, Group) else what
         row = self.table[command.type] if command else None
         return Behavior(
-            name=f"{app.name}#{app.behaviors}",
+            name=f"{app.name}#{number}",
             serial=self.serial,
             app=app,
             stream=stream,

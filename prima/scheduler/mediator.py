@@ -34,8 +34,8 @@ class Mediator(Failures):
         """
         app = Application(name, kind, len(self.memory.apps))
         before = self.memory.apps.get(name)
-        if before is not None:  # it was there before: its names are not given out twice
-            app.order, app.streams, app.behaviors = before.order, before.streams, before.behaviors
+        if before is not None:  # it was there before
+            app.order = before.order
         self.memory.apps[name] = app
         self.chronicle.add(
             "load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})}

@@ -125,8 +125,10 @@ class Selector:
             apart: those that stand in no line.
         """
         found = apart.copy()
-        for line in self.memory.waiting.lines.values():
-            found += self._let_in(line)
+        waiting = self.memory.waiting
+        few = len(waiting.all) <= self.few  # since this pass has begun
+        for line in waiting.lines.values():
+            found += line.entries if few else self._let_in(line)
         found.sort()
         return found
 
@@ -369,7 +371,7 @@ class Selector:
         if ab.inner:
             self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
-            changed = self._count_starving(ab) or changed
+            changed = self._count_starving(ab, now) or changed
         return changed or policy.turning
 
     def _run(self, ab: Behavior, now: int) -> None:
@@ -444,13 +446,13 @@ class Selector:
                 self.memory.rank_anew(other)
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
 
-    def _count_starving(self, ab: Behavior) -> bool:
+    def _count_starving(self, ab: Behavior, now: int) -> bool:
         """E4: count the loops that other applications' equal ABs have waited.
 
         True if one has waited so long that it counts as a reaction from now on.
         """
-        bounded = False
-        for other in list(self.memory.waiting):
+        bounded = []
+        for other in self.memory.waiting:
             if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
                 continue
             other.waited_loops += 1
@@ -465,11 +467,12 @@ class Selector:
                     loop=STARVING_LOOPS,
                 )
             if self.bound is not None and other.waited_loops >= self.bound:
-                self._starved += 1
-                other.reaction = -self._starved
-                self.memory.waiting.moved(other)
-                bounded = True
-        return bounded
+                bounded.append(other)
+        for _, other in self._ranked(bounded, now):
+            self._starved += 1
+            other.reaction = -self._starved
+            self.memory.waiting.moved(other)
+        return bool(bounded)
 
     # Units ------------------------------------------------------------------
 
