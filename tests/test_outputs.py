@@ -220,6 +220,6 @@ def test_a_dash_is_stdout(made: Path, words: str, begins: str) -> None:
 
 
 def test_several_transcripts_do_not_go_to_stdout(made: Path) -> None:
-    done = prima(made, *"run s.xml --policy prima --policy fifo -o -".split())
+    done = prima(made, "run", "s.xml", "--policy", "prima", "--policy", "fifo", "-o", "-")
     assert done.returncode == 2 and "go into a folder" in done.stderr
     assert not (made / "-").exists()
