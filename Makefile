@@ -38,7 +38,7 @@ core: $(VENV)/.dev
 # The tests on it, in a copy of the checkout: a compiled module hides its source.
 test-core: core
 	rm -rf build/tested && mkdir -p build/tested
-	tar cf - --exclude=./build --exclude=./.git --exclude=./.venv --exclude=node_modules . | tar xf - -C build/tested
+	tar cf - --exclude=./build --exclude=./.git --exclude=./.venv --exclude=./bench/peers/node_modules . | tar xf - -C build/tested
 	cd build/core && find . -name '*.so' | tar cf - -T - | tar xf - -C ../tested
 	cd build/tested && PRIMA_CORE=compiled PYTHONPATH=. $(abspath $(BIN))/python -m pytest -n auto $(CORE_TESTS)
 
