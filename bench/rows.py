@@ -45,6 +45,8 @@ MORE = 9
 """Pairs of rows that are quickly measured and have a target."""
 DECISIONS = round(200_000 / 109_000, 2)
 """Decisions for each event of transitions: 200,000 on a machine on which it makes 109,000."""
+MOST = 25
+"""Pairs of rows whose ratio moves more from pair to pair than lies between it and its target."""
 MANY_SECONDS = 6.0
 """After how long no more machines are made."""
 TITLES = {
@@ -97,7 +99,7 @@ def events() -> list[Row]:
                 "its two states",
                 Call(workloads.rate, (system, 2, SECONDS)),
                 least=0.95 if ours else None,
-                rounds=MORE if ours else 1,
+                rounds=MOST if ours else 1,
                 needs=system,
             )
         )
@@ -198,7 +200,7 @@ def mediator() -> list[Row]:
             "events of transitions",
             Call(workloads.rate, ("transitions", 2, SECONDS)),
             least=least,
-            rounds=MORE,
+            rounds=MORE if least else 3,
             needs=needs,
         )
         for how, function, least, needs in (
@@ -269,7 +271,7 @@ def starts() -> list[Row]:
             "Python + its imports",
             Call(processes.floor, ("validate",)),
             most=1.3,
-            rounds=MORE,
+            rounds=MOST,
         ),
         Row(
             "W5: `prima run` of the demo",

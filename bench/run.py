@@ -20,7 +20,7 @@ from time import perf_counter
 
 from bench import core, peers
 from bench.fresh import ROOT, Figure, WrongAnswer, fresh
-from bench.rows import MORE, SECTIONS, Call, Row
+from bench.rows import MOST, SECTIONS, Call, Row
 
 PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
@@ -166,7 +166,7 @@ def machine(rounds: int) -> str:
     return (
         f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores,"
         f" {platform.python_implementation()} {platform.python_version()}; {', '.join(names)};"
-        f" medians of {rounds} pairs (slow rows have fewer, quick ones up to {MORE}), in brackets their"
+        f" medians of {rounds} pairs (slow rows have fewer, some up to {MOST}), in brackets their"
         " middle half."
     )
 
