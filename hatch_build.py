@@ -60,6 +60,11 @@ def compiled(folder: Path, made: Path) -> list[Path]:
     try:
         files = sorted(str(path) for pattern in CORE for path in Path().glob(pattern))
         modules = mypycify(["--ignore-missing-imports", *files], group_name="prima.core")
+        if (
+            os.name == "posix"
+        ):  # short functions are inlined, as nobody can put others in their place
+            for module in modules:
+                module.extra_compile_args.append("-fno-semantic-interposition")
         package = Distribution({"name": "prima", "ext_modules": modules})
         command = package.get_command_obj("build_ext")
         command.ensure_finalized()

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import random
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from bench import core
 from bench.fresh import check
+
+if TYPE_CHECKING:
+    from prima.messages import Record
 
 CHAIN = 4
 """Commands that an application asks for at a time, each as a tree of its own."""
@@ -14,12 +18,14 @@ MOST = 100_000
 """Decisions of one measurement."""
 
 
-def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
+def decisions(waiting: int, seconds: float, policy: str = "prima", written: bool = False) -> float:
     """Decisions a second while ABs of so many applications wait.
 
     One more application's AB runs. Each decision is the end of what runs, told to the mediator,
     and a selection with its records and orders. All Commands are requested before; the clock
-    stands still while an application whose Commands have all been done asks for new ones.
+    stands still while an application whose Commands have all been done asks for new ones. As the
+    trace of the rates of events, the records are kept, and looked at while the clock stands still;
+    ``written`` says that they are drained, as somebody does who writes them.
     """
     from prima.commands import TABLE_4_2
     from prima.messages import Command, Request, Step
@@ -52,7 +58,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     turns: list[int] = []
     lasted = 0.0
     while lasted < seconds and CHAIN * len(turns) < MOST:
-        drained = []
+        records: list[Record] = []
         began = perf_counter()
         for _ in range(CHAIN):
             chronicle.now += 1
@@ -60,14 +66,11 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
             mediator.told.clear()
             mediator.select()
             (order,) = mediator.drain_orders()
-            drained.append(chronicle.drain())
+            if written:
+                records += chronicle.drain()
         lasted += perf_counter() - began
-        winners = [
-            record["app"]
-            for records in drained
-            for record in records
-            if record["phase"] == "decision"
-        ]
+        records += chronicle.drain()
+        winners = [record["app"] for record in records if record["phase"] == "decision"]
         check(len(winners) == CHAIN, f"{len(winners)} decisions are recorded")
         check(len(set(winners[:-1])) == 1, "an application's next Command does not go on (S2c)")
         turns.append(int(winners[0][1:]))
@@ -77,10 +80,10 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     return CHAIN * len(turns) / lasted
 
 
-def compiled(waiting: int, seconds: float) -> float:
+def compiled(waiting: int, seconds: float, policy: str = "prima", written: bool = False) -> float:
     """The same with the compiled core."""
     core.use()
-    return decisions(waiting, seconds)
+    return decisions(waiting, seconds, policy, written)
 
 
 def cost(waiting: int, seconds: float) -> float:

@@ -212,6 +212,15 @@ def mediator() -> list[Row]:
         )
         for how, function, needs in kinds
     ]
+    rows += [
+        Row(
+            f"Decisions, 10 waiting{how}, each with its records made",
+            "decisions/s",
+            Call(function, (10, SECONDS, "prima", True)),
+            needs=needs,
+        )
+        for how, function, needs in kinds
+    ]
     return rows + [
         Row(
             f"A decision, {waiting:,} waiting",

@@ -15,6 +15,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from prima.messages import Record
+from prima.session import Session
 from tests.generated import (
     Play,
     Run,
@@ -62,6 +64,24 @@ def test_documents_keep_the_invariants(play: Play) -> None:
 def test_requests_keep_the_invariants(script: Script) -> None:
     run = drive(script)
     assert violations(run) == []
+
+
+@given(plays(), extended)
+@examples(10)
+def test_records_tell_what_was_when_they_were_made_however_late_they_are_drained(
+    play: Play, policy: str
+) -> None:
+    records = perform(play, policy).records
+    sessions: list[Session] = []
+
+    def undrained(session: Session) -> list[Record]:
+        sessions.append(session)
+        return []
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Session, "drain", undrained)
+        perform(play, policy)
+    assert sessions[0].chronicle.drain() == records
 
 
 @given(plays(), extended)

@@ -10,24 +10,32 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from functools import lru_cache
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from prima.commands import CommandType
 from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group, Record
 from prima.scheduler.effects import Effects
 
-Rank = tuple[int, ...]
-"""Where a waiting AB stands by the numbers of a policy's rule, S2a to S2f: the smallest first."""
+Rank = tuple[Any, ...]
+"""Where a waiting AB stands, by the numbers of a policy's rules, S2a to S2f: the smallest first.
+
+The serial number is the last of them, which no two have; behind it comes the AB itself."""
 HIGH: Final = 1
 
 
 @lru_cache(maxsize=1000)
-def in_order(devices: frozenset[str]) -> tuple[str, ...]:
-    """Devices in the order of their names."""
-    return tuple(sorted(devices))
+def known(devices: frozenset[str]) -> tuple[frozenset[str], tuple[str, ...]]:
+    """One set for all that are equal, and the devices in the order of their names."""
+    return devices, tuple(sorted(devices))
 
 
+def nothing() -> dict[str, Behavior]:
+    """What is inside an AB that is no unit: one and the same for all, as nobody puts anything there."""
+    return NOTHING
+
+
+NOTHING: Final[dict[str, Behavior]] = {}
 State = Literal["linked", "waiting", "running", "gone"]
 """The states of an AB in working memory (thesis Figure 4.3), and out of it."""
 LINKED: Final = "linked"
@@ -148,8 +156,10 @@ class Behavior:
     # Units only (U4, U5):
     spans: bool = False
     open: bool = False
-    inner: dict[str, Behavior] = field(default_factory=dict)
-    busy: dict[str, Behavior] = field(default_factory=dict)
+    inner: dict[str, Behavior] = field(default_factory=nothing)
+    """The unit's own ABs that are in working memory."""
+    busy: dict[str, Behavior] = field(default_factory=nothing)
+    """By which of those the unit's devices are used."""
     longest: int | None = None
     # As the Command's type has it; nothing in a unit leaves the user (K2):
     feedback: bool = False
@@ -169,8 +179,8 @@ class Behavior:
     """The AB's name in the transcript; a loop of a feedback Command has its number."""
     line: Line | None = None
     """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
-    entry: Entry | None = None
-    """By which it stands there."""
+    rank: Rank | None = None
+    """Where it stands there, as one that reacts to nothing and was not freed just now."""
     late: int | None = None
     """When it will have run for longer than it may (U5, E1), once it has started."""
     told: Record | None = None
@@ -180,14 +190,16 @@ class Behavior:
         self.id = self.name
         self.use(self.devices)
         row = self.type
-        if row is not None:
+        if row is None:
+            self.inner, self.busy = {}, {}
+        else:
             self.feedback, self.leaves = row.feedback, row.leaves
             self.engages, self.priority = row.engages, row.priority
             self.motion = row.motion if self.unit is None else ""
 
     def use(self, devices: frozenset[str]) -> None:
         """Say which devices the AB needs."""
-        self.devices, self.in_order = devices, in_order(devices)
+        self.devices, self.in_order = known(devices)
 
     def next_loop(self) -> None:
         """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
@@ -212,22 +224,24 @@ class Behavior:
         return what is not None and what.restartable and not self.silent
 
 
-Entry = tuple[Rank, Behavior]
-"""An AB that waits, behind its rank among those that react to nothing and were not freed just now."""
+def of(rank: Rank) -> Behavior:
+    """Whose rank it is."""
+    ab: Behavior = rank[-1]
+    return ab
 
 
 class Line:
     """The waiting ABs of one kind that react to nothing, first come first."""
 
-    __slots__ = ("devices", "entries", "leaves", "priority")
+    __slots__ = ("devices", "leaves", "priority", "ranks")
 
     def __init__(self, devices: frozenset[str], priority: int, leaves: bool) -> None:
         self.devices = devices
         self.priority = priority
         self.leaves = leaves
-        self.entries: list[Entry] = []
+        self.ranks: list[Rank] = []
 
     def below(self, rank: Rank) -> int:
         """Where those begin that stand behind a rank."""
-        entries = self.entries
-        return 0 if not entries or rank < entries[0][0] else bisect_left(entries, (rank,))
+        ranks = self.ranks
+        return 0 if not ranks or rank < ranks[0] else bisect_left(ranks, rank)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 from prima.messages import Cue, Data, Json, Record
-from prima.scheduler.behavior import Behavior, Entry, Stream
+from prima.scheduler.behavior import Behavior, Rank, Stream, of
 
 LOSERS_NAMED: Final = 8
 """How many losers of a decision are named; all are counted."""
 
 
-Occurrence = tuple[int, str, str | None, str, dict[str, Json] | None, int]
-"""An event that has come in: when, whose, for which application, its name, data and number."""
+Kept = tuple[Any, ...]
+"""What will be a record: its phase, the instant, and what :func:`recorded` makes of the rest. Most
+records are kept so, as a tuple costs next to nothing, until they are drained."""
 
 
 class Chronicle:
@@ -22,7 +23,7 @@ class Chronicle:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
         """Which of X1 to X6 are on: what they rest on is recorded with a request."""
-        self.records: list[Record | Occurrence] = []
+        self.records: list[Record | Kept] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
         """Record something. Fields that are None are left out when it is written."""
@@ -32,67 +33,38 @@ class Chronicle:
         self.records.append(fields)
 
     def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
-        """Record an event that has come in: there are many, so it becomes a record when drained."""
-        self.records.append((self.now, actor, app, name, dict(data) if data else None, serial))
+        """Record an event that has come in."""
+        held = dict(data) if data else None
+        self.records.append(("event", self.now, actor, app, name, held, serial))
 
     def drain(self) -> list[Record]:
         """Give what was recorded since the last time."""
         records, self.records = self.records, []
-        return [one if type(one) is dict else occurred(*one) for one in records]
+        return [one if isinstance(one, dict) else recorded(one) for one in records]
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        record = self._of(ab, phase)
+        record = of_behavior(phase, self.now, ab.told or describe(ab), ab.id)
         record.update(fields)
         self.records.append(record)
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
-        record = self._of(ab, "end")
-        record["outcome"] = outcome
-        record["inbound"] = inbound or None
-        if ab.feedback:
-            record["goal"] = goal
-        if data:
-            record["data"] = dict(data)
-        self.records.append(record)
+        told, held = ab.told or describe(ab), dict(data) if data else None
+        reached = goal if ab.feedback else None
+        self.records.append(("end", self.now, told, ab.id, outcome, reached, held, inbound or None))
 
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
-        record = self._of(ab, "start")
-        record["devices"] = [*ab.in_order]
-        record["rule"] = rule
-        if ab.feedback:
-            record["parent"] = ab.parent
-        if reaction is not None:
-            record["reactive"] = True
-            record["cause"] = reaction if reaction > 0 else None
-        if ab.resumed:
-            record["resumed"], record["data"] = True, ab.since
-        self.records.append(record)
+        told, since = ab.told or describe(ab), (True, ab.since) if ab.resumed else None
+        parent = ab.parent if ab.feedback else None
+        self.records.append(
+            ("start", self.now, told, ab.id, ab.in_order, rule, parent, reaction, since)
+        )
 
     def hold(self, ab: Behavior, rule: str, by: str) -> None:
         """Record that a waiting AB may not start, and because of what."""
-        record: Record = {
-            "time": self.now,
-            "phase": "hold",
-            "actor": "mediator",
-            "app": ab.app.name,
-            "behavior": ab.id,
-            "rule": rule,
-            "by": by,
-        }
-        self.records.append(record)
-
-    def _of(self, ab: Behavior, phase: str) -> Record:
-        """What all records of an AB have; most of it stays the same while it lives."""
-        if ab.told is None:
-            ab.told = described(ab)
-        record = ab.told.copy()
-        record["time"] = self.now
-        record["phase"] = phase
-        record["behavior"] = ab.id
-        return record
+        self.records.append(("hold", self.now, ab.app.name, ab.id, rule, by))
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
@@ -127,24 +99,17 @@ class Chronicle:
         """Record what becomes of a stream."""
         self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
 
-    def decision(self, winner: Behavior, rule: str, losers: list[Entry], count: int) -> None:
+    def decision(self, winner: Behavior, rule: str, losers: list[Rank], count: int) -> None:
         """Record a selection: the rule, who won, who lost, and how many did."""
-        record: Record = {
-            "time": self.now,
-            "phase": "decision",
-            "actor": "mediator",
-            "app": winner.app.name,
-            "winner": winner.id,
-            "rule": rule,
-            "losers": [ab.id for _, ab in losers[:LOSERS_NAMED]],
-            "losers_count": count,
-        }
-        self.records.append(record)
+        if len(losers) > LOSERS_NAMED:
+            losers = losers[:LOSERS_NAMED]
+        named = [of(rank).id for rank in losers]
+        self.records.append(("decision", self.now, winner.app.name, winner.id, rule, named, count))
 
 
-def described(ab: Behavior) -> Record:
-    """What the records of an AB have in common, with places for what most of them have."""
-    return {
+def describe(ab: Behavior) -> Record:
+    """Note what the records of an AB have in common, with places for what most of them have."""
+    ab.told = {
         "time": 0,
         "phase": "",
         "actor": "robot",
@@ -159,22 +124,90 @@ def described(ab: Behavior) -> Record:
         "outcome": None,
         "inbound": None,
     }
+    return ab.told
 
 
-def occurred(
-    time: int, actor: str, app: str | None, event: str, data: dict[str, Json] | None, serial: int
-) -> Record:
-    """The record of an event that has come in."""
-    return {
-        "time": time,
-        "phase": "event",
-        "actor": actor,
-        "app": app,
-        "event": event,
-        "data": data,
-        "serial": serial,
-        "inbound": True,
-    }
+HOLD: Final[Record] = {
+    "time": 0,
+    "phase": "hold",
+    "actor": "mediator",
+    "app": "",
+    "behavior": "",
+    "rule": "",
+    "by": "",
+}
+DECISION: Final[Record] = {
+    "time": 0,
+    "phase": "decision",
+    "actor": "mediator",
+    "app": "",
+    "winner": "",
+    "rule": "",
+    "losers": None,
+    "losers_count": 0,
+}
+
+
+def of_behavior(phase: str, time: int, told: Record, behavior: str) -> Record:
+    """What all records of an AB have; ``told`` is :func:`describe`'s."""
+    record = told.copy()
+    record["time"] = time
+    record["phase"] = phase
+    record["behavior"] = behavior
+    return record
+
+
+def recorded(kept: Kept) -> Record:
+    """Make a record of what was kept."""
+    phase: str = kept[0]
+    if phase == "end":
+        _, time, told, behavior, outcome, goal, data, inbound = kept
+        record = of_behavior(phase, time, told, behavior)
+        record["outcome"] = outcome
+        record["inbound"] = inbound
+        if goal is not None:
+            record["goal"] = goal
+        if data is not None:
+            record["data"] = data
+    elif phase == "start":
+        _, time, told, behavior, devices, rule, parent, reaction, since = kept
+        record = of_behavior(phase, time, told, behavior)
+        record["devices"] = [*devices]
+        record["rule"] = rule
+        if parent is not None:
+            record["parent"] = parent
+        if reaction is not None:
+            record["reactive"] = True
+            record["cause"] = reaction if reaction > 0 else None
+        if since is not None:
+            record["resumed"], record["data"] = since
+    elif phase == "decision":
+        record = DECISION.copy()
+        (
+            _,
+            record["time"],
+            record["app"],
+            record["winner"],
+            record["rule"],
+            record["losers"],
+            record["losers_count"],
+        ) = kept
+    elif phase == "hold":
+        record = HOLD.copy()
+        _, record["time"], record["app"], record["behavior"], record["rule"], record["by"] = kept
+    else:
+        _, time, actor, app, event, data, serial = kept
+        record = {
+            "time": time,
+            "phase": phase,
+            "actor": actor,
+            "app": app,
+            "event": event,
+            "data": data,
+            "serial": serial,
+            "inbound": True,
+        }
+    return record
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:

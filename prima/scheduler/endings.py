@@ -188,7 +188,9 @@ class Endings:
             return False
         self.changed = True
         ending = goal or ab.last_loop or not ab.feedback
-        outcome = str(data.get("outcome", "done")) if ending else "again"
+        outcome = "done" if ending else "again"
+        if data and ending and "outcome" in data:
+            outcome = str(data["outcome"])
         self.chronicle.end(ab, outcome, goal, data, inbound)
         if ab.feedback and not goal and "locomotion" in ab.devices:
             self._rolling = ab

@@ -160,14 +160,14 @@ def allowance(ab: Behavior) -> int:
     """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
+    letters = MS_A_LETTER * len(command.text or "")
+    if not command.args and not command.cues:
+        return HANG_MS + letters
     stated = 0
     for name, value in command.args.items():
         argument = row.arguments.get(name)
         if argument is not None and argument.kind == "duration":
             stated += int(value)
-    letters = MS_A_LETTER * len(command.text or "")
-    if not command.cues:
-        return HANG_MS + stated + letters
     times = sum(
         cue.value
         for cue in command.cues

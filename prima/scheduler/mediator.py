@@ -260,9 +260,10 @@ class Mediator(Failures):
             self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
             self.chronicle.behavior("stop", ab, rule="F5")
         self._rolling = None
-        for app in self._continuing:
-            app.continuing = None
-        self._continuing.clear()
+        if self._continuing:
+            for app in self._continuing:
+                app.continuing = None
+            self._continuing.clear()
 
     def _close_streams(self) -> None:
         """C1, F3: streams that nothing keeps open end, and hold no floor then."""

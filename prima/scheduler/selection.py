@@ -100,10 +100,12 @@ class Policy:
 
     def decided(self, winner: Rank, loser: Rank) -> str:
         """The rule by which one rank goes before another; they differ in the serial number at least."""
-        place = 0
-        while winner[place] == loser[place]:
-            place += 1
-        return self.rules[place]
+        for index, rule in enumerate(self.rules):
+            ours: int = winner[index]
+            its: int = loser[index]
+            if ours != its:
+                return rule
+        raise AssertionError("two ABs have one serial number")
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, K1)."""
@@ -133,7 +135,7 @@ class Fifo(Policy):
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The earlier request goes first."""
-        return (ab.requested, rank_declared(ab), ab.serial)
+        return (ab.requested, rank_declared(ab), ab.serial, ab)
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """Nothing but devices keeps an AB from starting."""
@@ -159,7 +161,7 @@ class Fair(Fifo):
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
-        return (ab.app.last_turn, ab.requested, rank_declared(ab), ab.serial)
+        return (ab.app.last_turn, ab.requested, rank_declared(ab), ab.serial, ab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +175,7 @@ class Fixed(Fifo):
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
         top = ab.app.name == self.first if self.first else ab.app.order == 0
-        return (0 if top else 1, ab.requested, rank_declared(ab), ab.serial)
+        return (0 if top else 1, ab.requested, rank_declared(ab), ab.serial, ab)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Final
 
 from prima.messages import Command, Group, Order
@@ -11,10 +10,10 @@ from prima.scheduler.behavior import (
     WAITING,
     Application,
     Behavior,
-    Entry,
     Line,
     Rank,
     Stream,
+    of,
 )
 from prima.scheduler.chronicle import LOSERS_NAMED, Chronicle
 from prima.scheduler.effects import Body
@@ -32,7 +31,7 @@ COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
 
 
-Losers = tuple[list[Entry], int]
+Losers = tuple[list[Rank], int]
 """The first of those whom a winner keeps waiting, by rank, and how many there are."""
 
 
@@ -73,14 +72,16 @@ class Selector:
         self.started = []
         memory = self.memory
         memory.waiting.settle(now)
-        for unit in [ab for ab in memory.running.values() if ab.inner]:
-            self._advance(unit, now)
+        if memory.running:
+            for unit in [ab for ab in memory.running.values() if ab.inner]:
+                self._advance(unit, now)
         more = True
         while more and memory.waiting.all:
             more = self._pass(now)
-            for stream in self._resumed:
-                memory.rank_anew(stream)
-            self._resumed.clear()
+            if self._resumed:
+                for stream in self._resumed:
+                    memory.rank_anew(stream)
+                self._resumed.clear()
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true when what ranks them changed on the way.
@@ -89,12 +90,14 @@ class Selector:
         """
         memory, policy = self.memory, self.policy
         many = self._lining and len(memory.waiting.all) > self.few
-        ranked = self._ranked(memory.waiting.apart.values() if many else memory.waiting, now)
-        candidates = self._with_firsts(ranked) if many else ranked
+        candidates = self._ranked(memory.waiting.apart if many else memory.waiting.all, now)
+        if many:
+            self._add_firsts(candidates)
         held: dict[str, Behavior] = {}
         index = 0
         while index < len(candidates):
-            rank, ab = candidates[index]
+            rank = candidates[index]
+            ab = of(rank)
             index += 1
             refusal = policy.refusal(ab, memory)
             if refusal is None:
@@ -106,44 +109,43 @@ class Selector:
                         held.setdefault(device, ab)
             if refusal is None:
                 engaging = ab.engages and not ab.stream.engaged
-                if self._start(ab, rank, candidates[index:], now, many):
+                if self._start(ab, rank, candidates, index, now, many):
                     return True
                 if many and engaging:  # others of a line may be the first that may start (K1)
-                    ranked = [entry for entry in ranked if entry[1].state is WAITING]
-                    candidates, index, held = self._with_firsts(ranked), 0, {}
+                    candidates = [one for one in candidates if of(one).name in memory.waiting.apart]
+                    self._add_firsts(candidates)
+                    index, held = 0, {}
             elif ab.blocked != refusal:
                 self._hold(ab, refusal)
         return False
 
-    def _with_firsts(self, apart: list[Entry]) -> list[Entry]:
+    def _add_firsts(self, found: list[Rank]) -> None:
         """Of many waiting ABs those that may be the next, in the order of S2 (S1-S3, F, K).
 
         In a line all need the same devices: whoever comes after the first that F2 and K1
         let start has to wait for that one's.
 
         Args:
-            apart: those that stand in no line.
+            found: those that stand in no line; the others come in among them.
         """
-        found = apart.copy()
         waiting = self.memory.waiting
         few = len(waiting.all) <= self.few  # since this pass has begun
         for line in waiting.lines.values():
-            found += line.entries if few else self._let_in(line)
+            let = EVERYBODY if few else self._let(line)
+            if isinstance(let, Application):
+                found += [ab.rank for ab in let.members.values() if ab.rank and ab.line is line]
+            elif let is EVERYBODY:
+                if line.devices and not few:
+                    found.append(line.ranks[0])
+                else:
+                    found += line.ranks
         found.sort()
-        return found
 
-    def _let_in(self, line: Line) -> list[Entry]:
-        """Those of a line that may be the next."""
-        let = self._let(line)
-        if isinstance(let, Application):
-            return [ab.entry for ab in let.members.values() if ab.entry and ab.line is line]
-        if let is NOBODY:
-            return []
-        return line.entries[:1] if line.devices else line.entries
-
-    def _ranked(self, found: Iterable[Behavior], now: int) -> list[Entry]:
-        ranked = [(self.policy.rank(ab, self.memory, now), ab) for ab in found]
-        ranked.sort()  # no two ranks are equal: they end with the serial number
+    def _ranked(self, found: dict[str, Behavior], now: int) -> list[Rank]:
+        policy, memory = self.policy, self.memory
+        ranked = [policy.rank(ab, memory, now) for ab in found.values()]
+        if len(ranked) > 1:
+            ranked.sort()  # no two ranks are equal: they end with the serial number
         return ranked
 
     def _let(self, line: Line) -> Application | str:
@@ -163,24 +165,25 @@ class Selector:
     def _behind(self, line: Line, winner: Behavior, rank: Rank) -> Losers:
         """Those of a line who rank below a winner that is gone from it, and must wait."""
         let: Application | str = NOBODY
-        if line.devices.isdisjoint(winner.devices):
+        mine, its = line.devices, winner.devices
+        if not mine or (mine is not its and mine.isdisjoint(its)):
             let = self._let(line)
             if let is EVERYBODY:
                 return [], 0
-        entries, start = line.entries, line.below(rank)
+        ranks, start = line.ranks, line.below(rank)
         if not isinstance(let, Application):
-            return entries[start : start + LOSERS_NAMED], len(entries) - start
-        behind = [entry for entry in entries[start:] if entry[1].app is not let]
+            return ranks[start : start + LOSERS_NAMED], len(ranks) - start
+        behind = [other for other in ranks[start:] if of(other).app is not let]
         return behind[:LOSERS_NAMED], len(behind)
 
     def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
-        if not held and self.memory.conflict(ab) is None:
-            return None
-        kept = next((device for device in ab.in_order if device in held), "")
         other = self._occupant(ab)
+        if other is None and not held:
+            return None
+        kept = next((device for device in ab.in_order if device in held), "") if held else ""
         if self._yielding and other is not None and not kept and self._give_way(ab):
             other = self._occupant(ab)
         if other is not None:
@@ -310,13 +313,22 @@ class Selector:
         if changed:  # the next loop of the same feedback Command is no news
             self.chronicle.hold(ab, rule, by)
 
-    def _start(self, ab: Behavior, rank: Rank, lower: list[Entry], now: int, many: bool) -> bool:
+    def _start(
+        self,
+        ab: Behavior,
+        rank: Rank,
+        candidates: list[Rank],
+        index: int,
+        now: int,
+        many: bool,
+    ) -> bool:
         """Start an AB and record why; true when others rank otherwise now.
 
         Args:
             ab: the AB.
             rank: where it stands.
-            lower: those looked at that rank below it.
+            candidates: those that are looked at.
+            index: where among them those begin that rank below it.
             now: the instant.
             many: whether so many wait that not each of them is looked at.
         """
@@ -328,12 +340,16 @@ class Selector:
         # Where the floor changes, all others are suspended: then each is looked at anyway.
         waiting = memory.waiting
         lined = many and ab.reaction is None and not by_floor_rule
-        if many and lower:  # what is ranked by the lines alone is left to them
-            lower = [entry for entry in lower if entry[1].line is None]
+        # What is ranked by the lines alone is left to them,
+        lower = [
+            candidates[place]
+            for place in range(index, len(candidates))
+            if not many or of(candidates[place]).line is None
+        ]
         if many and not lined:  # or looked for now
             for line in waiting.lines.values():
-                behind = line.entries[line.below(rank) :]
-                lower += [entry for entry in behind if entry[1] is not ab]
+                behind = line.ranks[line.below(rank) :]
+                lower += [other for other in behind if of(other) is not ab]
             lower.sort()
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
@@ -342,17 +358,17 @@ class Selector:
         if reaction is not None or by_floor_rule:
             changed = self._take_floor(ab, reaction, by_floor_rule)
         losers = [
-            entry
-            for entry in lower
-            if entry[1].devices & ab.devices or policy.refusal(entry[1], memory)
+            other
+            for other in lower
+            if of(other).devices & ab.devices or policy.refusal(of(other), memory)
         ]
         # Of several reactions that the floor would let in, it is their rank that decided.
-        rivals = reaction is not None and any(other.reaction for _, other in losers)
+        rivals = reaction is not None and any(of(other).reaction for other in losers)
         count = len(losers)
         if lined:
             for line in waiting.lines.values():
                 firsts, more = self._behind(line, ab, rank)
-                losers += firsts
+                losers = losers + firsts if losers else firsts
                 count += more
             if lower or len(waiting.lines) > 1:
                 losers.sort()
@@ -363,7 +379,7 @@ class Selector:
         elif by_floor_rule and policy.floor and not rivals:
             rule = "F2"
         elif losers:
-            rule = policy.decided(rank, losers[0][0])
+            rule = policy.decided(rank, losers[0])
         else:
             rule = "S4" if others else "S1"
         self.chronicle.decision(ab, rule, losers, count)
@@ -451,7 +467,7 @@ class Selector:
 
         True if one has waited so long that it counts as a reaction from now on.
         """
-        bounded = []
+        bounded: dict[str, Behavior] = {}
         for other in self.memory.waiting:
             if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
                 continue
@@ -467,8 +483,9 @@ class Selector:
                     loop=STARVING_LOOPS,
                 )
             if self.bound is not None and other.waited_loops >= self.bound:
-                bounded.append(other)
-        for _, other in self._ranked(bounded, now):
+                bounded[other.name] = other
+        for rank in self._ranked(bounded, now):
+            other = of(rank)
             self._starved += 1
             other.reaction = -self._starved
             self.memory.waiting.moved(other)

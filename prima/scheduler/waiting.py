@@ -58,23 +58,23 @@ class Waiting:
         if line is None:
             line = self.lines[kind] = Line(*kind)
         ab.line = line
-        ab.entry = (place(ab, *NO_REACTION, LATER), ab)
-        insort(line.entries, ab.entry)
+        ab.rank = place(ab, *NO_REACTION, LATER)
+        insort(line.ranks, ab.rank)
 
     def remove(self, ab: Behavior) -> None:
         """An AB waits no longer; one that did not wait is none of ours."""
-        name, line, entry = ab.name, ab.line, ab.entry
+        name, line, rank = ab.name, ab.line, ab.rank
         if name not in self.all:
             return
         del self.all[name]
-        if line is None or entry is None:
+        if line is None or rank is None:
             del self.apart[name]
             return
-        entries = line.entries
-        del entries[0 if entries[0] is entry else bisect_left(entries, entry)]
-        if not entries:
+        ranks = line.ranks
+        del ranks[0 if ranks[0] is rank else bisect_left(ranks, rank)]
+        if not ranks:
             del self.lines[line.devices, line.priority, line.leaves]
-        ab.line = ab.entry = None
+        ab.line = ab.rank = None
 
     def moved(self, ab: Behavior) -> None:
         """Something has changed by which an AB is ranked."""
@@ -104,6 +104,7 @@ def place(ab: Behavior, reacting: int, event: int, whose: int, continuing: int) 
         ab.requested,  # S2e: the earlier request goes first
         rank_declared(ab),
         ab.serial,
+        ab,
     )
 
 
