@@ -318,6 +318,8 @@ class Session:
                 # As in VoiceXML, a link ends the input of the field that is being visited.
                 self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
                 return
+        if question is None and self._breaks_in(value.text, told):
+            return
         if self._follow_links(value.text) or question is None or question.silent:
             return
         cues = question.command.cues if question.command is not None else ()
@@ -329,6 +331,17 @@ class Session:
         """Whether a question takes an answer now: it listens, or may be interrupted."""
         command = question.command
         return question.listening or (command is not None and bool(command.args.get("bargein")))
+
+    def _breaks_in(self, text: str, data: dict[str, Json]) -> bool:
+        """Whether an application takes what the user says while its prompts are being said."""
+        for ab in list(self.mediator.memory.running.values()):
+            app = self.apps[ab.app.name]
+            if isinstance(app, Interpreter) or ab.command is None or ab.silent:
+                continue
+            if app.breaks_in(self.chronicle.now, ab.command, text, data):
+                self._act(app)
+                return True
+        return False
 
     def _follow_links(self, text: str) -> bool:
         taken = False

@@ -13,7 +13,7 @@ from prima import loading
 from prima.errors import DocumentError
 from prima.voicexml.document import broken, join, read_page
 from tests.robot import Bench
-from tests.voice import HEAD, Call, vxml
+from tests.voice import HEAD, Call, voice, vxml
 from tests.work import steps
 
 P = 'xmlns:p="urn:prima:dialogue:1"'
@@ -1876,3 +1876,103 @@ def long_document(forms: int) -> bytes:
 def test_the_work_for_a_document_grows_with_its_length() -> None:
     short, long = long_document(30), long_document(300)
     assert steps(lambda: read_page("d", "d", long)) < 11 * steps(lambda: read_page("d", "d", short))
+
+
+# Answers before the question (4.1.5) ---------------------------------------------------------
+
+WELCOME = """<form><block><prompt>One.</prompt><prompt {}>Two.</prompt></block>
+<field name="f">{}<prompt>Which?</prompt><option dtmf="1">red</option>
+<filled><log expr="f"/><prompt>Good.</prompt></filled></field></form>"""
+
+
+@pytest.mark.parametrize(("said", "logged"), [("red", "red"), ("1", "red")])
+def test_what_is_said_during_a_prompt_before_a_question_answers_it(said: str, logged: str) -> None:
+    call = Call(WELCOME.format("", ""))
+    call.hears(said)
+    assert call.saying() == ["One."], "what is being said is not cut (U1)"
+    assert call.logs() == [logged]
+    assert call.play() == ["One.", "Good."], "nothing more is said before the answer counts"
+    assert {(r["rule"], r["text"]) for r in call.phases("cancel")} == {
+        ("O3", "Two."),
+        ("O3", "Which?"),
+    }
+    assert call.ended == "exit"
+
+
+def test_what_no_grammar_takes_before_a_question_ends_nothing() -> None:
+    call = Call(WELCOME.format("", ""))
+    call.hears("blue")
+    assert call.play() == ["One.", "Two.", "Which?"]
+    call.answer("red")
+    assert call.logs() == ["red"]
+
+
+def test_what_may_not_be_broken_in_on_is_said_before_an_answer_counts() -> None:
+    call = Call(WELCOME.format('bargein="false"', ""))
+    call.hears("red")
+    assert call.logs() == []
+    call.finish("One.")
+    call.hears("red")
+    assert call.logs() == []
+    call.answer("red")
+    assert call.said() == ["One.", "Two.", "Which?", "Good."]
+
+
+def test_prompts_may_be_broken_in_on_behind_one_that_may_not() -> None:
+    text = WELCOME.replace("<prompt>One.", '<prompt bargein="false">One.')
+    call = Call(text.format("", ""))
+    call.hears("red")
+    call.finish("One.")
+    assert call.logs() == []
+    call.hears("red")
+    assert call.logs() == ["red"]
+    assert call.play() == ["One.", "Two.", "Good."]
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_bargein_as_a_property_holds_for_prompts_before_a_question(own: bool) -> None:
+    text = WELCOME.format(
+        'bargein="true"' if own else "", '<property name="bargein" value="false"/>'
+    )
+    call = Call(text)
+    call.finish("One.")
+    call.hears("red")
+    assert call.logs() == [], "the question itself may not be broken in on"
+    text = WELCOME.format('bargein="true"' if own else "", "").replace(
+        "<prompt>Which?", '<prompt bargein="true">Which?'
+    )
+    call = Call(vxml(f'<property name="bargein" value="false"/>{text}'))
+    call.finish("One.")
+    call.hears("red")
+    assert call.logs() == (["red"] if own else [])
+
+
+def test_what_is_said_before_a_recording_is_not_recorded() -> None:
+    call = Call(
+        """<form><block>One.</block><record name="r"><prompt>Speak.</prompt></record>
+        <block><log expr="'later'"/></block></form>"""
+    )
+    call.hears("something")
+    assert call.saying() == ["One."]
+    call.finish("One.")
+    assert call.saying() == ["Speak."]
+
+
+def test_nobody_answers_a_question_before_anything_is_said_for_it() -> None:
+    call = Call("<form><block>Other.</block></form>", voice(WELCOME.format("", ""), "asking"))
+    call.hears("red")
+    assert call.logs() == []
+    call.finish("Other.")
+    assert call.saying() == ["One."]
+    call.hears("red")
+    assert call.logs() == ["red"]
+
+
+def test_a_link_may_be_taken_before_a_question() -> None:
+    text = """<link next="#help"><grammar mode="voice" version="1.0" root="r">
+    <rule id="r">help</rule></grammar></link>
+    <form><block>One.</block><field name="f"><prompt>Which?</prompt><option>red</option></field></form>
+    <form id="help"><block>Like this.</block></form>"""
+    call = Call(text)
+    call.hears("help")
+    assert call.play() == ["One.", "Like this."]

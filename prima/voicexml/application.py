@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Mapping, Sequence
 from itertools import count
 
 from prima.interpreter.bounds import Bounds
@@ -70,6 +70,8 @@ class VoiceInterpreter(Bounds["Engine"]):
         """Whether what is waited for is a call, which the user may hang up."""
         self._patient = False
         """Whether what is played now is played to its end, even with the answer there."""
+        self._open: Sequence[Command] = ()
+        """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
         """Events that came while an answer was waited for (4.1.8): none is lost."""
 
@@ -165,6 +167,24 @@ class VoiceInterpreter(Bounds["Engine"]):
         found = self.heard.interpretation
         return found if found is not None else self.heard.utterance
 
+    def breaks_in(self, now: int, command: Command, text: str, data: Data) -> bool:
+        """Take what the user says during a prompt as the answer to the question behind it (4.1.5).
+
+        What is being said is said to its end (rule U1), what is queued behind it is not (O3).
+        What no grammar takes is not for this application: nothing listens yet.
+        """
+        if not any(one is command for one in self._open):
+            return False
+        self._tick(now)
+        value = self.answer(self._run, text)
+        if value is None or self.heard is None or not self.heard.recognised:
+            self.heard = None
+            return False
+        self.actions.append(LeaveState(self._state))
+        self._drive(Resume({"outcome": "filled", "utterance": text, "value": value, **data}))
+        self._catch_up()
+        return True
+
     def expire(self, now: int) -> list[tuple[str, Data]]:
         """VoiceXML has no delayed events; but a fetch or a call may take too long (6.1.1, 2.3.7)."""
         self._tick(now)
@@ -178,8 +198,15 @@ class VoiceInterpreter(Bounds["Engine"]):
 
     # What the machine asks for --------------------------------------------------------
 
-    def wait(self, commands: list[Command]) -> Generator[None, Resume, Resume]:
-        """Ask for Commands, one after another, and wait for the end of the last."""
+    def wait(
+        self, commands: list[Command], open_to_answers: Sequence[Command] = ()
+    ) -> Generator[None, Resume, Resume]:
+        """Ask for Commands, one after another, and wait for the end of the last.
+
+        Args:
+            commands: the Commands.
+            open_to_answers: those during which the question behind them may be answered.
+        """
         steps = [
             Step(command, (index - 1,) if index else ()) for index, command in enumerate(commands)
         ]
@@ -189,8 +216,9 @@ class VoiceInterpreter(Bounds["Engine"]):
         content = self._machine.content
         self._marked, content.mark = content.mark, None
         self.actions.append(Request(self._run, steps, self._state, cause))
+        self._open = open_to_answers
         resume = yield
-        self._run = 0
+        self._run, self._open = 0, ()
         return resume
 
     def send(self, service: str, data: Data, node: Node) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
@@ -363,12 +363,14 @@ class Machine:
         if resume.event is not None:
             raise thrown_outside(resume)
 
-    def _wait(self, commands: list[Command]) -> Generator[None, Resume, Resume]:
+    def _wait(
+        self, commands: list[Command], open_to_answers: Sequence[Command] = ()
+    ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
         self.queue = []
         if self.gone:
             raise GoOut(self.gone)
-        return (yield from self.owner.wait(commands))
+        return (yield from self.owner.wait(commands, open_to_answers))
 
     def _listen(self, context: Context, item: Node) -> Flow:
         """Play what is queued, then wait for the user (C4)."""
@@ -381,8 +383,23 @@ class Machine:
         if item.tag == "record":
             self.items_of.recorder.prepare(item, question)
         self.owner.heard = None
-        resume = yield from self._wait([*self.queue, question])
+        open_to_answers = self._open_to_answers(context, question)
+        resume = yield from self._wait([*self.queue, question], open_to_answers)
         yield from self._answered(context, item, resume)
+
+    def _open_to_answers(self, context: Context, question: Command) -> list[Command]:
+        """Of what is queued before a question that during which it may be answered (4.1.5).
+
+        Those are the last prompts: an answer ends the wait, and what may not be broken in on is
+        to be said before.
+        """
+        found: list[Command] = []
+        if question.args["bargein"]:
+            for command in reversed(self.queue):
+                if (command.hook or self.setting(context, "bargein")) == "false":
+                    break
+                found.append(command)
+        return found
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question that an item's last prompt is (4.1.5, 4.1.7)."""
