@@ -45,6 +45,7 @@ class Cue:
         "hotword",
         "record",
         "finalsilence",
+        "longest",
     ]
     """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
     ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
@@ -53,7 +54,8 @@ class Cue:
     ``hotword``: what the user says breaks off this question only if it is understood.
     ``record``: the answer is a recording, of which the device tells how long it is; one of
     ``value`` ms is the longest, and 0 is without end. ``finalsilence``: it is over after so many
-    ms of silence."""
+    ms of silence. ``longest``: the device listens no longer than ``value`` ms to what the user
+    says, and tells that it was too long."""
     value: float | str | None = None
 
 
@@ -232,7 +234,8 @@ class Heard:
     data: Data = field(default_factory=dict)
     """Of a question with marks: ``markname``, the last one passed when the user began to speak,
     or None, and ``marktime``, the ms that were played from there on. Of a recording:
-    ``duration``, its ms, and ``maxtime``, whether it was cut off."""
+    ``duration``, its ms, and ``maxtime``, whether it was cut off. ``toolong``: it took longer than
+    the question lets it (``longest``)."""
 
 
 @dataclass(slots=True)

@@ -307,6 +307,9 @@ class Session:
         question = self.mediator.question()
         if question is not None and not self._hears(question):
             question = None
+        if question is not None and told.get("toolong"):
+            self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
+            return
         if question is not None and question.run is not None:
             answer = self.apps[question.app.name].answer(question.run.number, value.text)
             if answer is not None:

@@ -613,3 +613,45 @@ def test_hotword_may_be_a_property(played: Played) -> None:  # 6.3.2
     with_property = hot.replace("<form>", '<property name="bargeintype" value="hotword"/><form>')
     assert logs(played(with_property, (500, "what"))) == ["silence"]
     assert logs(played(hot, (500, "what")))[0] == "no"
+
+
+# Speech that is too long (6.3.2) --------------------------------------------------------------
+
+LONG_ANSWER = "the one that stands at the very end of the long corridor"
+LIMITED = f"""<form><property name="maxspeechtimeout" value="1s"/><field name="f"><prompt>Which?</prompt>
+<option dtmf="1">{LONG_ANSWER}</option><option dtmf="2">this</option>
+<catch event="maxspeechtimeout"><log>too long</log><exit/></catch>
+<filled><log expr="f"/></filled></field></form>"""
+
+
+def test_who_speaks_for_too_long_is_not_listened_to(played: Played) -> None:
+    assert plain(LONG_ANSWER) > 1000
+    made = played(LIMITED, (1500, LONG_ANSWER))
+    assert logs(made) == ["too long"]
+    assert of(made, "end")[-1]["time"] == 2.5, "no longer than the property says"
+    (heard,) = [one for one in of(made, "event") if one["event"] == "speech"]
+    assert heard["data"]["toolong"] is True
+
+
+@pytest.mark.parametrize(
+    ("said", "value"), [("this", "1s"), ("1", "1ms"), (LONG_ANSWER, "0s"), (LONG_ANSWER, "1min")]
+)
+def test_what_is_short_enough_is_an_answer(played: Played, said: str, value: str) -> None:
+    made = played(LIMITED.replace('value="1s"', f'value="{value}"'), (1500, said))
+    assert logs(made) == [LONG_ANSWER if said == "1" else said]
+
+
+def test_without_a_catch_the_platform_asks_again(played: Played) -> None:  # 5.2.5
+    text = LIMITED.replace("<catch", '<catch cond="false"')
+    made = played(text, (1500, LONG_ANSWER), (6000, "this"))
+    assert texts(made) == ["Which?", "That was too long.", "Which?"]
+    assert logs(made) == ["this"]
+
+
+def test_a_recording_has_its_own_longest_time(played: Played) -> None:
+    made = played(
+        """<form><property name="maxspeechtimeout" value="1s"/><record name="r"><prompt>Speak.</prompt>
+        <filled><log expr="r$.duration > 1000"/></filled></record></form>""",
+        (1500, LONG_ANSWER),
+    )
+    assert logs(made) == ["true"]

@@ -25,6 +25,8 @@ from prima.sim.robot import Robot
 from prima.sim.scenario import Doing, Scenario, When
 from prima.sim.world import World, distance
 
+KEYS = frozenset("0123456789*# ")
+"""What is pressed, where nothing else is said."""
 KEYS_THAT_END = "#*"
 """Keys pressed at the end of what is recorded: there is no silence to wait for."""
 
@@ -231,6 +233,10 @@ class Person:
                 script.told = {"duration": longest, "maxtime": True}
             elif text.endswith(tuple(KEYS_THAT_END)):
                 silence = 0
+        elif not KEYS.issuperset(text):
+            longest = self.robot.longest_answer()
+            if 0 < longest < script.lasts:
+                script.lasts, script.told = longest, {"toolong": True}
         script.time = now + script.lasts + silence
 
     def _timeline(self, text: str) -> voice.Timeline:

@@ -633,6 +633,13 @@ class Robot:
         values = {cue.kind: int(cue.value or 0) for cue in task.command.cues if cue.at == 0}
         return values["record"], values.get("finalsilence", 0)
 
+    def longest_answer(self) -> int:
+        """How long the user may speak, in ms; 0 for as long as he likes (VoiceXML 2.0, 6.3.2)."""
+        task = self._question()
+        if task is None:
+            return 0
+        return next((int(cue.value or 0) for cue in task.command.cues if cue.kind == "longest"), 0)
+
     def marks_passed(self, began: int) -> dict[str, Json]:
         """The last mark that a question had passed when the user began to speak (2.1, 4).
 

@@ -9,7 +9,7 @@ from prima.interpreter.content import source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Command, Json
+from prima.messages import Command, Cue, Json
 from prima.values import milliseconds
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
@@ -416,6 +416,9 @@ class Machine:
         kind = prompt.get("bargeintype") if prompt is not None else ""
         hotword = args["bargein"] and (kind or self.setting(context, "bargeintype")) == "hotword"
         cues = self.content.question_cues(asked, self.queue, hotword)
+        longest = milliseconds(self.setting(context, "maxspeechtimeout"), 0)
+        if longest and item.tag != "record":  # whose maxtime is its own
+            cues = (Cue(0, "longest", longest), *cues)
         return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
 
     def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
