@@ -273,3 +273,24 @@ def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
     done = prima("validate", "d/m.vxml", cwd=tmp_path)
     assert ("[no-such-file]" in done.stdout) == warned, done.stdout
     assert "error:" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        ('<form id="m"><block><log expr="event.name"/><exit/></block></form>', "event"),
+        ('<form id="m"><block><log expr="1 + _event.name"/><exit/></block></form>', "_event"),
+        ('<form id="m"><block><speak>A<value expr="_message"/></speak><exit/></block></form>', "_message"),
+        ('<form id="m"><block><speak>A<on event="failed"><log expr="event.name"/></on></speak><exit/></block></form>', ""),
+        ('<form id="m"><block><exit/></block></form><on event="touch" cond="event.data"><log expr="event"/></on>', ""),
+        ('<form id="m"><block><log expr="[1].map(event => event)"/><exit/></block></form>', ""),
+        ("""<form id="m"><block><log expr="'event'"/><exit/></block></form>""", ""),
+    ],
+)  # fmt: skip
+def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_path: Path) -> None:
+    text = f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">{content}</prima>'
+    (tmp_path / "a.xml").write_text(text)
+    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
+    found = [one for one in json.loads(done.stdout) if one["severity"] == "error"]
+    assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
+    assert all(f'"{name}" is there in a handler only' in one["message"] for one in found)

@@ -49,7 +49,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
-from prima.interpreter.names import IDENTIFIER, declared_names, free_names
+from prima.interpreter.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.markup.tree import Node
 from prima.values import read_value
 
@@ -75,7 +75,7 @@ LEAVING = (Goto, Return, Exit)
 SCOPED = ("document", "dialog", "application")
 """Scopes that the name of a variable may begin with."""
 NONE: frozenset[str] = frozenset()
-VARIABLES = frozenset({"event", "_event", "_message", "session", "sensor"})
+VARIABLES = HANDLED | {"session", "sensor"}
 """What the language itself declares."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',
@@ -612,7 +612,21 @@ class Checker:
                     bare = expr.code.strip() == name and expr.node.tag != "value"
                     called = CALL.match(expr.code, start + len(name)) is not None
                     self._undeclared(_place_in(expr, start), name, known, bare, called)
+            for name, start in handled_names(expr.code).items():
+                if id(expr.node) not in self._handling:
+                    self._unhandled(_place_in(expr, start), name)
             self._assigns(expr)
+
+    @cached_property
+    def _handling(self) -> set[int]:
+        """The elements of all handlers: what is in them knows the event."""
+        handlers = handlers_of(self.document, self.acts)
+        return {id(node) for handler in handlers for node in handler.node.walk()}
+
+    def _unhandled(self, place: Place, name: str) -> None:
+        message = f'No event is handled here: "{name}" is there in a handler only.'
+        remedy = "Keep what you need of it in a variable: the handler can <assign> it."
+        self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _assigns(self, expr: Expression) -> None:
         """A condition that gives a variable a value, where a comparison was meant."""

@@ -54,6 +54,8 @@ RESERVED = frozenset(
         "of",
     ]
 )
+HANDLED = frozenset(["event", "_event", "_message"])
+"""Variables that tell a handler of its event."""
 GLOBALS = frozenset(
     [
         "undefined",
@@ -196,6 +198,15 @@ def _free_names(code: str) -> dict[str, int]:
     used = reader.used()
     own = reader.declared() | reader.parameters() | GLOBALS
     return {name: start for name, start in used.items() if name not in own}
+
+
+def handled_names(code: str) -> dict[str, int]:
+    """Variables of an event that code uses, and where first."""
+    if "event" not in code and "_message" not in code:
+        return {}
+    reader = Reader(code)
+    own = reader.declared() | reader.parameters()
+    return {name: at for name, at in reader.used().items() if name in HANDLED and name not in own}
 
 
 def declared_names(code: str) -> set[str]:
