@@ -198,6 +198,33 @@ def test_what_a_grammar_takes_during_the_prompt_means_no_call(place: Path) -> No
     assert not any("transfers" in row for row in shown(made))
 
 
+@pytest.mark.parametrize(
+    ("first", "last", "made"), [("true", "true", False), ("true", "false", True)]
+)
+def test_a_call_may_be_stopped_during_the_first_of_two_prompts(
+    place: Path, first: str, last: str, made: bool
+) -> None:
+    inside = (
+        f'<prompt bargein="{first}">I connect you with the office now.</prompt>'
+        f'<prompt bargein="{last}">Please wait.</prompt>{STOP}'
+    )
+    script = '<transfer lasts="20s"/><when at="500ms"><say>stop it</say></when>'
+    done = run(place, transfer(inside=inside), script)
+    assert any("transfers" in row for row in shown(done)) == made
+    expected = "far_end_disconnect 20 undefined" if made else "near_end_disconnect 0 string"
+    assert logs(done) == [expected, "on"]
+    assert any("Please wait." in row for row in shown(done)) == made
+
+
+def test_a_prompt_before_a_call_that_may_not_be_broken_in_on_is_not(place: Path) -> None:
+    inside = f'<prompt bargein="false">I connect you with the office now.</prompt>{STOP}'
+    script = '<transfer lasts="20s"/><when at="500ms"><say>stop it</say></when>'
+    assert logs(run(place, transfer(inside=inside), script)) == [
+        "far_end_disconnect 20 undefined",
+        "on",
+    ]
+
+
 def test_a_silent_caller_with_a_grammar_is_connected_after_the_prompt(place: Path) -> None:
     inside = f"<prompt>I connect you.</prompt>{STOP}"
     made = run(place, transfer(inside=inside), '<transfer lasts="700s"/>')

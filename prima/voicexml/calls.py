@@ -100,11 +100,15 @@ class Calls:
         queue = self.owner.unqueue()
         if not queue:
             return
+        open_to_answers: list[Command] = []
         if call.listens and queue[-1].type == "speak":
             last = queue.pop()
-            queue.append(self._question(context, call, "1ms", last))
+            question = self._question(context, call, "1ms", last)
+            question.args["bargein"] = self.owner.may_break_in(context, last)
+            open_to_answers = self.owner.open_to_answers(context, queue, question)
+            queue.append(question)
         self.app.heard = None
-        resume = yield from self.app.wait(queue)
+        resume = yield from self.app.wait(queue, open_to_answers)
         self._note(call, resume)
 
     def _question(

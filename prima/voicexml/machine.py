@@ -383,11 +383,13 @@ class Machine:
         if item.tag == "record":
             self.items_of.recorder.prepare(item, question)
         self.owner.heard = None
-        open_to_answers = self._open_to_answers(context, question)
+        open_to_answers = self.open_to_answers(context, self.queue, question)
         resume = yield from self._wait([*self.queue, question], open_to_answers)
         yield from self._answered(context, item, resume)
 
-    def _open_to_answers(self, context: Context, question: Command) -> list[Command]:
+    def open_to_answers(
+        self, context: Context, queue: list[Command], question: Command
+    ) -> list[Command]:
         """Of what is queued before a question that during which it may be answered (4.1.5).
 
         Those are the last prompts: an answer ends the wait, and what may not be broken in on is
@@ -395,11 +397,15 @@ class Machine:
         """
         found: list[Command] = []
         if question.args["bargein"]:
-            for command in reversed(self.queue):
-                if (command.hook or self.setting(context, "bargein")) == "false":
+            for command in reversed(queue):
+                if not self.may_break_in(context, command):
                     break
                 found.append(command)
         return found
+
+    def may_break_in(self, context: Context, command: Command) -> bool:
+        """Whether the user may break in on what is queued, by its prompt or the property (6.3.2)."""
+        return bool((command.hook or self.setting(context, "bargein")) != "false")
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question that an item's last prompt is (4.1.5, 4.1.7)."""
