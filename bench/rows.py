@@ -38,11 +38,18 @@ class Row:
     needs: str = ""
     """What else has to be installed: a Python package, or a peer of :mod:`bench.peers`."""
 
+    def pairs(self, rounds: int) -> int:
+        """How often it is measured where the command says ``rounds``; without a target less often."""
+        aimed = self.least is not None or self.most is not None
+        return self.rounds or (rounds if aimed else min(rounds, UNAIMED))
+
 
 SECONDS = 0.7
 """How long events are counted."""
 MORE = 9
 """Pairs of rows that are quickly measured and have a target."""
+UNAIMED = 3
+"""Pairs of rows without a target, at most."""
 MOST = 25
 """Pairs of rows whose ratio moves more from pair to pair than lies between it and its target."""
 MANY_SECONDS = 6.0
@@ -317,7 +324,7 @@ def batches() -> list[Row]:
             "× two processes",
             Call(batch.ratio, (1,)),
             least=0.95,
-            rounds=2,
+            rounds=9,
         )
     ]
 

@@ -87,7 +87,7 @@ def available(name: str) -> bool:
 def collect(rows: list[Row], rounds: int, quick: bool) -> dict[Row, Measured]:
     """All figures of some rows, their pairs shuffled together."""
     found = {row: Measured(row) for row in rows}
-    order = [row for row in rows for _ in range(1 if quick else row.rounds or rounds)]
+    order = [row for row in rows for _ in range(1 if quick else row.pairs(rounds))]
     random.shuffle(order)
     for number, row in enumerate(order, 1):
         if sys.stderr.isatty():
@@ -166,8 +166,8 @@ def machine(rounds: int) -> str:
     return (
         f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores,"
         f" {platform.python_implementation()} {platform.python_version()}; {', '.join(names)};"
-        f" medians of {rounds} pairs (slow rows have fewer, some up to {MOST}), in brackets their"
-        " middle half."
+        f" medians of {rounds} pairs (slow rows and those without a target have fewer, some up to"
+        f" {MOST}), in brackets their middle half."
     )
 
 
