@@ -77,6 +77,10 @@ class Command:
     hook: Any = None
     """What the application keeps with the Command; nobody else looks at it."""
 
+    def cued(self, *kinds: str) -> bool:
+        """Whether its text has a cue of one of these kinds."""
+        return any(cue.kind in kinds for cue in self.cues)
+
 
 @dataclass(slots=True)
 class Group:

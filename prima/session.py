@@ -307,7 +307,8 @@ class Session:
         question = self.mediator.question()
         if question is not None and not self._hears(question):
             question = None
-        if question is not None and told.get("toolong"):
+        asked = question.command if question is not None else None
+        if question is not None and told.get("toolong") and asked and asked.cued("longest"):
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
             return
         if question is not None and question.run is not None:
@@ -325,8 +326,7 @@ class Session:
             return
         if self._follow_links(value.text) or question is None or question.silent:
             return
-        cues = question.command.cues if question.command is not None else ()
-        if not any(cue.kind == "hotword" for cue in cues):
+        if asked is None or not asked.cued("hotword"):
             self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text, **told})
 
     @staticmethod

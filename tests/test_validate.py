@@ -285,6 +285,9 @@ def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
         ('<form id="m"><block><exit/></block></form><on event="touch" cond="event.data"><log expr="event"/></on>', ""),
         ('<form id="m"><block><log expr="[1].map(event => event)"/><exit/></block></form>', ""),
         ("""<form id="m"><block><log expr="'event'"/><exit/></block></form>""", ""),
+        ('<var name="event" expr="1"/><form id="m"><block><log expr="event"/><exit/></block></form>', ""),
+        ('<form id="m"><block><foreach item="event" array="[1]"><log expr="event"/></foreach><exit/></block></form>', ""),
+        ('<form id="m"><block><log expr="typeof event"/><exit/></block></form>', ""),
     ],
 )  # fmt: skip
 def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_path: Path) -> None:

@@ -1976,3 +1976,57 @@ def test_a_link_may_be_taken_before_a_question() -> None:
     call = Call(text)
     call.hears("help")
     assert call.play() == ["One.", "Like this."]
+
+
+PROPERTY = '<property name="bargein" value="{}"/>'
+
+
+@pytest.mark.parametrize(
+    ("text", "open_"),
+    [
+        (PROPERTY.format("false") + WELCOME.format("", PROPERTY.format("true")), False),
+        (WELCOME.format("", PROPERTY.format("true")), True),
+        (WELCOME.format("", "").replace("<form>", f"<form>{PROPERTY.format('false')}"), False),
+    ],
+)
+def test_the_property_holds_where_the_prompt_stands(text: str, open_: bool) -> None:  # 6.3
+    call = Call(vxml(text))
+    call.hears("red")
+    assert call.logs() == (["red"] if open_ else [])
+
+
+def test_the_property_of_a_dialog_that_was_left_holds_for_its_prompts() -> None:
+    call = Call(
+        f"""<form id="a">{PROPERTY.format("false")}<block>Legal notice.<goto next="#b"/></block></form>
+        <form id="b"><field name="f"><prompt>Which?</prompt><option>red</option>
+        <filled><log expr="f"/></filled></field></form>"""
+    )
+    call.hears("red")
+    assert call.logs() == []
+    call.finish("Legal notice.")
+    call.hears("red")
+    assert call.logs() == ["red"]
+
+
+@pytest.mark.parametrize("place", ["", "Come with me."])
+def test_a_command_before_a_question_is_done_before_an_answer_counts(place: str) -> None:
+    text = f"""<form><block>{place}<p:point-by-hand xmlns:p="urn:prima:dialogue:1" angle="30"/></block>
+        <field name="f"><prompt>Which?</prompt><option>red</option>
+        <filled><log expr="f"/></filled></field></form>"""
+    call = Call(text)
+    call.hears("red")
+    assert call.logs() == []
+    call.answer("red")
+    assert "point-by-hand" in [r["command"] for r in call.phases("end")]
+    assert call.logs() == ["red"]
+
+
+def test_a_grammar_of_a_recording_takes_nothing_before_it() -> None:
+    call = Call(
+        """<form><block>One.</block><record name="r"><grammar version="1.0" root="g" mode="voice">
+        <rule id="g">stop</rule></grammar><prompt>Speak.</prompt>
+        <filled><log expr="'filled'"/></filled></record></form>"""
+    )
+    call.hears("stop")
+    call.finish("One.")
+    assert (call.saying(), call.logs()) == (["Speak."], [])

@@ -655,3 +655,47 @@ def test_a_recording_has_its_own_longest_time(played: Played) -> None:
         (1500, LONG_ANSWER),
     )
     assert logs(made) == ["true"]
+
+
+def test_speech_that_is_too_long_before_the_question_ends_it_as_well(played: Played) -> None:
+    text = LIMITED.replace("<field", f"<block><prompt>{SECOND} {SECOND}</prompt></block><field")
+    made = played(text, (500, LONG_ANSWER))
+    assert logs(made) == ["too long"]
+    assert texts(made) == [f"{SECOND} {SECOND}"]
+
+
+def test_keys_alone_as_input_have_no_limit(played: Played) -> None:  # 6.3.6
+    text = LIMITED.replace("<field", '<property name="inputmodes" value="dtmf"/><field')
+    noinput = "<noinput><log>silence</log><exit/></noinput>"
+    made = played(text.replace("<filled", f"{noinput}<filled"), (1500, LONG_ANSWER))
+    assert logs(made) == ["silence"]
+
+
+def test_another_question_than_was_asked_does_not_limit_what_was_said(played: Played) -> None:
+    text = LIMITED.replace(
+        "</field></form>",
+        f"""<catch event="touch"><goto next="#two"/></catch></field></form>
+        <form id="two"><field name="g"><prompt>And?</prompt><option>{LONG_ANSWER}</option>
+        <filled><log expr="g"/></filled></field></form>""",
+    )
+    made = played(text, (1500, LONG_ANSWER), more='<when at="1800ms"><touch sensor="head"/></when>')
+    assert logs(made) == [LONG_ANSWER]
+
+
+def test_who_hangs_up_while_he_speaks_for_too_long_has_recorded_nothing(played: Played) -> None:
+    made = played(LIMITED, (1500, LONG_ANSWER), more='<when at="2s"><hang-up/></when>')
+    (gone,) = [one for one in of(made, "event") if one["event"].endswith("hangup")]
+    assert gone.get("data") is None
+
+
+MARKED = f"""<form><block><prompt>{SECOND}<mark name="one"/></prompt>
+<prompt>{SECOND}<mark name="two"/> {SECOND}</prompt></block><field name="f">
+<prompt>Which?<mark name="three"/> Now?</prompt><option>red</option>
+<filled><log expr="f$.markname"/></filled></field></form>"""
+
+
+@pytest.mark.parametrize(("at", "mark"), [(300, "undefined"), (1500, "one"), (2600, "two")])
+def test_the_last_mark_is_that_passed_when_an_answer_comes_before_the_question(  # 2.1, 4
+    played: Played, at: int, mark: str
+) -> None:
+    assert logs(played(MARKED, (at, "red"))) == [mark]

@@ -592,7 +592,7 @@ class Checker:
         bare: bool = False,
         called: bool = False,
     ) -> None:
-        remedy = ABSENT.get(name) or did_you_mean(name, _names_to_write(known))
+        remedy = ABSENT.get(name) or did_you_mean(name, _names_to_write(known) - {name})
         if called:
             message = f'There is no function "{name}".'
             remedy = remedy or "Define it in a <script>."
@@ -613,7 +613,8 @@ class Checker:
                     called = CALL.match(expr.code, start + len(name)) is not None
                     self._undeclared(_place_in(expr, start), name, known, bare, called)
             for name, start in handled_names(expr.code).items():
-                if id(expr.node) not in self._handling:
+                asked = expr.code[:start].rstrip().endswith("typeof")
+                if not (asked or name in known or id(expr.node) in self._handling):
                     self._unhandled(_place_in(expr, start), name)
             self._assigns(expr)
 

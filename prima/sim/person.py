@@ -247,7 +247,7 @@ class Person:
         data: dict[str, Json] = {}
         for script in sorted([*self._playing, *self._scripts], key=lambda one: one.serial):
             spoken = min(now - script.began, script.lasts)
-            if script.speaking and script.told and spoken:
+            if script.speaking and "duration" in script.told and spoken:
                 said = _part(self._timeline(script.speaking), spoken)
                 data = {"recorded": said, "duration": spoken}
             if script.speaking:

@@ -93,10 +93,6 @@ class Task:
         """The Command's AB without the number of its loop."""
         return self.id.partition(".")[0]
 
-    def cued(self, *kinds: str) -> bool:
-        """Whether its text has a cue of one of these kinds."""
-        return any(cue.kind in kinds for cue in self.command.cues)
-
     def passed(self, now: int) -> tuple[int, str, int] | None:
         """How many marks its speech has passed, the last one's name, and the ms since then."""
         played = self.skipped + now - self.began
@@ -618,7 +614,7 @@ class Robot:
         if task.listening:
             task.ends = None
             return
-        bargein = task.command.args.get("bargein", True) and not task.cued("hotword")
+        bargein = task.command.args.get("bargein", True) and not task.command.cued("hotword")
         if bargein and task.listens is not None:
             task.listens, task.speech_ends = now + 1, now
 
@@ -628,25 +624,25 @@ class Robot:
         As :class:`prima.messages.Cue` has them; 0 where there is no such bound.
         """
         task = self._question()
-        if task is None or not task.cued("record"):
+        if task is None or not task.command.cued("record"):
             return None
         values = {cue.kind: int(cue.value or 0) for cue in task.command.cues if cue.at == 0}
         return values["record"], values.get("finalsilence", 0)
 
     def longest_answer(self) -> int:
         """How long the user may speak, in ms; 0 for as long as he likes (VoiceXML 2.0, 6.3.2)."""
-        task = self._question()
-        if task is None:
-            return 0
-        return next((int(cue.value or 0) for cue in task.command.cues if cue.kind == "longest"), 0)
+        cues = (cue for task in self.tasks.values() for cue in task.command.cues)
+        return next((int(cue.value or 0) for cue in cues if cue.kind == "longest"), 0)
 
     def marks_passed(self, began: int) -> dict[str, Json]:
         """The last mark that a question had passed when the user began to speak (2.1, 4).
 
-        As :class:`prima.messages.Heard` has it; nothing for a question without marks.
+        As :class:`prima.messages.Heard` has it; nothing for a question without marks, or for a
+        prompt without them that is said before one.
         """
-        task = self._question()
-        if task is None or not task.cued("mark", "earlier"):
+        spoken = (task for task in self.tasks.values() if task.command.type == "speak")
+        task = self._question() or next(spoken, None)
+        if task is None or not task.command.cued("mark", "earlier"):
             return {}
         until = max(task.speech_ends, task.began)
         if task.command.args.get("bargein", True):
@@ -655,7 +651,7 @@ class Robot:
         if passed is not None:
             return {"markname": passed[1], "marktime": passed[2]}
         name, time = self._marks.get(task.app, ("", until + 1))
-        if not task.cued("earlier") or time > until:
+        if not task.command.cued("earlier") or time > until:
             return {"markname": None}
         return {"markname": name, "marktime": until - time}
 

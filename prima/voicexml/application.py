@@ -176,12 +176,16 @@ class VoiceInterpreter(Bounds["Engine"]):
         if not any(one is command for one in self._open):
             return False
         self._tick(now)
-        value = self.answer(self._run, text)
-        if value is None or self.heard is None or not self.heard.recognised:
-            self.heard = None
-            return False
+        if data.get("toolong") and command.cued("longest"):
+            outcome: dict[str, Json] = {"outcome": "maxspeechtimeout", "utterance": text}
+        else:
+            value = self.answer(self._run, text)
+            if value is None or self.heard is None:
+                return False
+            self.heard.mark = None  # the last one played, which the device tells
+            outcome = {"outcome": "filled", "utterance": text, "value": value, **data}
         self.actions.append(LeaveState(self._state))
-        self._drive(Resume({"outcome": "filled", "utterance": text, "value": value, **data}))
+        self._drive(Resume(outcome))
         self._catch_up()
         return True
 

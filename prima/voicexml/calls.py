@@ -104,8 +104,8 @@ class Calls:
         if call.listens and queue[-1].type == "speak":
             last = queue.pop()
             question = self._question(context, call, "1ms", last)
-            question.args["bargein"] = self.owner.may_break_in(context, last)
-            open_to_answers = self.owner.open_to_answers(context, queue, question)
+            question.args["bargein"] = bool(last.hook)
+            open_to_answers = self.owner.open_to_answers(queue, question)
             queue.append(question)
         self.app.heard = None
         resume = yield from self.app.wait(queue, open_to_answers)

@@ -60,6 +60,7 @@ class Content(Speaker):
                 self.read(item, context, local, speech)
                 continue
             self.flush(speech)
+            self.owner.note_bargein(context)
             self.owner.count_step(item)
             if item.namespace == PRIMA_NAMESPACE:
                 self.owner.queue.append(self.command(item, context, local))
@@ -68,6 +69,7 @@ class Content(Speaker):
             else:
                 yield from self.act(item, context, local)
         self.flush(speech)
+        self.owner.note_bargein(context)
 
     def act(self, node: Node, context: Context, local: Scope) -> Flow:
         """One element that is not said."""

@@ -74,9 +74,13 @@ class Inputs:
         pressed = [one for one in found if one[1] == "dtmf"]
         return pressed[-1] if pressed else next(iter(found), None)
 
+    def modes(self, context: Context) -> list[str]:
+        """The kinds of input that the application takes (6.3.6)."""
+        return self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+
     def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
         """An utterance as keys and as speech, as far as the application takes such input."""
-        modes = self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        modes = self.modes(context)
         for said, mode in ways(text, self.owner.setting(context, "termchar")):
             if mode in modes:
                 yield said, mode

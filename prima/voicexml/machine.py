@@ -111,6 +111,16 @@ class Machine:
             self.owner.count_output(len(text), self.document.node)
             self.queue.append(Command("speak", text=text, lang=lang, source=place))
 
+    def note_bargein(self, context: Context, own: str = "") -> None:
+        """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
+
+        A Command is no prompt: it is always done. ``own`` is the prompt's attribute.
+        """
+        for command in self.queue:
+            if command.hook is None:
+                said = command.type == "speak"
+                command.hook = said and (own or self.setting(context, "bargein")) != "false"
+
     def unqueue(self) -> list[Command]:
         """What is queued, to be said in a wait that no question is part of."""
         queue, self.queue, self.asking = self.queue, [], None
@@ -383,29 +393,28 @@ class Machine:
         if item.tag == "record":
             self.items_of.recorder.prepare(item, question)
         self.owner.heard = None
-        open_to_answers = self.open_to_answers(context, self.queue, question)
+        open_to_answers = [] if item.tag == "record" else self.open_to_answers(self.queue, question)
         resume = yield from self._wait([*self.queue, question], open_to_answers)
         yield from self._answered(context, item, resume)
 
-    def open_to_answers(
-        self, context: Context, queue: list[Command], question: Command
-    ) -> list[Command]:
+    @staticmethod
+    def open_to_answers(queue: list[Command], question: Command) -> list[Command]:
         """Of what is queued before a question that during which it may be answered (4.1.5).
 
         Those are the last prompts: an answer ends the wait, and what may not be broken in on is
-        to be said before.
+        to be said before. They get the cues that an answer needs.
         """
         found: list[Command] = []
-        if question.args["bargein"]:
-            for command in reversed(queue):
-                if not self.may_break_in(context, command):
-                    break
-                found.append(command)
+        longest = tuple(cue for cue in question.cues if cue.kind == "longest")
+        for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
+            command = queue[index]
+            if not command.hook:
+                break
+            marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
+            earlier = (Cue(0, "earlier"),) if marked else ()
+            command.cues = (*longest, *earlier, *command.cues)
+            found.append(command)
         return found
-
-    def may_break_in(self, context: Context, command: Command) -> bool:
-        """Whether the user may break in on what is queued, by its prompt or the property (6.3.2)."""
-        return bool((command.hook or self.setting(context, "bargein")) != "false")
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question that an item's last prompt is (4.1.5, 4.1.7)."""
@@ -423,7 +432,8 @@ class Machine:
         hotword = args["bargein"] and (kind or self.setting(context, "bargeintype")) == "hotword"
         cues = self.content.question_cues(asked, self.queue, hotword)
         longest = milliseconds(self.setting(context, "maxspeechtimeout"), 0)
-        if longest and item.tag != "record":  # whose maxtime is its own
+        spoken = item.tag != "record" and "voice" in self.inputs.modes(context)
+        if longest and spoken:  # a recording has its own maxtime
             cues = (Cue(0, "longest", longest), *cues)
         return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
 

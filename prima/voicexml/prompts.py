@@ -191,13 +191,11 @@ class Speaker:
 
     def utter(self, node: Node, context: Context, local: Scope) -> None:
         """Queue what a prompt says, whether its condition holds or not."""
-        before = len(self.owner.queue)
         speech = self.read_whole(node, context, local)
         text, cues = speech.take()
         self.owner.say(text, speech.lang, speech.place, node)
         self.add(text, cues)
-        for command in self.owner.queue[before:]:
-            command.hook = node.get("bargein")
+        self.owner.note_bargein(context, node.get("bargein"))
 
     def add(self, text: str, cues: tuple[Cue, ...]) -> None:
         """Give a text that has just been queued its cues.
