@@ -126,7 +126,7 @@ def test_an_expression_without_fault_is_left_in_peace() -> None:
       <var name="f" expr="function (a, b) { var c = a + b; return c * n; }"/>
       <var name="g" expr="[1, 2].map((x, i) => x * i).filter(y => y > n)"/>
       <var name="h" expr="{ a: n, b: 'n.m', c: /x+y/.test('z') }"/>
-      <log expr="f(1, 2) + g.length + h.a + `t ${n}` + Math.max(n, 2) + (event ? 1 : 2)"/><exit/>
+      <log expr="f(1, 2) + g.length + h.a + `t ${n}` + Math.max(n, 2) + (session ? 1 : 2)"/><exit/>
     </block></form>"""
     assert problems(body) == []
 
