@@ -2030,3 +2030,17 @@ def test_a_grammar_of_a_recording_takes_nothing_before_it() -> None:
     call.hears("stop")
     call.finish("One.")
     assert (call.saying(), call.logs()) == (["Speak."], [])
+
+
+@pytest.mark.parametrize("allowed", [True, False])
+def test_the_property_holds_for_the_platforms_own_words(allowed: bool) -> None:  # 5.2.5
+    call = Call(
+        f"""{PROPERTY.format(str(allowed).lower())}<form><field name="f">
+        <prompt bargein="true">Which?</prompt><option>red</option>
+        <filled><log expr="f"/></filled></field></form>"""
+    )
+    call.listens()
+    call.hears("blue")
+    assert call.saying() != ["Which?"]
+    call.hears("red")
+    assert call.logs() == (["red"] if allowed else [])

@@ -173,7 +173,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         What is being said is said to its end (rule U1), what is queued behind it is not (O3).
         What no grammar takes is not for this application: nothing listens yet.
         """
-        if not any(one is command for one in self._open):
+        if self.over or not any(one is command for one in self._open):
             return False
         self._tick(now)
         if data.get("toolong") and command.cued("longest"):
