@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -60,9 +61,7 @@ def compiled(folder: Path, made: Path) -> list[Path]:
     try:
         files = sorted(str(path) for pattern in CORE for path in Path().glob(pattern))
         modules = mypycify(["--ignore-missing-imports", *files], group_name="prima.core")
-        if (
-            os.name == "posix"
-        ):  # short functions are inlined, as nobody can put others in their place
+        if sys.platform == "linux":  # where functions are not inlined that others might replace
             for module in modules:
                 module.extra_compile_args.append("-fno-semantic-interposition")
         package = Distribution({"name": "prima", "ext_modules": modules})
