@@ -200,12 +200,13 @@ def mediator() -> list[Row]:
     kinds = (("", mediation.decisions, ""), (", the core compiled", mediation.compiled, "core"))
     rows = [
         Row(
-            f"Decisions, 10 waiting{how}",
+            f"Decisions, 10 waiting{how}{what}",
             "decisions/s",
-            Call(function, (10, SECONDS)),
+            Call(function, (10, SECONDS, "prima", written)),
             least=200_000,
             needs=needs,
         )
+        for written, what in ((True, ", each with its records made"), (False, ""))
         for how, function, needs in kinds
     ]
     rows += [
@@ -216,15 +217,6 @@ def mediator() -> list[Row]:
             "events of transitions",
             Call(workloads.rate, ("transitions", 2, SECONDS)),
             needs=needs or "transitions",
-        )
-        for how, function, needs in kinds
-    ]
-    rows += [
-        Row(
-            f"Decisions, 10 waiting{how}, each with its records made",
-            "decisions/s",
-            Call(function, (10, SECONDS, "prima", True)),
-            needs=needs,
         )
         for how, function, needs in kinds
     ]
