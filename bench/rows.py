@@ -48,7 +48,7 @@ SECONDS = 0.7
 """How long events are counted."""
 MORE = 9
 """Pairs of rows that are quickly measured and have a target."""
-UNAIMED = 3
+UNAIMED = 2
 """Pairs of rows without a target, at most."""
 MOST = 25
 """Pairs of rows whose ratio moves more from pair to pair than lies between it and its target."""
