@@ -6,7 +6,7 @@ the same device waits for the end. The times are those of the simulator's voice 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from prima.commands import TABLE_4_2, CommandType
 from prima.deferred import dataclass
@@ -129,7 +129,7 @@ def reactions(document: Document) -> dict[str, frozenset[str]]:
     return found
 
 
-def first_devices(document: Document, content: list[Act]) -> frozenset[str]:
+def first_devices(document: Document, content: Sequence[Act]) -> frozenset[str]:
     """The devices of the first Commands of some content, or of the form that it goes to."""
     for act in all_acts(content):
         if isinstance(act, Run):
@@ -173,7 +173,7 @@ def _step(step: StepTemplate, lang: str, profile: Profile) -> Price:
     return Price(what.node, "unit", devices_of([step]), min(lasts, what.longest), known)
 
 
-def _group(steps: list[StepTemplate], lang: str, profile: Profile) -> tuple[int, bool]:
+def _group(steps: Sequence[StepTemplate], lang: str, profile: Profile) -> tuple[int, bool]:
     """How long the steps of a unit take, each after those that it follows."""
     ends: list[int] = []
     known = True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 
 from prima.commands import TABLE_4_2
@@ -96,7 +96,7 @@ class _Reader:
         self._handlers(form.handlers)
         self._describe(node, form, items)
 
-    def _describe(self, node: Node, form: Form, items: list[Item]) -> None:
+    def _describe(self, node: Node, form: Form, items: Sequence[Item]) -> None:
         """What is special about a state, and what it asks or says."""
         runs = _runs(_contents(form))
         commands = _commands(_contents(form))
@@ -120,7 +120,7 @@ class _Reader:
             node.notes.append(f"and {len(questions) - QUESTIONS} more")
         said = [one for one in _commands(_blocks(form)) if one.text]
         if not questions and said:
-            node.notes.append(f"says {quoted(_text(said[0].text or []))}")
+            node.notes.append(f"says {quoted(_text(said[0].text or ()))}")
         goals = dict.fromkeys(_goal(one) for one in leaving)
         node.notes += [clean(goal) for goal in list(goals)[:2]]
 
@@ -140,11 +140,11 @@ class _Reader:
             if link.form:
                 self._to(link.form, "go", f"said {sayings(link.node.all('grammar'))}")
 
-    def _filleds(self, filleds: list[Filled], base: str, name: str, truth: bool) -> None:
+    def _filleds(self, filleds: Sequence[Filled], base: str, name: str, truth: bool) -> None:
         for filled in filleds:
             self._content(filled.content, base, [], name, truth)
 
-    def _handlers(self, handlers: list[Handler], where: str = "", of: str = "") -> None:
+    def _handlers(self, handlers: Sequence[Handler], where: str = "", of: str = "") -> None:
         for handler in handlers:
             cond = handler.cond.code if handler.cond else ""
             told = handled(handler.events, handler.count, cond, self.hints)
@@ -154,7 +154,7 @@ class _Reader:
 
     def _content(
         self,
-        content: list[Act],
+        content: Sequence[Act],
         base: str,
         conditions: list[str],
         name: str = "",
@@ -225,7 +225,7 @@ def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
             found.setdefault(link.event, []).append(f"said {sayings(link.node.all('grammar'))}")
     for watch in [*document.watches, *(form.watches if form else [])]:
         found.setdefault(watch.name, []).append(clean(watch.when.code))
-    contents = [handler.content for handler in document.handlers]
+    contents: list[Sequence[Act]] = [handler.content for handler in document.handlers]
     contents += _contents(form) if form else []
     for act in [act for content in contents for act in all_acts(content)]:
         if isinstance(act, SendOut) and act.event:
@@ -234,12 +234,12 @@ def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
     return {event: list(dict.fromkeys(hints)) for event, hints in found.items()}
 
 
-def _blocks(form: Form) -> list[list[Act]]:
+def _blocks(form: Form) -> list[Sequence[Act]]:
     """The content of a state's blocks."""
     return [item.content for item in all_items(form.items) if isinstance(item, Block)]
 
 
-def _contents(form: Form) -> list[list[Act]]:
+def _contents(form: Form) -> list[Sequence[Act]]:
     """Every piece of executable content of a state."""
     found = _blocks(form)
     found += [handler.content for handler in form.handlers]
@@ -251,17 +251,17 @@ def _contents(form: Form) -> list[list[Act]]:
     return found
 
 
-def _runs(contents: list[list[Act]]) -> list[Run]:
+def _runs(contents: list[Sequence[Act]]) -> list[Run]:
     """The runs of Commands in content."""
     return [act for content in contents for act in all_acts(content) if isinstance(act, Run)]
 
 
-def _commands(contents: list[list[Act]]) -> list[CommandTemplate]:
+def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:
     """The Commands in content."""
     return [command for run in _runs(contents) for command in run_commands(run.steps)]
 
 
-def _leaves_at_its_end(items: list[Item]) -> bool:
+def _leaves_at_its_end(items: Sequence[Item]) -> bool:
     """Whether a state is left before its items are through: then it never waits for events."""
     for item in items:
         if item.cond is not None or item.expr is not None:
@@ -279,7 +279,7 @@ def _leaves_at_its_end(items: list[Item]) -> bool:
     return False
 
 
-def _never_ends(content: list[Act]) -> bool:
+def _never_ends(content: Sequence[Act]) -> bool:
     """Whether content leaves its state in each case."""
     for act in content:
         if isinstance(act, Goto | Exit | Return):

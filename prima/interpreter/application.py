@@ -8,7 +8,7 @@ is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
@@ -497,7 +497,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         alone = Frame(frame.form, frame.state, frame.document, self.engine.nothing)
         self._set_up(self.document.setup, frame.document, Fiber(alone))
 
-    def _set_up(self, setup: list[Declare | Script], scope: Scope, fiber: Fiber) -> None:
+    def _set_up(self, setup: Sequence[Declare | Script], scope: Scope, fiber: Fiber) -> None:
         for act in setup:
             if isinstance(act, Declare):
                 self.execute.declare(act, scope, fiber)

@@ -179,7 +179,7 @@ class Builder:
 
     def text(self, node: Node) -> Text:
         """Text with values in it, white space folded."""
-        parts: Text = []
+        parts: list[str | Expression] = []
         for item in node.content:
             if isinstance(item, str):
                 folded = " ".join(item.split())
@@ -194,9 +194,9 @@ class Builder:
                     parts.append(expr)
         if parts and isinstance(parts[-1], str):
             parts[-1] = parts[-1].rstrip()
-        return [part for part in parts if part != ""]
+        return tuple(part for part in parts if part != "")
 
-    def params(self, node: Node) -> list[tuple[str, str | Expression]]:
+    def params(self, node: Node) -> tuple[tuple[str, str | Expression], ...]:
         """The param children."""
         found: list[tuple[str, str | Expression]] = []
         for child in node.all("param"):
@@ -206,11 +206,11 @@ class Builder:
             elif expr is None and "value" not in child.attributes:
                 self.problem(child, "missing-attribute", "<param> needs a value or an expr.")
             found.append((child.get("name"), expr or child.get("value")))
-        return found
+        return tuple(found)
 
-    def names(self, node: Node) -> list[str]:
+    def names(self, node: Node) -> tuple[str, ...]:
         """The namelist attribute."""
-        return node.get("namelist").split()
+        return tuple(node.get("namelist").split())
 
     # The document -------------------------------------------------------------
 
@@ -292,12 +292,12 @@ class Builder:
         longest: int = self.value(node, "hold-for", "duration", HOLD_MS)
         return longest if node.get("stream") == "hold" else None
 
-    def setup(self, parts: Parts) -> list[Declare | Script]:
+    def setup(self, parts: Parts) -> tuple[Declare | Script, ...]:
         """Variables and scripts, in document order."""
         found: list[Declare | Script] = []
         for child in parts.get("setup", ()):
             found.append(self.declare(child) if child.tag == "var" else self.script(child))
-        return found
+        return tuple(found)
 
     def declare(self, node: Node) -> Declare:
         """A var."""
@@ -335,7 +335,7 @@ class Builder:
                     self.problem(child, "bad-value", message, remedy, "value")
         return found
 
-    def handlers(self, parts: Parts) -> list[Handler]:
+    def handlers(self, parts: Parts) -> tuple[Handler, ...]:
         """Handlers in document order."""
         found = []
         for child in parts.get("handlers", ()):
@@ -348,7 +348,7 @@ class Builder:
             content = self.content(child)
             found.append(
                 Handler(
-                    [event.rstrip(".") for event in events],
+                    tuple([event.rstrip(".") for event in events]),
                     self.expression(child, "cond"),
                     count,
                     None if reactive is None else reactive == "true",
@@ -357,9 +357,9 @@ class Builder:
                     self._runs > runs,
                 )
             )
-        return found
+        return tuple(found)
 
-    def links(self, parts: Parts) -> list[Link]:
+    def links(self, parts: Parts) -> tuple[Link, ...]:
         """Links in document order."""
         found = []
         for child in parts.get("link", ()):
@@ -375,18 +375,18 @@ class Builder:
             for grammar in grammars[:1]:
                 to = self.target(child, "next")
                 found.append(Link(to, child.get("event"), grammar, child))
-        return found
+        return tuple(found)
 
-    def watches(self, parts: Parts) -> list[Watch]:
+    def watches(self, parts: Parts) -> tuple[Watch, ...]:
         """Watches in document order."""
-        return [
+        return tuple(
             Watch(child.get("name"), self.code(child.get("when"), child, "when"), child)
             for child in parts.get("watch", ())
-        ]
+        )
 
     # Form items ---------------------------------------------------------------
 
-    def items(self, parts: Parts) -> list[Item]:
+    def items(self, parts: Parts) -> tuple[Item, ...]:
         """The form items of a form or a unit."""
         made: list[Item] = []
         for child in parts.get("items", ()):
@@ -400,12 +400,18 @@ class Builder:
                     made.append(self.subdialog(child))
                 case "iu" if child.key == "iu-items":
                     made.append(self.unit(child))
-        return made
+        return tuple(made)
 
     def item(
         self, node: Node, parts: Parts
     ) -> tuple[
-        str, Expression | None, Expression | None, list[Handler], dict[str, Json], Node, int | None
+        str,
+        Expression | None,
+        Expression | None,
+        tuple[Handler, ...],
+        dict[str, Json],
+        Node,
+        int | None,
     ]:
         """What all form items have."""
         name = node.get("name")
@@ -413,7 +419,7 @@ class Builder:
         if not name:
             self._unnamed += 1
             name = f"$item{self._unnamed}"
-        handlers = self.handlers(parts) if node.tag != "block" else []
+        handlers = self.handlers(parts) if node.tag != "block" else ()
         return (
             name,
             self.expression(node),
@@ -427,7 +433,7 @@ class Builder:
     def field(self, node: Node) -> Field:
         """A field, with all that it takes as an answer."""
         parts = self.parts(node)
-        prompts = [
+        prompts = tuple(
             Prompt(
                 text=self.text(child),
                 count=self.value(child, "count", "integer", 1),
@@ -437,7 +443,7 @@ class Builder:
                 node=child,
             )
             for child in parts.get("prompt", ())
-        ]
+        )
         answers = Answers(type=node.get("type"))
         for child in parts.get("option", ()):
             said = child.text
@@ -511,16 +517,16 @@ class Builder:
             message = f"<{command.type}> {why}; it cannot stand in a unit."
             self.problem(command.node, "not-in-unit", message, "Move it out of the <iu>.")
 
-    def filleds(self, parts: Parts) -> list[Filled]:
+    def filleds(self, parts: Parts) -> tuple[Filled, ...]:
         """Filled elements."""
-        return [
+        return tuple(
             Filled(child.get("mode", "all"), self.names(child), self.content(child), child)
             for child in parts.get("filled", ())
-        ]
+        )
 
     # Content ----------------------------------------------------------------------
 
-    def content(self, node: Node) -> list[Act]:
+    def content(self, node: Node) -> tuple[Act, ...]:
         """Executable content; Commands that follow one another become one run."""
         return self.acts(
             [
@@ -530,7 +536,7 @@ class Builder:
             ]
         )
 
-    def acts(self, nodes: list[Node]) -> list[Act]:
+    def acts(self, nodes: list[Node]) -> tuple[Act, ...]:
         """Executable content from some of an element's children."""
         made: list[Act] = []
         sequence: list[Node] = []
@@ -550,7 +556,7 @@ class Builder:
                 made.append(act)
         if sequence:
             made.append(self.run(sequence))
-        return made
+        return tuple(made)
 
     @staticmethod
     def is_now(node: Node) -> bool:
@@ -563,7 +569,7 @@ class Builder:
         steps: list[StepTemplate] = []
         self.sequence(nodes, (), steps)
         self._runs += 1
-        return Run(steps, nodes[0])
+        return Run(tuple(steps), nodes[0])
 
     def sequence(
         self, nodes: list[Node], after: tuple[int, ...], steps: list[StepTemplate]
@@ -606,7 +612,7 @@ class Builder:
                 node, "empty", "This <iu> holds no Command.", "Write what must not be cut into it."
             )
         longest = self.value(node, "longest", "duration", LONGEST_MS)
-        return GroupTemplate(steps, longest, node, node.get("restartable") == "true")
+        return GroupTemplate(tuple(steps), longest, node, node.get("restartable") == "true")
 
     def command(self, node: Node) -> CommandTemplate:
         """A Command element."""
@@ -698,7 +704,7 @@ class Builder:
             case "log":
                 text = self.text(node)
                 expr = self.expression(node)
-                return Log(node.get("label"), [*text, *([expr] if expr else [])], node)
+                return Log(node.get("label"), (*text, expr) if expr else text, node)
             case "throw":
                 return Throw(self.either(node, "event"), self.either(node, "message"), node)
             case "goto":
@@ -727,7 +733,7 @@ class Builder:
 
     def condition(self, node: Node) -> If:
         """An if, divided by its elseif and else."""
-        branches: list[tuple[Expression | None, list[Act]]] = []
+        branches: list[tuple[Expression | None, tuple[Act, ...]]] = []
         cond: Expression | None = self.code(node.get("cond"), node, "cond")
         part: list[Node] = []
         for child in node.nodes:
@@ -742,7 +748,7 @@ class Builder:
             part = []
             cond = self.code(child.get("cond"), child, "cond") if child.tag == "elseif" else None
         branches.append((cond, self.acts(part)))
-        return If(branches, node)
+        return If(tuple(branches), node)
 
     def goto(self, node: Node) -> Goto:
         """A goto, to a form or to an item."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -391,7 +391,7 @@ class Checker:
                 )
                 self.note(form.node, "idle-hint", message, "Remove the hint.", "channel", "warning")
 
-    def _speaks(self, form: Form, items: list[Item]) -> bool:
+    def _speaks(self, form: Form, items: Sequence[Item]) -> bool:
         """Whether the robot says or asks something in a form, as far as can be seen."""
         asks = any(isinstance(item, Field | Subdialog) for item in items)
         return asks or form.id in self._speaking
@@ -482,7 +482,7 @@ class Checker:
                 self._namelist(filled, filled.names, inputs, "field")
 
     def _namelist(
-        self, holder: Filled | Clear, names: list[str], known: set[str], what: str
+        self, holder: Filled | Clear, names: Sequence[str], known: set[str], what: str
     ) -> None:
         for name in names:
             if name not in known:
@@ -703,7 +703,7 @@ class Checker:
                 for prompt in item.prompts if isinstance(item, Field) else ():
                     self._literal(prompt.node, prompt.text, form)
 
-    def _braces(self, steps: list[StepTemplate], form: Form | None) -> None:
+    def _braces(self, steps: Sequence[StepTemplate], form: Form | None) -> None:
         """Text with a variable in braces, as other languages write a value."""
         for command in run_commands(steps):
             self._literal(command.node, command.text, form)
@@ -716,7 +716,7 @@ class Checker:
                 remedy = f'Write <value expr="{found[1]}"/>.'
                 self.note(node, "literal-value", message, remedy, severity="warning")
 
-    def _branches(self, steps: list[StepTemplate]) -> None:
+    def _branches(self, steps: Sequence[StepTemplate]) -> None:
         """U3: branches of a par that share a device run one after the other."""
         chained = all(step.after == ((n - 1,) if n else ()) for n, step in enumerate(steps))
         if chained or len(steps) > MANY_STEPS:
@@ -737,7 +737,7 @@ class Checker:
                     return
 
     @staticmethod
-    def _parallel(steps: list[StepTemplate], first: int, second: int) -> bool:
+    def _parallel(steps: Sequence[StepTemplate], first: int, second: int) -> bool:
         """Whether neither of two steps waits for the other."""
         waiting, seen = [second], set()
         while waiting:
@@ -749,7 +749,7 @@ class Checker:
                 waiting += steps[index].after
         return True
 
-    def _endless(self, steps: list[StepTemplate], form: Form | None) -> None:
+    def _endless(self, steps: Sequence[StepTemplate], form: Form | None) -> None:
         """E4: a feedback Command without an end of its own, in a state without handlers."""
         for command in run_commands(steps):
             if command.type != "tracking-human" or form is None:
@@ -839,7 +839,7 @@ class Checker:
             remedy = 'Write <noinput count="3"><exit/></noinput>, or where else to go.'
             self.note(field.node, "no-noinput", message, remedy, severity="warning")
 
-    def _long_units(self, steps: list[StepTemplate]) -> None:
+    def _long_units(self, steps: Sequence[StepTemplate]) -> None:
         for step in steps:
             if isinstance(step.what, GroupTemplate):
                 text = sum(_letters(command.text) for command in run_commands(step.what.steps))
@@ -869,7 +869,7 @@ class Checker:
         for _, content, _ in self.document.contents():
             self._dead(content)
 
-    def _dead(self, content: list[Act]) -> None:
+    def _dead(self, content: Sequence[Act]) -> None:
         for index, act in enumerate(content, 1):
             if isinstance(act, LEAVING):
                 for behind in content[index : index + 1]:

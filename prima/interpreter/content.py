@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from prima.interpreter.elements import (
@@ -122,7 +122,9 @@ class Executor:
         """A value, or the value of an expression."""
         return self.evaluate(value, fiber) if isinstance(value, Expression) else value
 
-    def named(self, params: list[tuple[str, str | Expression]], fiber: Fiber) -> dict[str, Json]:
+    def named(
+        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber
+    ) -> dict[str, Json]:
         """Params as plain data by name."""
         return {name: self.plain(value, fiber) for name, value in params}
 
@@ -146,7 +148,7 @@ class Executor:
 
     # Content ------------------------------------------------------------------
 
-    def run(self, content: list[Act], fiber: Fiber) -> Content:
+    def run(self, content: Sequence[Act], fiber: Fiber) -> Content:
         """Run content in document order; waits where Commands have to end (O4)."""
         for act in content:
             self.owner.count_step(act.node)
@@ -161,7 +163,7 @@ class Executor:
                 for part in self.parts(act, fiber):
                     yield from self.run(part, fiber)
 
-    def run_at_once(self, content: list[Act], fiber: Fiber) -> Transfer | None:
+    def run_at_once(self, content: Sequence[Act], fiber: Fiber) -> Transfer | None:
         """Run content in which no Command stands; gives the transfer of control that ends it."""
         if content:
             self.owner.count_step(content[0].node, len(content))
@@ -179,7 +181,7 @@ class Executor:
                 return transfer
         return None
 
-    def parts(self, act: Act, fiber: Fiber) -> Iterator[list[Act]]:
+    def parts(self, act: Act, fiber: Fiber) -> Iterator[Sequence[Act]]:
         """The content inside an ``if`` or ``foreach`` that is to be run now."""
         if isinstance(act, Foreach):
             yield from self.foreach(act, fiber)
@@ -189,7 +191,7 @@ class Executor:
                     yield content
                     return
 
-    def foreach(self, act: Foreach, fiber: Fiber) -> Iterator[list[Act]]:
+    def foreach(self, act: Foreach, fiber: Fiber) -> Iterator[Sequence[Act]]:
         """Content once for each element of an array."""
         try:
             elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
@@ -309,7 +311,7 @@ class Executor:
         if notice.what == "cancelled":
             raise Abandoned
 
-    def steps(self, templates: list[StepTemplate], fiber: Fiber) -> list[Step]:
+    def steps(self, templates: Sequence[StepTemplate], fiber: Fiber) -> list[Step]:
         """Templates with their expressions evaluated."""
         made: list[Step] = []
         for template in templates:

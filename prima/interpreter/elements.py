@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from prima.deferred import dataclass, field, field_names
@@ -11,7 +12,7 @@ from prima.markup.tree import Node
 if TYPE_CHECKING:
     from prima.messages import Json
 
-Text = list["str | Expression"]
+Text = tuple["str | Expression", ...]
 """Text with expressions in it, in order."""
 
 
@@ -32,8 +33,8 @@ class CommandTemplate:
     args: dict[str, Json | Expression]
     text: Text | None
     now: bool
-    extra: list[tuple[str, str | Expression]]
-    handlers: list[Handler]
+    extra: tuple[tuple[str, str | Expression], ...]
+    handlers: tuple[Handler, ...]
     node: Node
     lang: str = ""
     restartable: bool = False
@@ -43,7 +44,7 @@ class CommandTemplate:
 class GroupTemplate:
     """A unit around Commands (U4)."""
 
-    steps: list[StepTemplate]
+    steps: tuple[StepTemplate, ...]
     longest: int
     node: Node
     restartable: bool = False
@@ -61,7 +62,7 @@ class StepTemplate:
 class Run:
     """Commands that follow one another: requested at once (O4)."""
 
-    steps: list[StepTemplate]
+    steps: tuple[StepTemplate, ...]
     node: Node
 
 
@@ -95,7 +96,7 @@ class Assign:
 class Clear:
     """A clear; no names means all form items."""
 
-    names: list[str]
+    names: tuple[str, ...]
     node: Node
 
 
@@ -103,7 +104,7 @@ class Clear:
 class If:
     """Conditions with their content; the last may have none (else)."""
 
-    branches: list[tuple[Expression | None, list[Act]]]
+    branches: tuple[tuple[Expression | None, tuple[Act, ...]], ...]
     node: Node
 
 
@@ -113,7 +114,7 @@ class Foreach:
 
     item: str
     array: Expression
-    content: list[Act]
+    content: tuple[Act, ...]
     node: Node
 
 
@@ -148,7 +149,7 @@ class Goto:
 class Return:
     """A return."""
 
-    names: list[str]
+    names: tuple[str, ...]
     event: str
     node: Node
 
@@ -174,7 +175,7 @@ class SendOut:
     service: str | Expression
     event: str
     delay: int | Expression
-    params: list[tuple[str, str | Expression]]
+    params: tuple[tuple[str, str | Expression], ...]
     node: Node
 
 
@@ -200,11 +201,11 @@ Act = (
 class Handler:
     """A handler of events, by their names or prefixes of them (VoiceXML 5.2.2)."""
 
-    events: list[str]
+    events: tuple[str, ...]
     cond: Expression | None
     count: int
     reactive: bool | None
-    content: list[Act]
+    content: tuple[Act, ...]
     node: Node
     waits: bool = False
     """Whether there is a Command in it, whose end is waited for."""
@@ -234,8 +235,8 @@ class Filled:
     """A filled: its fields; none means those of the form."""
 
     mode: str
-    names: list[str]
-    content: list[Act]
+    names: tuple[str, ...]
+    content: tuple[Act, ...]
     node: Node
 
 
@@ -258,7 +259,7 @@ class Item:
     name: str
     expr: Expression | None
     cond: Expression | None
-    handlers: list[Handler]
+    handlers: tuple[Handler, ...]
     properties: dict[str, Json]
     node: Node
     hold: int | None
@@ -269,16 +270,16 @@ class Item:
 class Block(Item):
     """Content that runs once."""
 
-    content: list[Act] = field(default_factory=list)
+    content: tuple[Act, ...] = ()
 
 
 @dataclass(slots=True)
 class Field(Item):
     """A question."""
 
-    prompts: list[Prompt] = field(default_factory=list)
+    prompts: tuple[Prompt, ...] = ()
     answers: Answers = field(default_factory=Answers)
-    filled: list[Filled] = field(default_factory=list)
+    filled: tuple[Filled, ...] = ()
     lang: str = ""
     connect: bool = False
     """Whether the robot turns to the user before it asks (X4)."""
@@ -289,15 +290,15 @@ class Subdialog(Item):
     """A call of another form."""
 
     form: str = ""
-    params: list[tuple[str, str | Expression]] = field(default_factory=list)
-    filled: list[Filled] = field(default_factory=list)
+    params: tuple[tuple[str, str | Expression], ...] = ()
+    filled: tuple[Filled, ...] = ()
 
 
 @dataclass(slots=True)
 class Unit(Item):
     """A unit around form items (U5), with the devices and Commands of all its content."""
 
-    items: list[Item] = field(default_factory=list)
+    items: tuple[Item, ...] = ()
     devices: frozenset[str] = frozenset()
     types: tuple[str, ...] = ()
     longest: int = 60000
@@ -323,12 +324,12 @@ class Form:
     """A state of the application."""
 
     id: str
-    items: list[Item]
-    handlers: list[Handler]
-    links: list[Link]
-    watches: list[Watch]
-    setup: list[Declare | Script]
-    filled: list[Filled]
+    items: tuple[Item, ...]
+    handlers: tuple[Handler, ...]
+    links: tuple[Link, ...]
+    watches: tuple[Watch, ...]
+    setup: tuple[Declare | Script, ...]
+    filled: tuple[Filled, ...]
     properties: dict[str, Json]
     node: Node
     hold: int | None = None
@@ -351,7 +352,7 @@ class Form:
         return None, {**kept, "known": None, "reactions": None}
 
 
-Content = tuple[Form | None, list[Act], Node]
+Content = tuple[Form | None, tuple[Act, ...], Node]
 """A piece of executable content, with its form and the element that holds it."""
 
 
@@ -364,10 +365,10 @@ class Document:
     lang: str
     file: str
     forms: dict[str, Form]
-    handlers: list[Handler]
-    links: list[Link]
-    watches: list[Watch]
-    setup: list[Declare | Script]
+    handlers: tuple[Handler, ...]
+    links: tuple[Link, ...]
+    watches: tuple[Watch, ...]
+    setup: tuple[Declare | Script, ...]
     properties: dict[str, Json]
     node: Node
     expressions: list[Expression] = field(default_factory=list)
@@ -439,7 +440,7 @@ class Acts:
         return [act for _, one, _ in contents for act in all_acts(one) if isinstance(act, kinds)]
 
 
-def all_items(items: list[Item]) -> list[Item]:
+def all_items(items: Sequence[Item]) -> list[Item]:
     """Form items, those inside units included, in document order."""
     if not items:
         return []
@@ -451,10 +452,10 @@ def all_items(items: list[Item]) -> list[Item]:
     return found
 
 
-def all_acts(content: list[Act]) -> list[Act]:
+def all_acts(content: Sequence[Act]) -> list[Act]:
     """Executable content with all that it holds, in document order."""
     if HOLDING.isdisjoint(map(type, content)):
-        return content.copy()
+        return list(content)
     found: list[Act] = []
     for act in content:
         found.append(act)
@@ -474,7 +475,7 @@ HOLDING = frozenset([If, Foreach, Run])
 """What holds other content."""
 
 
-def run_commands(steps: list[StepTemplate]) -> list[CommandTemplate]:
+def run_commands(steps: Sequence[StepTemplate]) -> list[CommandTemplate]:
     """The Commands of a run, those inside units included."""
     found: list[CommandTemplate] = []
     for step in steps:
@@ -488,7 +489,7 @@ def run_commands(steps: list[StepTemplate]) -> list[CommandTemplate]:
 def unit_commands(unit: Unit) -> list[CommandTemplate]:
     """All Commands in a unit, those of its fields' and its own handlers included."""
     found: list[CommandTemplate] = []
-    contents: list[list[Act]] = [handler.content for handler in unit.handlers]
+    contents: list[Sequence[Act]] = [handler.content for handler in unit.handlers]
     for item in unit.items:
         contents += [handler.content for handler in item.handlers]
         if isinstance(item, Block):

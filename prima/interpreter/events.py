@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from prima.commands import DEVICES
 from prima.deferred import dataclass
@@ -239,7 +239,7 @@ def silent_fields(document: Document) -> list[Field]:
 
     found: list[Field] = []
 
-    def look(items: list[Item]) -> None:
+    def look(items: Sequence[Item]) -> None:
         for item in items:
             if handled(item.handlers):
                 continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import MAX_TEXT, source
@@ -49,7 +49,7 @@ class Algorithm:
             yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
 
     def _visit_all(
-        self, frame: Frame, fiber: Fiber, items: list[Item], unit: Unit | None
+        self, frame: Frame, fiber: Fiber, items: Sequence[Item], unit: Unit | None
     ) -> Content:
         while True:
             try:
@@ -64,7 +64,7 @@ class Algorithm:
             yield from self._catching(frame, fiber, item, self._visit(frame, fiber, item))
             frame.item = unit
 
-    def select_item(self, frame: Frame, fiber: Fiber, items: list[Item]) -> Item | None:
+    def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
         """The item that a goto names, else the first undefined one whose condition holds."""
         wanted, target = frame.next_item, None
         if wanted:
@@ -145,7 +145,7 @@ class Algorithm:
         )
         yield from self._process(frame, fiber, field, field.filled)
 
-    def _process(self, frame: Frame, fiber: Fiber, item: Item, own: list[Filled]) -> Content:
+    def _process(self, frame: Frame, fiber: Fiber, item: Item, own: Sequence[Filled]) -> Content:
         """Run the filled elements that an answer has satisfied (VoiceXML 2.4)."""
         for filled in own:
             fiber.local = None

@@ -88,9 +88,13 @@ class Thrown(Exception):
 class Transfer(Exception):
     """Control leaves the content: a form, an item, a return, or the end."""
 
+    __slots__ = ()
+
 
 class GoForm(Transfer):
     """A goto to a form."""
+
+    __slots__ = ("form",)
 
     def __init__(self, form: str) -> None:
         self.form = form

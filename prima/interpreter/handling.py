@@ -244,6 +244,7 @@ class Handling:
             if form.reactions is None:
                 form.reactions = {}
             form.reactions[key] = reaction_of(self.owner.document, form, candidates)
+            known.taking.pop(key, None)  # it is seldom looked for again
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""

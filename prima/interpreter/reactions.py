@@ -10,7 +10,7 @@ their Python compiled once.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -89,15 +89,16 @@ def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction 
         writer.reaction(handlers)
     except _Beyond:
         return None
-    return _maker("\n".join(writer.lines), len(writer.given))(*writer.given)
+    made = _maker("\n".join(writer.lines), len(writer.given))
+    return made((*writer.rare, tuple(writer.places)), *writer.given)
 
 
 @lru_cache(maxsize=1_000)
 def _maker(code: str, given: int) -> Callable[..., Reaction]:
     """What makes a reaction of what is given to it."""
     held: dict[str, Any] = {}
-    names = ", ".join(f"c{index}" for index in range(given))
-    exec(f"def make({names}):\n{code}\n return react", NAMES, held)
+    names = "".join(f", c{index}" for index in range(given))
+    exec(f"def make(rare{names}):\n{code}\n return react", NAMES, held)
     return held["make"]  # type: ignore[no-any-return]
 
 
@@ -115,26 +116,27 @@ class _Writer:
         self.lines: list[str] = []
         self.given: list[Any] = []
         """What the function is made with, as ``c0``, ``c1``, ..."""
+        self.rare: list[Any] = []
+        """What it seldom needs: in one tuple, as each call takes up all that it was made with."""
         self.places: list[Place] = [(None, None)]
         self.with_fiber = False
         """Whether the handler that is being written calls anything that needs its fiber."""
         self.with_sensors = False
         """Whether any code may look at sensors."""
 
-    def reaction(self, handlers: list[Handler]) -> None:
+    def reaction(self, handlers: Sequence[Handler]) -> None:
         """The whole function."""
         local = self.no_local
         if self.has_local:
             curious = self.document.curious
             local = "owner.handling.event_scope(event)" if curious else self.new_local
-        places = self.give(self.places)
         self.write(1, "def react(owner, frame, event):")
         before = len(self.lines)
         self.write(2, f"document, dialog, local = frame.document, frame.dialog, {local}")
         self.write(2, "try:")
         self.handlers(handlers)
         self.write(2, "except failures as error:")
-        self.write(3, f"return failed(owner, frame, event, error, {places}[at])")
+        self.write(3, "return failed(owner, frame, event, error, rare[-1][at])")
         self.write(2, "return untaken(event)")
         if self.with_sensors:
             line = "  if owner.untold: owner.handling.tell_sensors()"
@@ -173,7 +175,7 @@ class _Writer:
         found = self.expression(expr)
         return found.source if found.kind == "boolean" else f"truth({found.source})"
 
-    def handlers(self, handlers: list[Handler]) -> None:
+    def handlers(self, handlers: Sequence[Handler]) -> None:
         """The first handler whose condition holds; all of them are evaluated (VoiceXML 5.2.4)."""
         names: list[str] = []
         for index, handler in enumerate(handlers):
@@ -200,14 +202,15 @@ class _Writer:
             self.lines.insert(before, f"    fiber = Fiber(frame, False, {local})")
         self.write(4, "return None")
 
-    def block(self, depth: int, handler: Handler, content: list[Act]) -> None:
+    def block(self, depth: int, handler: Handler, content: Sequence[Act]) -> None:
         """Content, piece by piece; too much of it in one instant ends the application."""
         if depth > DEEPEST:
             raise _Beyond
         self.write(depth, f"owner.steps += {len(content)}")
         if content:
             over = f"owner.steps > {MAX_STEPS} or owner.engine.spent > {MAX_SCRIPT_SECONDS}"
-            self.write(depth, f"if {over}: owner.count_step({self.give(content[0].node)}, 0)")
+            self.write(depth, f"if {over}: owner.count_step(rare[{len(self.rare)}], 0)")
+            self.rare.append(content[0].node)
         for act in content:
             match act:
                 case Assign() if "." not in act.name:

@@ -135,5 +135,5 @@ def _texts(document: Document, asked: bool) -> list[Text]:
         for item in all_items(form.items):
             if isinstance(item, Field):
                 found += [prompt.text for prompt in item.prompts]
-                found.append([part for one in item.prompts for part in (*one.text, " ")])
+                found.append(tuple(part for one in item.prompts for part in (*one.text, " ")))
     return found if asked else [*found, *(one.text for one in commands_of(document) if one.text)]
