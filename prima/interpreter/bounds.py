@@ -47,8 +47,9 @@ class Bounds(Generic[Evaluator]):
         self.steps = self._output = 0
         engine = self.engine
         engine.now = self.began + now
-        self._spent += engine.spent
-        engine.spent = 0.0 if self._spent <= MAX_RUN_SECONDS else math.inf
+        if engine.spent:
+            self._spent += engine.spent
+            engine.spent = 0.0 if self._spent <= MAX_RUN_SECONDS else math.inf
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""

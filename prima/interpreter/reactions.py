@@ -51,8 +51,6 @@ Place = tuple[Handler | None, Expression | None]
 
 DONE = Transfer()
 """There is nothing left to do: no handler takes the event, or its error has been handled."""
-SCOPES = "(owner.application, document, dialog, local)"
-"""The scopes in a reaction, for those who need all of them: few do."""
 DEEPEST = 30
 """Columns at which content may stand: how deep ``if`` may be inside each other."""
 WORD = pattern(r"[\w$]+")
@@ -113,6 +111,12 @@ class _Writer:
         self.form = form
         self.has_local = has_local
         """Whether anything can stand in the handlers' own scope."""
+        self.has_dialog = bool(dialog_names(document))
+        """Whether anything can stand in a form's scope."""
+        dialog = "dialog" if self.has_dialog else "frame.dialog"
+        local = "local" if has_local else self.no_local
+        self.all_scopes = f"(owner.application, document, {dialog}, {local})"
+        """The scopes in a reaction, for those who need all of them: few do."""
         self.lines: list[str] = []
         self.given: list[Any] = []
         """What the function is made with, as ``c0``, ``c1``, ..."""
@@ -126,13 +130,15 @@ class _Writer:
 
     def reaction(self, handlers: Sequence[Handler]) -> None:
         """The whole function."""
-        local = self.no_local
+        self.write(1, "def react(owner, frame, event):")
+        before = len(self.lines)
+        self.write(2, "document = frame.document")
+        if self.has_dialog:
+            self.write(2, "dialog = frame.dialog")
         if self.has_local:
             curious = self.document.curious
             local = "owner.handling.event_scope(event)" if curious else self.new_local
-        self.write(1, "def react(owner, frame, event):")
-        before = len(self.lines)
-        self.write(2, f"document, dialog, local = frame.document, frame.dialog, {local}")
+            self.write(2, f"local = {local}")
         self.write(2, "try:")
         self.handlers(handlers)
         self.write(2, "except failures as error:")
@@ -163,7 +169,7 @@ class _Writer:
 
     def expression(self, expr: Expression) -> Compiled:
         """An expression in Python."""
-        found = quickly(expr.code, SCOPES, self.where)
+        found = quickly(expr.code, self.all_scopes, self.where)
         if found is None:
             raise _Beyond
         if "sensor" in expr.code or "application" in expr.code:
@@ -230,7 +236,7 @@ class _Writer:
         """A declared variable has a new value; innermost scope first, mostly the document's."""
         name, inner = repr(act.name), self.where(act.name)[1:]
         several = inner or act.name in VARIABLES
-        scope, holder = "scope" if several else "document", f"holder_of({name}, {SCOPES})"
+        scope, holder = "scope" if several else "document", f"holder_of({name}, {self.all_scopes})"
         self.write(depth, f"at = {self.at(handler, act.expr)}")
         if several:
             hidden = "".join(f" and {name} not in {one}" for one in inner)
@@ -316,7 +322,7 @@ class _EngineWriter(_Writer):
         words = {word for code in codes for word in WORD.findall(code)}
         if alone and words.isdisjoint(INHERITED) and words.isdisjoint(dialog_names(document)):
             return "(owner.application, document)"
-        return SCOPES
+        return self.all_scopes
 
     def way(self, form: str) -> Transfer:
         """The way to a form; a scope that scripts may have put something into does not stay."""
@@ -341,7 +347,7 @@ class _EngineWriter(_Writer):
             return
         self.write(depth, f"at = {self.at(handler, act.expr)}")
         self.with_sensors = True
-        given = f"local, {name}, {self.give(act.expr.code)}, {SCOPES}"
+        given = f"local, {name}, {self.give(act.expr.code)}, {self.all_scopes}"
         self.write(depth, f"owner.engine.assign({given})")
 
 
