@@ -863,7 +863,7 @@ WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
             "<script>application.all = function () { return this; };</script>" + LOG.format("1"),
             None,
         ),
-        ("<script>for (const k in ap_) k;</script>" + LOG.format("1"), None),
+        ("<script>for (const k in ap\u01c0) k;</script>" + LOG.format("1"), None),
         ('<var name="Infinity" expr="1"/>' + WATCH.format("sensor.x &lt; Infinity"), None),
         ("<script>function f() { return sens\\u006fr.x; }</script>" + LOG.format("1"), None),
         ("<script>function f() { return eval('sen' + 'sor.x'); }</script>" + LOG.format("1"), None),

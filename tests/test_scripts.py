@@ -73,6 +73,8 @@ class Scopes:
         (["var $$ = 1; x = 3; function $f() { return $$; }"], "[$$, x, $f()]", [1, 3, 1]),
         (["function b() { return 1; } var b$_ = 3;"], "[b(), b$_]", [1, 3]),
         (["function outer() { class A extends (class B {}) { m() { var w; } } } var z = 1;"], "[typeof w, z]", ["undefined", 1]),
+        (["function f() { return f.name; } function* g() {}", "var h = f;"], "[f(), g.name, h.name]", ["f", "g", "f"]),
+        (["var ap_ = 1, do_ = 2, di_ = 3, lo_ = 4; function f() { return di_; }", "di_ = 5; lo_++;"], "[ap_, do_, f(), lo_]", [1, 2, 5, 5]),
         (["class K { m() { var x = 1; return x; } }"], "[new K().m(), typeof x]", [1, "undefined"]),
     ],
 )  # fmt: skip

@@ -55,7 +55,7 @@ from prima.interpreter.grammar import (
     Answers,
     fold,
 )
-from prima.interpreter.names import HANDLED, RESERVED
+from prima.interpreter.names import HANDLED, RESERVED, STRANGE
 from prima.interpreter.srgs import read_grammar
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
@@ -79,7 +79,7 @@ PARTS = {
 COMMANDS = frozenset(ACTING)
 EVENT = pattern(r"event|_message|\beval\b|valueOf|\\u")
 """What code has that may look at the event that is being handled."""
-DIALOG = pattern(r"dialog|\b(?:di|lo)_|\beval\b|\bthis\b|valueOf|\\u")
+DIALOG = pattern(rf"dialog|{STRANGE}|\beval\b|\bthis\b|valueOf|\\u")
 """What code has that may know the scope of a form, and put something into it."""
 ONLY_NEXT = frozenset(["next"])
 

@@ -28,7 +28,7 @@ from prima.interpreter.evaluation import (
     plain_number,
     whole,
 )
-from prima.interpreter.names import IDENTIFIER, WORD, assigned_names, declared_names
+from prima.interpreter.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
 from prima.messages import Json
 from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
@@ -389,12 +389,16 @@ class Engine:
             f"for(const n of {json.dumps(loose)})"
             f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
         )
-        give = "".join(f"{INTO}.{name}={name}{HIDDEN};" for name in script.functions)
+        give = "".join(
+            f"{INTO}.{name}={STRANGE}({name}{HIDDEN},'name',{{value:'{name}',configurable:true}});"
+            for name in script.functions
+        )
         export = "".join(
             f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
         )
         inner = f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
-        return f"(function({self._names},{INTO}){{{declare}{self._withs}{{{inner}}}}})"
+        outer = f"function({self._names},{INTO}){{{declare}{self._withs}{{{inner}}}}}"
+        return f"({STRANGE}=>{outer})(Object.defineProperty)"
 
 
 def _marked(value: Json) -> Json:
@@ -410,7 +414,7 @@ def _marked(value: Json) -> Json:
 
 def _short(scope: str) -> str:
     """The name of a scope's parameter; their first two letters tell scopes apart."""
-    return f"{scope[0:2]}_"
+    return f"{scope[0:2]}{STRANGE}"
 
 
 def _head(scopes: tuple[str, ...]) -> tuple[str, str]:

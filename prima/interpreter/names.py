@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
+from typing import Final
 
 from prima.deferred import dataclass, pattern
 
+STRANGE: Final = "\u01c0"
+"""A letter in all names that we put into the code of documents beside their own: few have one."""
 RESERVED = frozenset(
     [
         "break",

@@ -8,7 +8,7 @@ from functools import lru_cache
 from prima.deferred import pattern
 from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Document
-from prima.interpreter.names import GLOBALS, free_names, tokens_of
+from prima.interpreter.names import GLOBALS, STRANGE, free_names, tokens_of
 
 SENSOR = pattern(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
 HIDING = pattern(
@@ -19,7 +19,7 @@ HIDING = pattern(
 OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
 UNCLEAR = pattern(
     r"\bapplication\b(?!\s*\??\.\s*(?!valueOf)[\w$]+(?![\w$])(?!\s*[(]))"
-    r"|\bthis\b|\b(?:ap|do|di|lo)_|\beval\b|\\"
+    rf"|\bthis\b|{STRANGE}|\beval\b|\\"
 )
 """By what code may look at ``sensor`` without saying so."""
 
