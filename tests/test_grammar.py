@@ -195,6 +195,10 @@ FILES = {
     "http://x.org/g/other.gram": ABNF + "$r = y | $<loop.gram> y;",
     "http://x.org/g/broken.gram": ABNF + "$r = ;",
     "http://x.org/g/gsl.gram": ";GSL2.0;",
+    "http://x.org/g/odd.gram": SCRIPT
+    + "public $r = none {out = undefined} | odd {!{out = [undefined, 0/0, -1/0, {n: null, f: isNaN}]}!}"
+    " | twice $r {out = rules.r};\npublic $passed = $r;",
+    "http://x.org/g/through.gram": ABNF + "public $r = $<odd.gram#passed>;",
 }
 asked: list[str] = []
 
@@ -214,6 +218,24 @@ def test_rules_of_other_documents() -> None:
     )
     (one,) = grammar.match("to rome or lima")
     assert one.interpretation == {"root": "FCO", "far": {"code": "LIM", "zone": 5}}
+
+
+@pytest.mark.parametrize("uri", ["odd.gram", "odd.gram#passed", "through.gram"])
+def test_values_of_other_documents_that_json_lacks(uri: str) -> None:
+    grammar = reaching(
+        f"$r = a $<{uri}> {{out = typeof rules.latest()}}"
+        f" | b $<{uri}> {{var v = rules.latest(); out = [typeof v[0], '' + v[1], '' + v[2], v[3].n,"
+        " 'f' in v[3], typeof v[3].f, v.length]}"
+        f" | c $<{uri}>;"
+    )
+    expected = ["undefined", "NaN", "-Infinity", None, True, "undefined", 4]
+    for twice in ("", "twice "):
+        (one,) = grammar.match(f"a {twice}none")
+        assert one.interpretation == "undefined"
+        (one,) = grammar.match(f"b {twice}odd")
+        assert one.interpretation == expected
+    (one,) = grammar.match("c odd")
+    assert one.interpretation == [None, None, None, {"n": None}]
 
 
 def test_documents_of_several_formats_and_through_several() -> None:

@@ -27,10 +27,31 @@ HELPERS = r"""
 const stringify = JSON.stringify, parse = JSON.parse, isArray = Array.isArray;
 const assign = Object.assign, define = Object.defineProperty;
 const hidden = (object, name, value) => define(object, name, { value: value, writable: true });
+const keys = Object.keys;
+const strange = '\0';
+// What JSON lacks, as objects that nobody writes:
+const mark = (value) => {
+  if (value === undefined || typeof value === 'function') return { [strange]: 'undefined' };
+  if (typeof value === 'number' && value - value !== 0) return { [strange]: String(value) };
+  if (value === null || typeof value !== 'object') return value;
+  if (typeof value.toJSON === 'function') return value;
+  const made = isArray(value) ? [] : {};
+  for (const key of keys(value)) made[key] = mark(value[key]);
+  if (isArray(value)) made.length = value.length;
+  return made;
+};
+const unmark = (value) => {
+  if (value === null || typeof value !== 'object') return value;
+  if (strange in value) return value[strange] === 'undefined' ? undefined : Number(value[strange]);
+  for (const key of keys(value)) value[key] = unmark(value[key]);
+  return value;
+};
 const plain = (value) => value !== null && typeof value === 'object' && !isArray(value);
 return {
   box: function (text) { return { v: parse(text) }; },
   json: function (box) { return stringify(box.v); },
+  carry: function (box) { return stringify(mark(box.v)); },
+  take: function (text) { return { v: unmark(parse(text)) }; },
   environment: function (text, merges) {
     let last, lastMeta = { text: '', score: 1 }, at = 0;
     const own = { text: text, score: 1 }, rules = {}, meta = {}, waiting = [];
@@ -130,6 +151,17 @@ class Sandbox:
         except (quickjs.JSException, quickjs.StackOverflow):
             return False
         return True
+
+    def carry(self, box: Any) -> str:
+        """A boxed value as text, for :meth:`take` of another sandbox; functions are undefined there."""
+        text = self._call(self._helper("carry"), box)
+        if len(text) > RESULT_LIMIT:
+            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
+        return str(text)
+
+    def take(self, text: str) -> Any:
+        """A value that another sandbox has given."""
+        return self._call(self._helper("take"), text)
 
     def json(self, box: Any) -> Json:
         """A boxed value as plain data; undefined and functions become None."""

@@ -7,7 +7,7 @@ value of the last rule that it refers to, or else the text of its tokens.
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Literal
 
 from prima.deferred import dataclass
 from prima.errors import Place
@@ -46,12 +46,14 @@ class _Result:
     """The value of one rule that matched."""
 
     document: Document
+    home: Document
+    """In whose engine the value is, if it is in one: its own, or that of a rule it was passed by."""
     first: int
     """Its tokens, by number."""
     last: int = 0
     value: Json = None
     box: Any = None
-    """The value inside its document's engine, if it is there."""
+    """The value inside an engine, if it is there."""
 
 
 class Interpreter:
@@ -73,7 +75,7 @@ class Interpreter:
             Failure: a tag failed.
         """
         todo: list[tuple[Frame, int]] = [(top, 0)]
-        self._results[id(top)] = _Result(top.rule.document, 0)
+        self._results[id(top)] = _result(top, 0)
         while todo:
             frame, at = todo.pop()
             while at < len(frame.events):
@@ -82,7 +84,7 @@ class Interpreter:
                 if isinstance(event, Frame):
                     todo.append((frame, at))
                     todo.append((event, 0))
-                    self._results[id(event)] = _Result(event.rule.document, len(self.tokens))
+                    self._results[id(event)] = _result(event, len(self.tokens))
                     break
                 self._token(event)
             else:
@@ -132,21 +134,20 @@ class Interpreter:
             result.value = last.value
         else:
             inner = self._results[id(last)]
-            result.value = inner.value
-            if inner.box is not None and inner.document is result.document:
-                result.box = inner.box
-            elif inner.box is not None:
-                result.value = self._plain(inner)
+            result.value, result.box, result.home = inner.value, inner.box, inner.home
 
     def _plain(self, result: _Result) -> Json:
-        if result.box is None:
-            return result.value
+        return result.value if result.box is None else self._given(result, "json")
+
+    def _given(self, result: _Result, way: Literal["json", "carry"]) -> Any:
+        """What a value in an engine is outside of it."""
         from prima.grammar.sandbox import ScriptError
 
+        sandbox = self._sandbox(result.home)
         try:
-            return self._sandbox(result.document).json(result.box)
+            return sandbox.json(result.box) if way == "json" else sandbox.carry(result.box)
         except ScriptError as error:
-            place = result.document.where()
+            place = result.home.where()
             raise Failure(SemanticError(f"The value cannot be given: {error}.", place)) from None
 
     def _script(self, frame: Frame, result: _Result) -> None:
@@ -178,9 +179,12 @@ class Interpreter:
             raise Failure(_failure(error, told, sandbox, reached)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
-        if inner.box is not None and inner.document is result.document:
+        sandbox = self._sandbox(result.document)
+        if inner.box is None:
+            return sandbox.box(inner.value)
+        if inner.home is result.document:
             return inner.box
-        return self._sandbox(result.document).box(self._plain(inner))
+        return sandbox.take(self._given(inner, "carry"))
 
     def _sandbox(self, document: Document) -> Any:
         """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
@@ -195,6 +199,11 @@ class Interpreter:
                 except ScriptError as error:
                     raise Failure(_failure(error, [(tag, tag.code)], found)) from None
         return found
+
+
+def _result(frame: Frame, first: int) -> _Result:
+    document = frame.rule.document
+    return _Result(document, document, first)
 
 
 def _failure(
