@@ -420,11 +420,11 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
 
 def _load(path: Path, data: bytes) -> Loaded:
     from prima.sim.hearing import check_hearing
-    from prima.sim.rehearsal import Cast, check_cast
-    from prima.sim.scenario import read_robot, read_scenario, read_world
+    from prima.sim.rehearsal import Cast, check_cast, check_names
+    from prima.sim.scenario import look_at_scenario, read_robot, read_world
 
-    scenario = read_scenario(str(path), data)
-    reading = _Reading(path, {path.name: _digest(data)})
+    scenario, told = look_at_scenario(str(path), data)
+    reading = _Reading(path, {path.name: _digest(data)}, [*told])
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
@@ -439,9 +439,13 @@ def _load(path: Path, data: bytes) -> Loaded:
     offered = {name for _, name in offers}
     complete = len(reading.documents) == len(scenario.applications) + len(offered)
     if world is None or robot is None or not complete:
-        raise DocumentError(reading.problems)
+        documents = reading.documents if complete else None
+        names = check_names(scenario, world, robot, documents)
+        raise DocumentError(sorted({*reading.problems, *names}))
     cast = Cast(scenario, reading.documents, world, robot, offers)
-    problems = sorted({*reading.problems, *check_cast(cast, str(path)), *check_hearing(cast)})
+    problems = sorted({*reading.problems, *check_cast(cast)})
+    if not any(problem.severity == "error" for problem in told):
+        problems = sorted({*problems, *check_hearing(cast)})
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(problems)
     return Loaded(cast, reading.files, problems)
@@ -461,6 +465,8 @@ class _Reading:
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
+        if not name:
+            return None  # told already, as a problem of the schema
         target = _path(normpath(self.path.parent / name))
         content = b""
         try:

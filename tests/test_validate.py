@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -16,7 +17,7 @@ import pytest
 
 from prima import loading
 from prima.diagnostics import excerpt, render, sarif
-from prima.errors import Place, Problem
+from prima.errors import DocumentError, Place, Problem
 
 ROOT = Path(__file__).parent.parent
 BAD = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">
@@ -297,3 +298,56 @@ def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_pa
     found = [one for one in json.loads(done.stdout) if one["severity"] == "error"]
     assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
     assert all(f'"{name}" is there in a handler only' in one["message"] for one in found)
+
+
+SCENARIO = f"""<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"
+ world="{ROOT}/documents/worlds/library.xml" robot="{ROOT}/documents/robots/papero.xml">
+  <application src="{{}}"/>
+  {{}}
+  <robot at="nowhere"/>
+  <person at="there" spede="1"/>
+  <when at="3s"><touch sensor="haed"/><unload application="librari"/></when>
+  <when at="3x"><fail device="wheel"/></when>
+</scenario>
+"""
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_all_that_is_wrong_with_a_scenario_is_told_at_once(missing: bool, tmp_path: Path) -> None:
+    documents = ROOT / "documents" / "ea"
+    src = documents / ("libary.xml" if missing else "library.xml")
+    path = tmp_path / "s.xml"
+    path.write_text(SCENARIO.format(src, "<application/>" if missing else ""), encoding="utf-8")
+    with pytest.raises(DocumentError) as caught:
+        loading.load_scenario(path)
+    own = [one for one in caught.value.problems if one.place.file == str(path)]
+    places = {
+        (3, 21): "no-such-file",
+        (4, 3): "missing-attribute",
+        (5, 14): "no-such-name",
+        (6, 15): "no-such-name",
+        (6, 22): "unknown-attribute",
+        (7, 32): "no-such-name",
+        (7, 60): "no-such-name",
+        (8, 13): "bad-value",
+        (8, 31): "no-such-name",
+    }
+    for unknown in [(7, 60)] if missing else [(3, 21), (4, 3)]:  # which ids there are is not known
+        del places[unknown]
+    assert {(one.place.line, one.place.column): one.code for one in own} == places
+
+
+def test_a_scenario_with_any_attribute_wrong_is_looked_at() -> None:
+    looked = 0
+    for path in sorted((ROOT / "documents" / "scenarios").glob("*.xml"))[::6]:
+        text = path.read_text(encoding="utf-8")
+        for written in re.finditer(r'([\w-]+)="([^"]*)"', text):
+            for wrong in ("", f'{written[1]}=""', f'{written[1]}="?!"', f'{written[1]}x="1"'):
+                try:
+                    loading._load(
+                        path, (text[: written.start()] + wrong + text[written.end() :]).encode()
+                    )
+                except DocumentError as error:
+                    assert error.problems
+                looked += 1
+    assert looked > 200

@@ -42,23 +42,30 @@ class Cast:
     """Areas that offer an application, with the application's id."""
 
 
-def check_cast(cast: Cast, file: str) -> list[Problem]:
-    """Names in a scenario that its world, robot and applications do not know."""
-    scenario, problems = cast.scenario, []
-    points = set(cast.world.places) | set(cast.world.things)
-    known = {
-        ("robot", "at"): (set(cast.world.places), "place"),
-        ("person", "at"): (points, "place or thing"),
-        ("walk", "to"): (points, "place or thing"),
-        ("look", "at"): (points | {"robot"}, "place or thing"),
-        ("touch", "sensor"): (set(cast.robot.touch), "touch sensor"),
-        ("fail", "device"): (set(cast.robot.devices), "device"),
-        ("repair", "device"): (set(cast.robot.devices), "device"),
-        ("when", "doing"): (set(cast.robot.commands), "Command"),
-        ("when", "done"): (set(cast.robot.commands), "Command"),
-        ("unload", "application"): ({doc.id for doc in cast.documents}, "application"),
-        ("load", "application"): ({doc.id for doc in cast.documents}, "application"),
-    }
+def check_names(
+    scenario: Scenario,
+    world: Map | None,
+    robot: Profile | None,
+    documents: list[AnyDocument] | None,
+) -> list[Problem]:
+    """Names in a scenario that its world, robot and applications do not know.
+
+    What could not be read is None: then nothing is said of its names.
+    """
+    problems: list[Problem] = []
+    known: dict[tuple[str, str], tuple[set[str], str]] = {}
+    if world is not None:
+        points = set(world.places) | set(world.things)
+        known["robot", "at"] = set(world.places), "place"
+        known["person", "at"] = known["walk", "to"] = points, "place or thing"
+        known["look", "at"] = points | {"robot"}, "place or thing"
+    if robot is not None:
+        known["touch", "sensor"] = set(robot.touch), "touch sensor"
+        known["fail", "device"] = known["repair", "device"] = set(robot.devices), "device"
+        known["when", "doing"] = known["when", "done"] = set(robot.commands), "Command"
+    if documents is not None:
+        ids = {document.id for document in documents}
+        known["unload", "application"] = known["load", "application"] = ids, "application"
     for node in scenario.node.walk():
         for (tag, name), (words, what) in known.items():
             word = node.attributes.get(name)
@@ -67,6 +74,13 @@ def check_cast(cast: Cast, file: str) -> list[Problem]:
                 message = f'There is no {what} "{word}".'
                 remedy = nearest(word, words)
                 problems.append(Problem(place, "error", "no-such-name", message, remedy))
+    return problems
+
+
+def check_cast(cast: Cast) -> list[Problem]:
+    """What is wrong with a scenario together with its world, robot and applications."""
+    scenario = cast.scenario
+    problems = check_names(scenario, cast.world, cast.robot, cast.documents)
     seen: set[str] = set()
     nodes = [node for _, _, node in scenario.applications]
     nodes += {name: area.node for area, name in reversed(cast.offers)}.values()
@@ -88,7 +102,7 @@ class Rehearsal:
         self, cast: Cast, policy: Policy, bound: int | None = None, web: Web | None = None
     ) -> None:
         self.cast = cast
-        problems = check_cast(cast, cast.scenario.node.source.file)
+        problems = check_cast(cast)
         if problems:
             raise DocumentError(problems)
         scenario = cast.scenario

@@ -516,6 +516,18 @@ def read_scenario(file: str, data: bytes) -> Scenario:
     Raises:
         DocumentError: with all its problems.
     """
+    scenario, problems = look_at_scenario(file, data)
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return scenario
+
+
+def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
+    """A scenario and its problems; what is wrong in it has no value.
+
+    Raises:
+        DocumentError: it is no XML document, or beyond a limit.
+    """
     reader = Reader(SCENARIO, file, data)
     root = reader.root
     robots, people = root.all("robot"), root.all("person")
@@ -572,8 +584,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         expectations=_expectations(reader, root),
         node=root,
     )
-    reader.finish()
-    return scenario
+    return scenario, reader.problems
 
 
 def _check_services(reader: Reader) -> None:

@@ -296,7 +296,7 @@ class Game:
         scenario = self._read([when(0, line.xml)])
         made = replace(self.cast, scenario=scenario)
         last = scenario.node.all("when")[-1].place.line
-        found = [*check_cast(made, FILE), *check_hearing(made)]
+        found = [*check_cast(made), *check_hearing(made)]
         problems = [one for one in found if one.place.file == FILE and one.place.line == last]
         if problems:
             raise UsageError(self._told(problems[0]))
