@@ -351,3 +351,26 @@ def test_a_scenario_with_any_attribute_wrong_is_looked_at() -> None:
                     assert error.problems
                 looked += 1
     assert looked > 200
+
+
+@pytest.mark.parametrize(
+    ("person", "doing", "told"),
+    [
+        ("", '<walk to="aisle"/><look at="robot"/>', ["<walk> does nothing"]),
+        ("", '<look at="robot"/>', ["<look> does nothing"]),
+        ("", "<say>Hello.</say>", []),
+        ('<person at="aisle"/>', '<walk to="entrance"/>', []),
+    ],
+)
+def test_nobody_walks_where_nobody_is(
+    person: str, doing: str, told: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "s.xml"
+    head = SCENARIO.partition("<application")[0]
+    application = f'<application src="{ROOT}/documents/ea/library.xml"/>'
+    when = f'<when at="3s">{doing}</when></scenario>'
+    path.write_text(f"{head}{application}{person}{when}", encoding="utf-8")
+    problems = loading.load_scenario(path).problems
+    found = [one for one in problems if one.message.startswith("Nobody")]
+    assert [one.message.partition(" without")[0].partition(": ")[2] for one in found] == told
+    assert {(one.severity, one.code) for one in found} <= {("warning", "missing-element")}

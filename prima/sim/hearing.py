@@ -46,6 +46,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
             problems += _named(document.page.root, names)
     nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
+    problems += _nobody(nodes)
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application says and hears is known only when it runs
     events = [Events(document) for document in documents]
@@ -154,6 +155,16 @@ def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
                 remedy = f"They stand from {least:g} to {most:g}."
                 place = node.attribute_place(name)
                 yield Problem(place, "warning", "out-of-range", message, remedy)
+
+
+def _nobody(nodes: list[Node]) -> Iterator[Problem]:
+    """A user who moves in a scenario without one; who only speaks may be on the telephone."""
+    if any(node.tag == "person" for node in nodes):
+        return
+    for node in [one for one in nodes if one.tag in ("walk", "look")][:1]:
+        message = f"Nobody is there: <{node.tag}> does nothing without a <person>."
+        remedy = 'Write where he is at first, such as <person at="..."/>.'
+        yield Problem(node.place, "warning", "missing-element", message, remedy)
 
 
 def _services(events: list[Events], names: set[str]) -> Iterator[Problem]:
