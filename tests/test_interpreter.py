@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from prima.grammar.text import fold as folded
 from prima.interpreter import expressions
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
+from prima.interpreter.grammar import fold
 from prima.interpreter.sensors import sensors_read
 from prima.messages import Loaded, Sensed, Unloaded
 from tests.robot import Bench, document
@@ -180,6 +184,19 @@ def test_options_fold_case_width_and_punctuation(said: str, value: str) -> None:
     bench = Bench(ASK.format(""))
     bench.hears(said)
     assert bench.logs() == [value]
+
+
+def test_signs_at_the_end_of_a_word_tell_answers_apart() -> None:
+    languages = "<option>C</option><option>C#</option><option>The C++ Primer</option>"
+    for said, value in (("c.", "C"), ("C#!", "C#"), ("the Ｃ＋＋ primer", "The C++ Primer")):
+        bench = Bench(ASK.format(languages))
+        bench.hears(said)
+        assert bench.logs() == [f"{value}/{said}"]
+
+
+@given(st.text("aZé語ｃ1 .,:+#＋'♯_", max_size=12))
+def test_both_kinds_of_grammars_fold_alike(text: str) -> None:
+    assert fold(text) == folded(text)
 
 
 def test_without_handlers_silence_and_nonsense_ask_again_with_tapered_prompts() -> None:

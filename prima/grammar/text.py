@@ -21,7 +21,7 @@ UNSPACED = (
 """Letters of scripts that are written without spaces, or (Korean) with loose ones."""
 _UNSPACED = re.compile(f"[{UNSPACED}]")
 _LOOSE = re.compile(f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])")
-_NUMBER = re.compile(r"(\d+(?:[.,:]\d+)+)")
+_KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
 _TOKEN = re.compile(r'"([^"]*)"|([^\s"]+)')
@@ -38,7 +38,8 @@ def fold(text: str) -> str:
     if _PLAIN.fullmatch(text):
         return text
     folded = _APOSTROPHE.sub("", unicodedata.normalize("NFKC", text).casefold())
-    pieces = _NUMBER.split(folded)  # separators inside numbers and times are kept
+    # Separators inside numbers and times are kept, and what tells C++ and C# from C.
+    pieces = _KEPT.split(folded)
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
     return _LOOSE.sub("", " ".join("".join(pieces).split()))
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 _BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
-_NUMBER = pattern(r"(\d+(?:[.,:]\d+)+)")
+_KEPT = pattern(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 FEW = 8
 """So many alternatives are all tried."""
 MAX_STEPS = 100_000
@@ -31,8 +31,9 @@ def fold(text: str) -> str:
     folded = _wide(text).casefold()
     for quote in "'\u2019\u2018`\u00b4":
         folded = folded.replace(quote, "")
-    # Separators inside numbers and times are kept.
-    pieces = _NUMBER.split(folded) if any(map(str.isdecimal, folded)) else [folded]
+    # Separators inside numbers and times are kept, and what tells C++ and C# from C.
+    kept = "+" in folded or "#" in folded or any(map(str.isdecimal, folded))
+    pieces = _KEPT.split(folded) if kept else [folded]
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
     said = " ".join("".join(pieces).split())
     return said if said.isascii() else re.sub(_BETWEEN_CJK, "", said)
