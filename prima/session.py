@@ -21,6 +21,7 @@ from prima.interpreter.evaluation import PULSE
 from prima.messages import (
     Action,
     CloseUnit,
+    Command,
     Data,
     Emergency,
     Ended,
@@ -49,7 +50,7 @@ from prima.messages import (
     Unloaded,
 )
 from prima.prelude import START
-from prima.scheduler.behavior import Behavior
+from prima.scheduler.behavior import WAITING, Behavior
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
@@ -337,11 +338,15 @@ class Session:
 
     def _breaks_in(self, text: str, data: dict[str, Json]) -> bool:
         """Whether an application takes what the user says while its prompts are being said."""
-        for ab in list(self.mediator.memory.running.values()):
+        now, memory = self.chronicle.now, self.mediator.memory
+        for ab in [*memory.running.values(), *memory.waiting]:
             app = self.apps[ab.app.name]
             if isinstance(app, Interpreter) or ab.command is None or ab.silent:
                 continue
-            if app.breaks_in(self.chronicle.now, ab.command, text, data):
+            during: Command | None = ab.command
+            if ab.state is WAITING:  # between two prompts, the first of which has just ended
+                during = app.before(ab.command) if ab.freed == now else None
+            if during is not None and app.breaks_in(now, during, text, data):
                 self._act(app)
                 return True
         return False

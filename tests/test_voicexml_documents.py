@@ -11,6 +11,7 @@ import pytest
 
 from prima import loading
 from prima.errors import DocumentError
+from prima.messages import Ended, Heard
 from prima.voicexml.document import broken, join, read_page
 from tests.robot import Bench
 from tests.voice import HEAD, Call, voice, vxml
@@ -1897,6 +1898,30 @@ def test_what_is_said_during_a_prompt_before_a_question_answers_it(said: str, lo
         ("O3", "Which?"),
     }
     assert call.ended == "exit"
+
+
+@pytest.mark.parametrize("before", [["One."], ["One.", "Two."]])
+def test_what_is_said_as_a_prompt_ends_answers_the_question_behind_it(before: list[str]) -> None:
+    call = Call(WELCOME.format("", ""))
+    for text in before[:-1]:
+        call.finish(text)
+    call.step(Ended(call._id(before[-1])), Heard("red"))
+    assert call.logs() == ["red"]
+    assert call.play() == [*before, "Good."]
+    assert call.ended == "exit"
+
+
+def test_what_is_said_as_a_prompt_ends_that_may_not_be_broken_in_on_is_no_answer() -> None:
+    call = Call(WELCOME.format('bargein="false"', ""))
+    call.finish("One.")
+    call.step(Ended(call._id("Two.")), Heard("red"))
+    assert (call.logs(), call.saying()) == ([], ["Which?"])
+
+
+def test_a_question_is_not_answered_in_the_instant_in_which_it_is_asked_for() -> None:
+    call = Call("<form><block>Other.</block></form>", voice(WELCOME.format("", ""), "asking"))
+    call.step(Ended(call._id("Other.")), Heard("red"))
+    assert (call.logs(), call.saying()) == ([], ["One."])
 
 
 def test_what_no_grammar_takes_before_a_question_ends_nothing() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator, Mapping, Sequence
-from itertools import count
+from itertools import count, pairwise
 
 from prima.interpreter.bounds import Bounds
 from prima.interpreter.content import source
@@ -71,6 +71,8 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._patient = False
         """Whether what is played now is played to its end, even with the answer there."""
         self._open: Sequence[Command] = ()
+        self._queue: Sequence[Command] = ()
+        """Commands whose end is waited for."""
         """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
         """Events that came while an answer was waited for (4.1.8): none is lost."""
@@ -167,6 +169,13 @@ class VoiceInterpreter(Bounds["Engine"]):
         found = self.heard.interpretation
         return found if found is not None else self.heard.utterance
 
+    def before(self, command: Command) -> Command | None:
+        """Which of the Commands that are waited for comes before one of them, if any does."""
+        for one, after in pairwise(self._queue):
+            if after is command:
+                return one
+        return None
+
     def breaks_in(self, now: int, command: Command, text: str, data: Data) -> bool:
         """Take what the user says during a prompt as the answer to the question behind it (4.1.5).
 
@@ -220,9 +229,9 @@ class VoiceInterpreter(Bounds["Engine"]):
         content = self._machine.content
         self._marked, content.mark = content.mark, None
         self.actions.append(Request(self._run, steps, self._state, cause))
-        self._open = open_to_answers
+        self._open, self._queue = open_to_answers, commands
         resume = yield
-        self._run, self._open = 0, ()
+        self._run, self._open, self._queue = 0, (), ()
         return resume
 
     def send(self, service: str, data: Data, node: Node) -> int:
