@@ -71,6 +71,66 @@ PRELUDE = r"""
 })();
 """
 
+SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
+NAME = "\u01c0name"
+"""What :data:`GUARDS` makes, by names that hardly any document has."""
+
+GUARDS = r"""
+(function () {
+  'use strict';
+  const text = String, Err = Error, define = Object.defineProperty, apply = Reflect.apply;
+  const slice = String.prototype.slice, wellFormed = String.prototype.toWellFormed;
+  const evaluate = eval;
+  const short = (said, most) => apply(wellFormed, apply(slice, said, [0, most]), []);
+  // The binding turns what was thrown into text when its limits do not hold any more. So it gets
+  // an error of ours instead, in which nobody's code is left; errors of the engine itself, which
+  // cannot be caught, are told by prototypes that nobody can change.
+  const safe = (thrown) => {
+    let said = '(Failed obtaining', stack = '';
+    try { said = text(thrown); } catch (_) { }
+    try { stack = thrown.stack; } catch (_) { }
+    const made = new Err(short(said, 2000));
+    define(made, 'name', { value: '' });
+    define(made, 'stack', { value: typeof stack === 'string' ? short(stack, 20000) : '' });
+    return made;
+  };
+  const guards = [
+    (f) => function () { try { return f(); } catch (e) { throw safe(e); } },
+    (f) => function (a) { try { return f(a); } catch (e) { throw safe(e); } },
+    (f) => function (a, b) { try { return f(a, b); } catch (e) { throw safe(e); } },
+    (f) => function (a, b, c) { try { return f(a, b, c); } catch (e) { throw safe(e); } },
+    (f) => function (a, b, c, d) { try { return f(a, b, c, d); } catch (e) { throw safe(e); } },
+  ];
+  const given = {
+    '\u01c0safe': safe,
+    '\u01c0guard': (f) => guards[f.length](f),
+    '\u01c0evaluate': guards[1]((code) => { evaluate(code); }),
+    '\u01c0name': (f, name) => define(f, 'name', { value: name, configurable: true }),
+  };
+  for (const name of Object.keys(given)) define(globalThis, name, { value: given[name] });
+  const { get: getStack, set: setStack } = Object.getOwnPropertyDescriptor(Err.prototype, 'stack');
+  const kinds = ['Error', 'EvalError', 'RangeError', 'ReferenceError', 'SyntaxError', 'TypeError',
+    'URIError', 'InternalError', 'AggregateError', 'SuppressedError'];
+  for (const kind of kinds.filter((name) => typeof globalThis[name] === 'function')) {
+    const prototype = globalThis[kind].prototype;
+    for (const key of ['name', 'message', 'toString', Symbol.toPrimitive]) {
+      const value = prototype[key];
+      const set = function (own) {  // what inherits from it may have its own
+        if (this === prototype) return;
+        define(this, key, { value: own, writable: true, configurable: true, enumerable: true });
+      };
+      define(prototype, key, { get: () => value, set: set, enumerable: false, configurable: false });
+    }
+    define(prototype, 'stack',
+      { get: getStack, set: setStack, enumerable: false, configurable: false });
+  }
+  for (const key of ['prepareStackTrace', 'stackTraceLimit']) {
+    const value = Err[key];
+    define(Err, key, { get: () => value, set: () => { }, enumerable: false, configurable: false });
+  }
+})();
+"""
+
 START = "2005-03-01T10:00:00"
 """When a run begins by its own calendar, if nobody says (UTC)."""
 

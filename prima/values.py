@@ -43,6 +43,22 @@ _XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
 
 
+def well_formed(text: str) -> str:
+    """Text with U+FFFD in the place of halves of surrogate pairs: UTF-8 has none."""
+    if text.isascii():
+        return text
+    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+
+
+HALF_PAIR = pattern(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
+"""Half a surrogate pair in JSON of ECMAScript: an escape there; whole pairs are letters."""
+
+
+def well_formed_json(text: str) -> str:
+    """The same for the texts in JSON that ECMAScript has written."""
+    return HALF_PAIR.sub(r"\1\\ufffd", text) if "\\ud" in text else text
+
+
 def _fits(form: str, text: str) -> bool:
     """Whether a text fits a pattern of names; most are ASCII, and the whole alphabet is slow."""
     if len(text) > LONGEST_NAME:

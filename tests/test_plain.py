@@ -25,6 +25,7 @@ from prima.interpreter.compiling import (
 from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import Engine
+from prima.interpreter.names import STRANGE
 from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
 from prima.interpreter.reader import read_document
 from prima.messages import Loaded, Occurred
@@ -226,7 +227,8 @@ def test_no_text_becomes_code(text: str) -> None:
 
 def test_the_engines_own_names_are_known() -> None:
     scopes = scopes_of(ENGINE)
-    own = set(ENGINE.value("Object.getOwnPropertyNames(globalThis)", scopes))
+    every = ENGINE.value("Object.getOwnPropertyNames(globalThis)", scopes)
+    own = {name for name in every if STRANGE not in name}
     assert own <= BUILT_IN | CONSTANTS.keys() | VARIABLES
     for value in ("{}", "[]", "''", "0", "true"):
         code = f"Object.getOwnPropertyNames(Object.getPrototypeOf({value}))"

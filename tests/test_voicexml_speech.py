@@ -699,3 +699,14 @@ def test_the_last_mark_is_that_passed_when_an_answer_comes_before_the_question( 
     played: Played, at: int, mark: str
 ) -> None:
     assert logs(played(MARKED, (at, "red"))) == [mark]
+
+
+def test_a_text_with_half_a_letter_comes_out_of_a_grammar() -> None:
+    call = Call(
+        """<form><field name="x"><prompt>Well?</prompt>
+        <grammar version="1.0" root="r" tag-format="semantics/1.0">
+          <rule id="r">go<tag>out = "a\\ud800b"</tag></rule></grammar>
+        <filled><log expr="x"/><log expr="x.length"/></filled></field></form>"""
+    )
+    call.answer("go")
+    assert call.logs() == ["a\ufffdb", "3"]

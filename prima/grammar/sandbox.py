@@ -7,6 +7,7 @@ tells the time that is given and ``Math.random`` is seeded, so that a match can 
 from __future__ import annotations
 
 import json
+import re
 from time import perf_counter
 from typing import Any
 
@@ -14,7 +15,17 @@ import _quickjs as quickjs
 
 from prima.grammar.budget import TIME_LIMIT, Budget
 from prima.messages import Json
-from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
+from prima.prelude import (
+    CLOCK,
+    DATE,
+    EVALUATE,
+    GUARD,
+    GUARDS,
+    MEMORY_LIMIT,
+    PRELUDE,
+    STACK_LIMIT,
+)
+from prima.values import well_formed, well_formed_json
 
 DONE = 1_000_000
 """What comes after a rule's last tag."""
@@ -74,6 +85,10 @@ return {
 """
 
 
+LEXICAL = re.compile(r"\b(?:let|const|class)\s+([A-Za-z_$][\w$]*)")
+"""Names that code may declare for itself alone where it is evaluated, not for the global scope."""
+
+
 class ScriptError(Exception):
     """A tag's script failed."""
 
@@ -86,6 +101,7 @@ class Sandbox:
         context.set_memory_limit(MEMORY_LIMIT)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
+        context.eval(GUARDS)
         clock = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
         clock()
@@ -103,14 +119,18 @@ class Sandbox:
             return function(*given)
         except (quickjs.JSException, quickjs.StackOverflow) as error:
             raise ScriptError(_said(str(error))) from None
-        except (TypeError, ValueError, OverflowError, MemoryError) as error:
+        except (TypeError, ValueError, OverflowError, MemoryError, SystemError) as error:
             raise ScriptError(f"it gives what cannot be used: {error}") from None
         finally:
             self._budget.spent += perf_counter() - began
 
     def run(self, code: str) -> None:
         """Run a script in the global scope (SISR 1.0: global tags)."""
-        self._call(self._context.eval, f"{code}\n;0")
+        names = {name for name in LEXICAL.findall(code) if name not in ("extends", "of", "in")}
+        keep = "".join(
+            f"if(typeof {name}!=='undefined')globalThis.{name}={name};" for name in sorted(names)
+        )
+        self._call(self._context.eval(EVALUATE), f";{code}\n;{keep}")
 
     def box(self, value: Json) -> Any:
         """A value from outside, as functions of the sandbox take it."""
@@ -118,17 +138,17 @@ class Sandbox:
 
     def environment(self, text: str, merges: bool) -> Any:
         """What a rule's tags see; rules that it refers to are added in order."""
-        return self._call(self._helper("environment"), text, merges)
+        return self._call(self._helper("environment"), well_formed(text), merges)
 
     def add(self, environment: Any, name: str, box: Any, text: str) -> None:
         """Add the value of a rule that was referred to."""
-        self._call(self._member(environment, "add"), name, box, text)
+        self._call(self._member(environment, "add"), name, box, well_formed(text))
 
     def rule(self, code: str, environment: Any) -> Any:
         """Run the tags of a rule; ``$next(out)`` in them passes a rule that was referred to."""
         function = self._functions.get(code)
         if function is None:
-            body = f"(function (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
+            body = f"{GUARD}(function (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
             function = self._functions[code] = self._call(self._context.eval, body)
         given = [self._member(environment, name) for name in ("rules", "meta", "next")]
         box = self._call(function, *given, self._call(self._context.eval, "({})"))
@@ -139,7 +159,7 @@ class Sandbox:
     def reached(self, environment: Any) -> int:
         """Which of a rule's tags was begun last."""
         try:
-            at = self._context.eval("((e) => e.next.at | 0)")(environment)
+            at = self._context.eval(f"{GUARD}((e) => e.next.at | 0)")(environment)
         except (quickjs.JSException, quickjs.StackOverflow):
             return 0
         return max(int(at), 0)
@@ -171,12 +191,16 @@ class Sandbox:
         if len(text) > RESULT_LIMIT:
             raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
         try:
-            return json.loads(text)
+            return json.loads(well_formed_json(text))
         except RecursionError:
             raise ScriptError("its value is nested too deep") from None
 
     def _helper(self, name: str) -> Any:
-        return self._member(self._helpers, name)
+        found = self._functions.get(f"={name}")
+        if found is None:
+            guard = self._context.eval(GUARD)
+            found = self._functions[f"={name}"] = guard(self._member(self._helpers, name))
+        return found
 
     def _member(self, thing: Any, name: str) -> Any:
         getter = self._functions.get(f".{name}")

@@ -31,7 +31,18 @@ from prima.interpreter.evaluation import (
 from prima.interpreter.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
 from prima.messages import Json
-from prima.prelude import CLOCK, DATE, MEMORY_LIMIT, PRELUDE, STACK_LIMIT
+from prima.prelude import (
+    CLOCK,
+    DATE,
+    GUARD,
+    GUARDS,
+    MEMORY_LIMIT,
+    NAME,
+    PRELUDE,
+    SAFE,
+    STACK_LIMIT,
+)
+from prima.values import well_formed, well_formed_json
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that one evaluation may take."""
@@ -83,11 +94,9 @@ MAY_ASK_TIME = re.compile(
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
 )
 """Code that names ``Date``, or may find it without naming it."""
-HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
-"""Half a surrogate pair in JSON, which is written as an escape; whole pairs are letters."""
 FAILURES = (
     *(quickjs.JSException, quickjs.StackOverflow),
-    *(TypeError, ValueError, OverflowError, MemoryError),
+    *(TypeError, ValueError, OverflowError, MemoryError, SystemError),
 )
 """What the engine raises, and the binding itself for values that it cannot give to Python."""
 
@@ -133,10 +142,12 @@ class Engine:
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
         self._scripts: dict[str, tuple[Any, Hoisted]] = {}
+        context.eval(GUARDS)
         helpers = context.eval(HELPERS)
         context.set("__h", helpers)
         self._help = {
-            name: context.eval(f"__h.{name}") for name in re.findall(r"(\w+): function", HELPERS)
+            name: context.eval(f"{GUARD}(__h.{name})")
+            for name in re.findall(r"(\w+): function", HELPERS)
         }
         context.eval("delete globalThis.__h")
         self.now = self._told = 0
@@ -194,7 +205,13 @@ class Engine:
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
         """A function of scopes: of all of them, if nothing is said."""
         names, withs = (self._names, self._withs) if scopes is None else _head(scopes)
-        return self._call(self._context.eval, (f"(function({names}){{{withs}{{{body}}}}})",))
+        return self._function(names, f"{withs}{{{body}}}")
+
+    def _function(self, parameters: str, body: str) -> Any:
+        """A function of the engine; what code in it throws comes out as an error of ours."""
+        caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
+        code = f"(function({parameters}){{try{{{body}}}{caught}}})"
+        return self._call(self._context.eval, (code,))
 
     def scope(self, **values: Json) -> Scope:
         """A new, empty scope object."""
@@ -229,6 +246,8 @@ class Engine:
                 return self._call(self._help["parse"], (json.dumps(_marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
+        if isinstance(value, str):
+            return well_formed(value)
         # The binding cuts whole numbers to 32 bits.
         return whole(value) if isinstance(value, int) and abs(value) >= 2**31 else value
 
@@ -281,9 +300,7 @@ class Engine:
         text = self._call(self._help["json"], (value,))
         if not isinstance(text, str):
             return None
-        if "\\ud" in text:
-            text = HALF_PAIR.sub(r"\1\\ufffd", text)
-        return json.loads(bounded(text))
+        return json.loads(bounded(well_formed_json(text)))
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
@@ -316,8 +333,8 @@ class Engine:
         if function is None:
             self._check(check_expression, code)
             body = f"{{$s[$n] = (\n{code}\n)}}"
-            wrapped = f"(function({self._names},$s,$n){{{self._withs}{body}}})"
-            function = self._giving[code] = self._call(self._context.eval, (wrapped,))
+            function = self._function(f"{self._names},$s,$n", f"{self._withs}{body}")
+            self._giving[code] = function
         self._call(function, (*scopes, scope, name), MAX_SCRIPT_SECONDS)
 
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
@@ -373,13 +390,13 @@ class Engine:
             try:
                 if script.code != code:
                     self._check(check_script, script.code)
-                return self._call(self._context.eval, (self._wrapped(script),)), script
+                return self._wrapped(script), script
             except ScriptError:  # something in it is not what it seems
                 pass
         script = Hoisted(code, others=sorted(declared_names(code)))
-        return self._call(self._context.eval, (self._wrapped(script),)), script
+        return self._wrapped(script), script
 
-    def _wrapped(self, script: Hoisted) -> str:
+    def _wrapped(self, script: Hoisted) -> Any:
         # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
         # scope, which here is the script's own (VoiceXML 5.3.12).
         loose = sorted(assigned_names(script.code) - {*script.variables})
@@ -390,15 +407,13 @@ class Engine:
             f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
         )
         give = "".join(
-            f"{INTO}.{name}={STRANGE}({name}{HIDDEN},'name',{{value:'{name}',configurable:true}});"
-            for name in script.functions
+            f"{INTO}.{name}={NAME}({name}{HIDDEN},'{name}');" for name in script.functions
         )
         export = "".join(
             f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
         )
         inner = f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
-        outer = f"function({self._names},{INTO}){{{declare}{self._withs}{{{inner}}}}}"
-        return f"({STRANGE}=>{outer})(Object.defineProperty)"
+        return self._function(f"{self._names},{INTO}", f"{declare}{self._withs}{{{inner}}}")
 
 
 def _marked(value: Json) -> Json:
