@@ -280,6 +280,19 @@ def test_s2b_of_one_events_reactions_the_active_applications_goes_first() -> Non
     assert stage.select() == ["ea#2"]
 
 
+@pytest.mark.parametrize("goes_on", [True, False])
+def test_s2b_a_stream_that_has_not_ended_is_active_between_its_abs(goes_on: bool) -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), *([say("Two.")] if goes_on else []))
+    stage.select()
+    stage.request("fa", say("F."), cause=EVENT)
+    stage.request("ea", say("E."), cause=EVENT)
+    stage.at(10).end("ea#1")
+    first = ("ea#3", "S2b") if goes_on else ("fa#1", "S2f")
+    assert stage.select() == [first[0]]
+    assert stage.rule(first[0]) == first[1]
+
+
 def test_s2c_a_parent_that_has_just_ended_goes_before_others() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))

@@ -29,7 +29,8 @@ class Memory:
         self.engaged: dict[str, Stream] = {}
         """Those of the streams in which an AB has engaged the user (K1)."""
         self.floor: list[Stream] = []
-        self._active: Application | None = None
+        self._latest: Stream | None = None
+        """The stream of which an AB has started last."""
 
     @property
     def holder(self) -> Stream | None:
@@ -38,11 +39,14 @@ class Memory:
 
     @property
     def active(self) -> Application | None:
-        """The application whose stream is active: the floor's, else the one that started last."""
-        holder = self.holder
+        """The application whose stream is active: the floor's, else the one that started last.
+
+        With no floor there is none once that stream has ended and nothing runs.
+        """
+        holder, latest = self.holder, self._latest
         if holder is not None:
             return holder.app
-        return self._active if self.running else None
+        return latest.app if latest is not None and (self.running or latest.open) else None
 
     def add(self, ab: Behavior) -> None:
         """Take a requested AB in: waiting where nothing is before it, else linked."""
@@ -66,7 +70,7 @@ class Memory:
         ab.state = RUNNING
         ab.started = now
         self.running[ab.name] = ab
-        self._active = ab.app
+        self._latest = ab.stream
         unit = ab.unit
         for device in ab.in_order:
             if unit is not None and device in unit.devices:
