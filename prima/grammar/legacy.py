@@ -25,7 +25,24 @@ FORMATS = {
 """Tag formats and how their tags are read; where none is told, the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
-_DOLLAR = re.compile(rf"{_STRING}|\$\$|\$(?P<rule>[A-Za-z_]\w*)|\$(?!\w)")
+_PASSED = r"""(?xs)(?P<passed>
+    "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' | `(?:\\.|[^`\\])*`
+    | //[^\n]* | /\*.*?(?:\*/|\Z)
+    | (?:(?<=[=(,:;!&|?{}\[+\-*%<>~^])|(?<![\w$.])(?:return|typeof|case)|\A)\s*
+      /(?:\\[^\n]|\[(?:\\[^\n]|[^\]\\\n])*+\]?+|[^/\\\n\[])++(?:/\w*|(?=\n)|\Z)
+    | \\.
+)"""
+"""Strings, templates, comments and regular expressions: what ``$`` and names mean nothing in."""
+_SKIPPED = re.compile(_PASSED)
+_SIGN = r"(?<![\w$.])\$(?:\$|(?P<rule>[^\W\d]\w*))?(?![\w$])"
+_DOLLAR = re.compile(_SIGN)
+_DOLLARS = re.compile(rf"{_PASSED}|{_SIGN}")
+_DECLARED = re.compile(r"(?<![\w$.])(?:var|let|const|class|function)\s+(\$[\w$]*)")
+_PARAMETERS = re.compile(r"(?<![\w$.])function\b\s*+\*?\s*+[\w$]*+\s*+\(([^()]*)\)")
+_USED = re.compile(
+    r"[{,]\s*\w+\s*:|(?<!\.\.)\.\s*[\w$]+|(?<![\w$])(?P<own>out|rules|meta)(?![\w$])"
+)
+"""Names of SISR as identifiers; those of properties are passed over."""
 _SISR = re.compile(r"(?<![\w.$])(?:out\b\s*[.=\[+]|(?:rules|meta)\s*[.\[])")
 _SLOT = re.compile(r"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)\s*=(?!=)\s*(.+?)\s*")
 _GSL = re.compile(r"<\s*([A-Za-z_]\w*)\s+([^<>]+?)\s*>")
@@ -42,8 +59,7 @@ def settle(document: Document) -> None:
     dialect = FORMATS[document.tag_format]
     codes = [tag.code for tag in document.tags]
     if dialect == "script":
-        modern = any(_SISR.search(code) for code in [*codes, *_globals(document)])
-        if not modern and any(_dollars(code) for code in codes):
+        if _drafted(codes, [tag.code for tag in document.globals]):
             dialect = "legacy"  # as the drafts of SISR had it under the same name
     elif not dialect:
         dialect = _guess(document, codes)
@@ -51,19 +67,39 @@ def settle(document: Document) -> None:
     document.merges = dialect == "legacy" and any(_slots(code) for code in codes)
 
 
-def _globals(document: Document) -> list[str]:
-    return [tag.code for tag in document.globals]
+def _drafted(codes: list[str], globals: list[str]) -> bool:
+    """Whether tags are in the way of the drafts: with ``$`` and without any name of SISR 1.0."""
+    if not any("$" in code for code in codes):
+        return False
+    scripts = [_bare(code) for code in codes]
+    everything = [*scripts, *(_bare(code) for code in globals)]
+    if any(match["own"] for code in everything for match in _USED.finditer(code)):
+        return False
+    declared = {name for code in everything for name in _declared(code)}
+    signs = {match[0] for code in scripts for match in _DOLLAR.finditer(code)}
+    return not signs <= declared
+
+
+def _declared(script: str) -> list[str]:
+    """The names with ``$`` that a script gives to variables and functions of its own."""
+    parameters = " ".join(_PARAMETERS.findall(script))
+    return _DECLARED.findall(script) + re.findall(r"\$[\w$]*", parameters)
+
+
+def _bare(code: str) -> str:
+    """A script without strings, comments and regular expressions."""
+    return _SKIPPED.sub(" ", code)
 
 
 def _guess(document: Document, codes: list[str]) -> str:
-    if any(_SISR.search(code) for code in codes):
+    if any(_SISR.search(_bare(code)) for code in codes):
         return "script"
     bare = all(not _dollars(one) and not _slots(one) and not _value(one) for one in codes)
     return "literals" if bare and not document.globals else "legacy"
 
 
 def _dollars(code: str) -> bool:
-    return any(match["text"] is None for match in _DOLLAR.finditer(code))
+    return _DOLLAR.search(_bare(code)) is not None
 
 
 def _value(code: str) -> bool:
@@ -73,7 +109,7 @@ def _value(code: str) -> bool:
 @lru_cache(maxsize=4096)
 def translate(code: str) -> str:
     """A tag as a script of SISR 1.0."""
-    if _SISR.search(code):
+    if _SISR.search(_bare(code)):
         return code
     if _dollars(code):
         return _from_dollars(code)
@@ -89,14 +125,14 @@ def _from_dollars(code: str) -> str:
     """``$`` is the rule's variable, ``$$`` the last rule's value, ``$name`` that of a rule."""
 
     def put(match: re.Match[str]) -> str:
-        if match["text"] is not None:
-            return match["text"]
+        if match["passed"] is not None:
+            return match["passed"]
         if match[0] == "$$":
             return "rules.latest()"
         return f"rules.{match['rule']}" if match["rule"] else "out"
 
-    script = _DOLLAR.sub(put, code)
-    if _ASSIGNED.search(_DOLLAR.sub("", code)):
+    script = _DOLLARS.sub(put, code)
+    if _ASSIGNED.search(_DOLLARS.sub("", code)):
         return script
     return f"out = ({script}\n);"
 
