@@ -20,6 +20,7 @@ from prima.grammar import (
     load,
     supports,
 )
+from prima.grammar.model import Tag
 from prima.markup.reader import parse
 from prima.markup.tree import Node
 from tests.work import steps
@@ -654,6 +655,22 @@ def test_the_work_of_loading_grows_with_the_length() -> None:
         for count in (200, 2000)
     )
     assert steps(lambda: load(long)) < 11 * steps(lambda: load(short))
+
+
+@pytest.mark.parametrize("last", ["{out=2}", "{out=gone}"])
+def test_the_tags_of_a_rule_are_not_compared_with_each_other(
+    last: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compared: list[Tag] = []
+
+    def equal(one: Tag, other: object) -> bool:
+        compared.append(one)
+        return one is other
+
+    monkeypatch.setattr(Tag, "__eq__", equal)
+    (found,) = load(f"{SCRIPT}$r = x {'{out=1}' * 500} {last};").match("x")
+    assert (found.interpretation, found.error is None) in [(2, True), (None, False)]
+    assert not compared
 
 
 RULE = '<rule id="r">x<tag>y</tag></rule>'

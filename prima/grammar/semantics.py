@@ -18,9 +18,6 @@ from prima.grammar.ranking import Frame, Value
 from prima.grammar.text import join
 from prima.messages import Json
 
-MOST_RULES = 20_000
-"""How many rules one utterance may pass through."""
-
 
 @dataclass(frozen=True, slots=True)
 class SemanticError:
@@ -158,13 +155,15 @@ class Interpreter:
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
-        code = {id(tag): translate(tag.code) if legacy else tag.code for tag in tags}
+        codes = [translate(tag.code) if legacy else tag.code for tag in tags]
+        numbered = enumerate(codes)
         environment: Any = None
         try:
             environment = sandbox.environment(self.text(result), result.document.merges)
             for event in frame.events:
                 if isinstance(event, Tag):
-                    pieces.append(f"$next.at = {tags.index(event)};\n{code[id(event)]}\n;")
+                    number, code = next(numbered)
+                    pieces.append(f"$next.at = {number};\n{code}\n;")
                 elif isinstance(event, Frame):
                     inner = self._results[id(event)]
                     sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
@@ -174,7 +173,7 @@ class Interpreter:
                     pieces.append("$next(out);")
             result.box = sandbox.rule("\n".join(pieces), environment)
         except ScriptError as error:
-            told = [(tag, code[id(tag)]) for tag in tags]
+            told = list(zip(tags, codes, strict=True))
             reached = sandbox.reached(environment) if environment is not None else 0
             raise Failure(_failure(error, told, sandbox, reached)) from None
 
