@@ -21,6 +21,7 @@ from prima.grammar import (
     supports,
 )
 from prima.grammar.model import Tag
+from prima.grammar.sandbox import Sandbox
 from prima.markup.reader import parse
 from prima.markup.tree import Node
 from tests.work import steps
@@ -655,6 +656,27 @@ def test_the_work_of_loading_grows_with_the_length() -> None:
         for count in (200, 2000)
     )
     assert steps(lambda: load(long)) < 11 * steps(lambda: load(short))
+
+
+def test_tags_are_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    checked: list[str] = []
+    check = Sandbox.fault
+
+    def noted(sandbox: Sandbox, code: str) -> str:
+        checked.append(code)
+        return check(sandbox, code)
+
+    monkeypatch.setattr(Sandbox, "fault", noted)
+    grammar = load(f"{SCRIPT}$r = x {{out=1}} y {{if (1)}} | z {{out=2}};")
+    for said in ("x y", "x y", "z", "z"):
+        grammar.match(said)
+    assert checked == ["out=1", "if (1)", "out=2"]
+
+
+def test_a_tag_that_is_no_script_by_itself_is_told_at_its_place() -> None:
+    error = load(f"{SCRIPT}$r = x {{out=1}}\n  {{if (0)}} {{out=2}};").match("x")[0].error
+    assert error is not None and error.place == Place("grammar", 6, 3)
+    assert error.message.startswith('The tag "if (0)" failed: SyntaxError')
 
 
 @pytest.mark.parametrize("last", ["{out=2}", "{out=gone}"])

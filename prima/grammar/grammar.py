@@ -110,7 +110,7 @@ class Grammar:
                 f'"{" ".join(tag.code.split())[:60]}" is not ECMAScript: what needs it is not taken.',
             )
             for tag in tags
-            if not sandbox.checks(translate(tag.code) if legacy else tag.code)
+            if sandbox.fault(translate(tag.code) if legacy else tag.code)
         ]
 
     def rule(self, name: str) -> Grammar:

@@ -138,5 +138,7 @@ class Document:
     meta: dict[str, str] = field(default_factory=dict)
     dialect: str = ""
     """How tags are read: ``script``, ``literals`` or ``legacy``."""
+    faults: dict[str, str] = field(default_factory=dict)
+    """Scripts of tags that were needed, and why each is none by itself; empty if it is one."""
     merges: bool = False
     """Whether slots that referenced rules fill are those of the rule that refers."""

@@ -84,6 +84,15 @@ return {
 }; })()
 """
 
+CHECK = r"""
+(function (eval) {
+  return function () {
+    try { eval('throw 0;\n' + arguments[0]); } catch (error) { if (error !== 0) throw error; }
+  };
+})(eval)
+"""
+"""Compiles a script by itself, which ends before it begins; it declares nothing outside."""
+
 
 LEXICAL = re.compile(r"\b(?:let|const|class)\s+([A-Za-z_$][\w$]*)")
 """Names that code may declare for itself alone where it is evaluated, not for the global scope."""
@@ -108,6 +117,7 @@ class Sandbox:
         clock(float(budget.now))
         self._context = context
         self._helpers = context.eval(HELPERS)
+        self._check = context.eval(CHECK)
         self._functions: dict[str, Any] = {}
         self._budget = budget
 
@@ -164,13 +174,13 @@ class Sandbox:
             return 0
         return max(int(at), 0)
 
-    def checks(self, code: str) -> bool:
-        """Whether a script is well-formed by itself."""
+    def fault(self, code: str) -> str:
+        """Why a script is not well-formed by itself; empty if it is."""
         try:
-            self._context.eval(f"(void new Function({json.dumps(code)}))")
-        except (quickjs.JSException, quickjs.StackOverflow):
-            return False
-        return True
+            self._check(code)
+        except (quickjs.JSException, quickjs.StackOverflow) as error:
+            return _said(str(error))
+        return ""
 
     def carry(self, box: Any) -> str:
         """A boxed value as text, for :meth:`take` of another sandbox; functions are undefined there."""

@@ -157,6 +157,8 @@ class Interpreter:
         tags = [event for event in frame.events if isinstance(event, Tag)]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
         numbered = enumerate(codes)
+        told = list(zip(tags, codes, strict=True))
+        _check(told, result.document, sandbox)
         environment: Any = None
         try:
             environment = sandbox.environment(self.text(result), result.document.merges)
@@ -173,9 +175,8 @@ class Interpreter:
                     pieces.append("$next(out);")
             result.box = sandbox.rule("\n".join(pieces), environment)
         except ScriptError as error:
-            told = list(zip(tags, codes, strict=True))
             reached = sandbox.reached(environment) if environment is not None else 0
-            raise Failure(_failure(error, told, sandbox, reached)) from None
+            raise _failure(tags[min(reached, len(tags) - 1)], str(error)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
         sandbox = self._sandbox(result.document)
@@ -192,11 +193,12 @@ class Interpreter:
             from prima.grammar.sandbox import Sandbox, ScriptError
 
             found = self._sandboxes[id(document)] = Sandbox(self.budget)
+            _check([(tag, tag.code) for tag in document.globals], document, found)
             for tag in document.globals:
                 try:
                     found.run(tag.code)
                 except ScriptError as error:
-                    raise Failure(_failure(error, [(tag, tag.code)], found)) from None
+                    raise _failure(tag, str(error)) from None
         return found
 
 
@@ -205,11 +207,23 @@ def _result(frame: Frame, first: int) -> _Result:
     return _Result(document, document, first)
 
 
-def _failure(
-    error: Exception, tags: list[tuple[Tag, str]], sandbox: Any, reached: int = 0
-) -> SemanticError:
-    """The failure with the tag where it is: one that is no script, or the last one begun."""
-    broken = [tag for tag, code in tags if not sandbox.checks(code)]
-    tag = broken[0] if broken else tags[min(reached, len(tags) - 1)][0]
+def _check(tags: list[tuple[Tag, str]], document: Document, sandbox: Any) -> None:
+    """Each tag is a script by itself (SISR 1.0 section 3); whether it is one is asked once.
+
+    Raises:
+        Failure: one is none.
+    """
+    known = document.faults
+    for tag, code in tags:
+        fault = known.get(code)
+        if fault is None:
+            fault = sandbox.fault(code)
+            if not fault or fault.startswith("SyntaxError"):  # all else is want of room
+                known[code] = fault
+        if fault:
+            raise _failure(tag, fault)
+
+
+def _failure(tag: Tag, why: str) -> Failure:
     shown = json.dumps(" ".join(tag.code.split())[:60], ensure_ascii=False)
-    return SemanticError(f"The tag {shown} failed: {error}.", tag.where())
+    return Failure(SemanticError(f"The tag {shown} failed: {why}.", tag.where()))
