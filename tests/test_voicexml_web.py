@@ -49,6 +49,36 @@ def test_each_submit_is_sent_and_answered_anew() -> None:
     assert len(call.phases("send")) == 3
 
 
+def asks(word: str, then: str = "") -> str:
+    """A document that asks for one word, by a grammar of its own."""
+    grammar = f"""<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar">
+        <rule id="r">{word}</rule></grammar>"""
+    return vxml(f"""<form><field name="x"><prompt>{word}?</prompt>{grammar}
+        <filled>Got <value expr="x"/>. {then}</filled></field></form>""")
+
+
+@pytest.mark.parametrize("method", ["get", "post"])
+def test_another_document_of_the_same_uri_listens_with_its_own_grammars(method: str) -> None:
+    again = f'<submit next="{SHOP}" method="{method}"/>'
+    call = Online({SHOP: asks("tea", again)}, block(again))
+    call.play()
+    call.web = {SHOP: asks("milk")}
+    call.answer("tea", "milk")
+    assert call.said() == ["tea?", "Got tea.", "milk?", "Got milk."]
+
+
+def test_two_subdialogs_of_the_same_uri_listen_with_their_own_grammars() -> None:
+    call = Online(
+        {SHOP: asks("tea", "<return/>")},
+        f"""<form><var name="a" expr="1"/><subdialog name="s" src="{SHOP}" namelist="a"/>
+        <subdialog name="t" src="{SHOP}" namelist="a"/></form>""",
+    )
+    call.play()
+    call.web = {SHOP: asks("milk", "<return/>")}
+    call.answer("tea", "milk")
+    assert call.said() == ["tea?", "Got tea.", "milk?", "Got milk."]
+
+
 def test_data_of_a_host_is_a_document() -> None:
     call = Online(
         {"http://x.example/w?q": '<w><sky c="1">blue</sky></w>'},

@@ -42,7 +42,8 @@ class Inputs:
 
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
-        self._loaded: dict[tuple[str, int, str], Matcher] = {}
+        self._loaded: dict[tuple[str, int, str], tuple[Page, Matcher]] = {}
+        """With the page that each is of: the next one of its URI may be another document."""
         self._active: list[Active] = []
         """What listens in the wait that there is."""
 
@@ -212,16 +213,19 @@ class Inputs:
 
     def _load(self, node: Node, page: Page, uri: str) -> Matcher:
         key = (page.uri, node.index, uri)
-        if key not in self._loaded:
-            self._loaded[key] = matcher(
-                node,
-                page,
-                uri,
-                lambda name: held(self.owner, name, node),
-                self._failed,
-                lambda: self.owner.engine.now,
-            )
-        return self._loaded[key]
+        kept = self._loaded.get(key)
+        if kept is not None and kept[0] is page:
+            return kept[1]
+        made = matcher(
+            node,
+            page,
+            uri,
+            lambda name: held(self.owner, name, node),
+            self._failed,
+            lambda: self.owner.engine.now,
+        )
+        self._loaded[key] = page, made
+        return made
 
     def _failed(self, node: Node, message: str) -> None:
         """A tag failed while the user was being understood: the grammar takes it not."""
