@@ -741,3 +741,61 @@ def test_what_nobody_understood_is_recorded_and_played_back() -> None:
         {YES}<nomatch>You said <audio expr="application.lastresult$.recording"/><exit/></nomatch>
         </field></form>"""
     assert run(text, "perhaps").said()[-1] == "You said perhaps"
+
+
+TELLS = "<catch><log><value expr=\"_event + ': ' + _message\"/></log><exit/></catch>"
+
+
+@pytest.mark.parametrize(
+    ("content", "logged"),
+    [
+        ("<throw event=\"e\" messageexpr=\"new Error('boom')\"/>", "e: Error: boom"),
+        ('<throw event="e" messageexpr="[1,2]"/>', "e: 1,2"),
+        ('<throw event="e" messageexpr="null"/>', "e: null"),
+        ("<throw eventexpr=\"['e']\" messageexpr=\"new String('s')\"/>", "e: s"),
+        ("<throw eventexpr=\"new Date(0).getTime()\" messageexpr=\"({})\"/>", "0: [object Object]"),
+        ("<goto expr=\"new String('#b')\"/>", "b"),
+        ("<goto expr=\"['#b']\"/>", "b"),
+        ("<goto expritem=\"new String('two')\"/>", "two"),
+    ],
+)  # fmt: skip
+def test_what_an_attributes_expression_gives_becomes_text(content: str, logged: str) -> None:
+    text = f"""{TELLS}<form><block>{content}</block><block name="one"><exit/></block>
+        <block name="two"><log>two</log><exit/></block></form>
+        <form id="b"><block><log>b</log></block></form>"""
+    assert run(text).logs() == [logged]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<throw eventexpr="undefined"/>',
+        '<throw eventexpr="null"/>',
+        '<throw event="e" messageexpr="void 0"/>',
+        '<goto expr="void 0"/>',
+        '<goto expr="null"/>',
+        '<goto expritem="void 0"/>',
+        '<submit expr="null"/>',
+        '<script srcexpr="void 0"/>',
+        '<data name="d" srcexpr="null"/>',
+        '<prompt>One <mark nameexpr="void 0"/> two.</prompt>',
+    ],
+)
+def test_an_attributes_expression_without_a_value_is_error_semantic(content: str) -> None:
+    logged = f'<catch><log><value expr="_event"/></log><exit/></catch><form><block>{content}'
+    assert run(f"{logged}</block></form>").logs() == ["error.semantic"]
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        '<transfer name="t" destexpr="void 0"/>',
+        '<subdialog name="s" srcexpr="void 0"/>',
+        '<subdialog name="s" src="#sub"/>',
+    ],
+)
+def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> None:
+    text = f"""<form><catch><log><value expr="_event"/></log><exit/></catch>{item}</form>
+        <form id="sub"><catch><log>in</log><return event="error.semantic"/></catch>
+        <block><return eventexpr="void 0"/></block></form>"""
+    assert run(text).logs()[-1:] == ["error.semantic"]

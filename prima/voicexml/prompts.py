@@ -61,6 +61,12 @@ SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v; }""".replace("\n", "")
 """What is said of a value in the engine: of a node of ``data`` its text, and of what has words of
 its own, as an array, these."""
+WORD = "function (v) { return v === void 0 ? null : `${v}`; }"
+"""What an attribute says by a value in the engine: nothing where it is undefined (5.1)."""
+NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
+"""The same where it names something: null is no name, and no URI."""
+TOLD = frozenset(["message", "aai"])
+"""Attributes that name nothing: what they say is only told."""
 APART = frozenset(["p", "s", "paragraph", "sentence"])
 SENTENCE = Cue(0, "sentence")
 UNKNOWN_MS = 1000
@@ -152,16 +158,29 @@ class Speaker:
             raise self.failure(error, node, "cond") from None
 
     def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
-        """An attribute, or its ``expr`` form, as a word."""
+        """An attribute, or its ``expr`` form, as a word.
+
+        Raises:
+            Thrown: ``error.semantic`` where the expression fails or gives none.
+        """
         dynamic = {"next": "expr", "nextitem": "expritem"}.get(name, f"{name}expr")
         if name in node.attributes:
             return node.get(name)
         if dynamic not in node.attributes:
             return ""
+        found = self._said(node, dynamic, WORD if name in TOLD else NAME, context, local)
+        if found is None:
+            raise self.failure(ScriptError("it has no value"), node, dynamic)
+        return str(found)
+
+    def _said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
+        """What a function of the engine makes of the value of an attribute's expression."""
+        code = node.get(attribute)
         try:
-            return self.engine.text(node.get(dynamic), context.scopes(local))
+            self.engine.compile(code)  # what does not compile is told by its own place
+            return self.engine.value(f"({how})({code}\n)", context.scopes(local))
         except ScriptError as error:
-            raise self.failure(error, node, dynamic) from None
+            raise self.failure(error, node, attribute) from None
 
     def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
         """The elements of a foreach's array, as the engine's values."""
