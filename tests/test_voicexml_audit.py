@@ -79,6 +79,16 @@ def test_a_subdialog_of_the_same_root_has_one_of_its_own() -> None:  # 2.3.4
 # 2.1 and appendix C: the algorithm -----------------------------------------------------------
 
 
+@pytest.mark.parametrize(
+    ("expr", "logged"), [("null", []), ("false", []), ("void 0", ["in"]), ("undefined", ["in"])]
+)
+@pytest.mark.parametrize("name", ["", 'name="b"'])
+def test_an_item_is_visited_while_its_variable_is_undefined(
+    name: str, expr: str, logged: list[str]
+) -> None:  # 2.1.6
+    assert run(f'<form><block {name} expr="{expr}"><log>in</log></block></form>').logs() == logged
+
+
 def test_what_fills_no_item_is_no_nomatch() -> None:  # 2.1.6, C
     call = run(
         f"""<form>{grammar("hi", "out.other = 1")}<nomatch>{FAIL}</nomatch>

@@ -293,9 +293,11 @@ class Machine:
         if item.get("name"):
             self.content.declare(item, context.dialog, context, self.local())
             return
-        expr = "expr" if "expr" in item.attributes else ""
-        if expr and self.content.value(item, expr, context, self.local()) is not None:
-            context.visited.add(item.index)
+        if "expr" in item.attributes:
+            guard, name = self.local(), "guard"
+            self.content.put(guard, name, item, "expr", context, self.local())
+            if self.engine.defined(guard, name):  # null is a value, too
+                context.visited.add(item.index)
 
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, else the first unfilled one whose condition holds."""
