@@ -120,6 +120,26 @@ def test_a_simple_result_of_a_forms_grammar_fills_no_item() -> None:  # 3.1.6.1
     assert call.logs() == ["pass"]
 
 
+@pytest.mark.parametrize(
+    "held",
+    [
+        "{}<field name='n'><prompt>Which?</prompt></field>",
+        "<field name='n'>{}<prompt>Which?</prompt></field>",
+        "<field name='n' slot='a.n'>{}<prompt>Which?</prompt></field>",
+    ],
+)
+def test_a_slot_that_is_null_fills_its_item(held: str) -> None:  # 3.1.6
+    taken = grammar("none", "out = {n: null, a: {n: null}}")
+    text = f"<form>{held.format(taken)}<block>{holds('n === null')}</block></form>"
+    assert run(text, "none").logs() == ["pass"]
+
+
+def test_a_slot_that_is_undefined_fills_no_item() -> None:  # 3.1.6
+    taken = grammar("none", "out = {m: 1, n: undefined}")
+    text = f"<form>{taken}<field name='m'/><field name='n'/><filled mode='any'>{holds('n == void 0')}</filled></form>"
+    assert run(text, "none").logs() == ["pass"]
+
+
 def test_a_goto_to_no_item_is_handled_in_the_dialogs_scope() -> None:  # 5.3.7
     call = run(
         f"""<form><catch event="error.badfetch">{PASS}</catch><field name="f">{YES}

@@ -27,6 +27,9 @@ from prima.voicexml.state import (
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
+ABSENT = object()
+"""What stands for a slot that an interpretation lacks: null is a value."""
+
 
 class Items:
     """Fills the form items of one application."""
@@ -90,13 +93,12 @@ class Items:
         """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""
         owner, found = heard.owner, heard.interpretation
         if owner.tag not in ("form", "menu"):
-            value = slot_of(found, _slot(owner))
-            self._give(context, owner, found if value is None else value, heard)
+            self._give(context, owner, slot_of(found, _slot(owner), found), heard)
             return [owner]
         filled = []
         for item in self.owner.items(context):
-            value = slot_of(found, _slot(item)) if item.tag in INPUTS else None
-            if value is not None and item.get("name"):
+            value = slot_of(found, _slot(item), ABSENT) if item.tag in INPUTS else ABSENT
+            if value is not ABSENT and item.get("name"):
                 self._give(context, item, value, heard)
                 filled.append(item)
         return filled
@@ -202,10 +204,10 @@ def _slot(item: Node) -> str:
     return item.get("slot") or item.get("name")
 
 
-def slot_of(found: Json, path: str) -> Json:
-    """A slot's value in an interpretation; a path may have dots (3.1.6)."""
+def slot_of(found: Json, path: str, otherwise: Any) -> Any:
+    """A slot's value in an interpretation, which may be null; a path may have dots (3.1.6)."""
     for part in path.split("."):
-        if not isinstance(found, dict):
-            return None
-        found = found.get(part)
+        if not isinstance(found, dict) or part not in found:
+            return otherwise
+        found = found[part]
     return found
