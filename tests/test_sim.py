@@ -210,6 +210,36 @@ def test_the_user_answers_late_stays_silent_or_interrupts(tmp_path: Path) -> Non
     assert when(early, "Thanks.") < when(late, "Thanks.") - 2, "the question is cut short"
 
 
+LONG = "Well, let me think, I should like to see the one that hangs beside the window, please."
+"""What takes longer to say than a question waits."""
+ASKING = """<form id="a"><field name="q" type="text">
+    <prompt timeout="2s">Which painting would you like to see first?</prompt>
+    <noinput><log>silence</log></noinput><filled><log expr="q"/><exit/></filled></field></form>"""
+
+
+@pytest.mark.parametrize("at", ["0s", "1s", "5s"], ids=["before it", "in it", "after it"])
+@pytest.mark.parametrize("bargein", ["true", "false"])
+def test_a_question_waits_while_the_user_speaks(tmp_path: Path, at: str, bargein: str) -> None:
+    body = ASKING.replace('<prompt timeout="2s">', f'<prompt timeout="2s" bargein="{bargein}">')
+    body = body.replace("<field", "<block><speak>Hello.</speak></block><field")
+    transcript = rehearse(tmp_path, body, f'<when at="{at}"><say>{LONG}</say></when>')
+    assert [r["message"] for r in transcript.records if r["phase"] == "log"] == [LONG]
+
+
+def test_a_touch_does_not_begin_the_timeout_while_the_user_speaks(tmp_path: Path) -> None:
+    script = f"""<when at="4s"><say>{LONG}</say></when>
+      <when at="4.5s"><touch sensor="head"/></when>"""
+    transcript = rehearse(tmp_path, ASKING, script)
+    assert [r["message"] for r in transcript.records if r["phase"] == "log"] == [LONG]
+
+
+def test_the_timeout_begins_again_when_the_user_hangs_up_as_he_speaks(tmp_path: Path) -> None:
+    script = f"""<when at="1s"><say>{LONG}</say></when><when at="6s"><hang-up/></when>"""
+    transcript = rehearse(tmp_path, ASKING, script, until="20s")
+    logs = [(r["time"], r["message"]) for r in transcript.records if r["phase"] == "log"]
+    assert logs[0] == (8.0, "silence")
+
+
 def test_leaving_is_noticed_even_when_nothing_else_happens(tmp_path: Path) -> None:
     body = '<form id="a"><on event="human.lost"><speak>Come back.</speak><exit/></on></form>'
     script = '<person x="1" y="0"/><when at="2s"><leave/></when>'

@@ -615,9 +615,25 @@ def test_hotword_may_be_a_property(played: Played) -> None:  # 6.3.2
     assert logs(played(hot, (500, "what")))[0] == "no"
 
 
+LONG_ANSWER = "the one that stands at the very end of the long corridor"
+
+# The timeout and the user's speech (4.1.7) ---------------------------------------------------
+
+
+@pytest.mark.parametrize("bargein", ["true", "false"])
+@pytest.mark.parametrize("at", [0, 2000, 2900])
+def test_the_timeout_does_not_run_while_the_user_speaks(
+    played: Played, at: int, bargein: str
+) -> None:
+    asking = f"""<form><field name="f"><prompt bargein="{bargein}" timeout="500ms">Which one?</prompt>
+    <option>{LONG_ANSWER}</option><noinput><log>silence</log></noinput>
+    <filled><log expr="f"/></filled></field></form>"""
+    hello = asking.replace("<form>", "<form><block>Hello, and good morning.</block>")
+    assert logs(played(hello, (at, LONG_ANSWER))) == [LONG_ANSWER]
+
+
 # Speech that is too long (6.3.2) --------------------------------------------------------------
 
-LONG_ANSWER = "the one that stands at the very end of the long corridor"
 LIMITED = f"""<form><property name="maxspeechtimeout" value="1s"/><field name="f"><prompt>Which?</prompt>
 <option dtmf="1">{LONG_ANSWER}</option><option dtmf="2">this</option>
 <catch event="maxspeechtimeout"><log>too long</log><exit/></catch>

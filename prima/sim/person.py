@@ -180,6 +180,7 @@ class Person:
                 told = {**self.robot.marks_passed(script.began), **script.told}
                 made.append(Heard(script.speaking, told))
                 script.speaking = ""
+                self.robot.speech_ends()
             if not script.left:
                 break
             doing = script.left.pop(0)
@@ -252,6 +253,7 @@ class Person:
                 data = {"recorded": said, "duration": spoken}
             if script.speaking:
                 script.speaking, script.time = "", now
+                self.robot.speech_ends()
         return Occurred("connection.disconnect.hangup", "user", data)
 
     def _happen(self, doing: Doing) -> list[Inbound]:

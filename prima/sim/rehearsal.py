@@ -206,7 +206,7 @@ class Rehearsal:
             self._device(order).order(now, order)
         self._deadline, self._ended = session.deadline(), session.over
         if said:
-            self.robot.speech_over(now)
+            self.robot.listen_on()
         records = session.drain()
         self.made += len(records)
         self._full = self.made > MAX_RECORDS or session.written > MAX_WRITTEN

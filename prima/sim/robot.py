@@ -121,6 +121,8 @@ class Robot:
         """Of Commands whose loop has ended at this instant: a later one begins afresh (U2)."""
         self._owners: dict[str, Task] = {}
         self._now = 0
+        self._voices = 0
+        """How many things the user is saying."""
         self._seen = False
         self._unseen_since: int | None = None
         self.told_of: frozenset[str] | None = None
@@ -458,7 +460,8 @@ class Robot:
                 task.ends = max(now, task.speech_ends)
             if task.listens is not None and task.listens <= now:
                 task.listens, task.listening = None, True
-                task.ends = now + max(int(task.command.args["timeout"]), 1)
+                if not self._voices:
+                    self._wait_for_answer(task)
                 reports.append(Listening(task.id))
             elif task.ends is not None and task.ends <= now:
                 reports += self._end(task)
@@ -603,11 +606,16 @@ class Robot:
                 return task
         return None
 
+    def _wait_for_answer(self, task: Task) -> None:
+        """The timeout of a question that listens begins: nobody speaks."""
+        task.ends = self._now + max(int(task.command.args["timeout"]), 1)
+
     def speech_begins(self, now: int) -> None:
         """The user begins to speak: a question that listens, or may be interrupted, waits.
 
         With hotword bargein the robot speaks on until it has understood (VoiceXML 2.0, 4.1.5.1).
         """
+        self._voices += 1
         task = self._question()
         if task is None or task.fails is not None:
             return
@@ -655,8 +663,14 @@ class Robot:
             return {"markname": None}
         return {"markname": name, "marktime": until - time}
 
-    def speech_over(self, now: int) -> None:
-        """The user has spoken and nobody took it as the answer: listen on."""
+    def speech_ends(self) -> None:
+        """The user has said something to its end, or has broken off."""
+        self._voices -= 1
+
+    def listen_on(self) -> None:
+        """What the user has said was nobody's answer: his time for one begins again."""
+        if self._voices:
+            return
         for task in self.tasks.values():
             if task.command.type == "q-and-a" and task.listening and task.ends is None:
-                task.ends = now + max(int(task.command.args["timeout"]), 1)
+                self._wait_for_answer(task)
