@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.interpreter.evaluation import PULSE
+from prima.scheduler.selection import policy_named
 from prima.session import Session
 from prima.sim import rehearsal as simulation
 from prima.sim.rehearsal import Rehearsal
@@ -167,6 +168,61 @@ def test_a_device_that_fails_and_one_that_hangs_are_events(tmp_path: Path) -> No
     hangs = '<when at="0.1s"><fail device="speaker" hangs="true"/></when>'
     hung = rehearse(tmp_path, body, hangs, until="600s")
     assert "Speak fails: The device did not end in time." in told(hung)
+
+
+BREAKS = '<when at="0.7s"><fail device="{}" {}/></when>'
+AT_ONCE = {
+    "a sentence": ("speaker", "<speak>One, two, three, four.</speak>"),
+    "a question": (
+        "speech-recognition",
+        '<field name="q" type="text"><prompt>Who?</prompt></field>',
+    ),
+    "a turn": ("locomotion", '<turn angle="180"/>'),
+    "a loop": ("localization", '<topological-move to="hall"/>'),
+    "a unit": (
+        "speaker",
+        """<iu><par><speak>One, two, three, four.</speak><move-head pan="80" tilt="0"/></par></iu>""",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", AT_ONCE)
+def test_a_device_that_fails_ends_what_runs_on_it_at_once(tmp_path: Path, kind: str) -> None:
+    device, doing = AT_ONCE[kind]
+    if not doing.startswith("<field"):
+        doing = f"<block>{doing}<speak>Never.</speak></block>"
+    body = f"""<form id="a">{doing}
+      <on event="error.device"><log expr="event.name"/><exit/></on></form>"""
+    transcript = rehearse(tmp_path, body, BREAKS.format(device, ""))
+    logs = [(r["time"], r["message"]) for r in transcript.records if r["phase"] == "log"]
+    assert logs == [(0.7, f"error.device.{device}")]
+    assert f"the {device} fails" in told(transcript)
+    assert '"Never."' not in told(transcript)
+
+
+@pytest.mark.parametrize("how", ["", 'hangs="true"'], ids=["fails", "hangs"])
+def test_a_device_that_breaks_stops_the_wheels_and_nobody_else(tmp_path: Path, how: str) -> None:
+    body = """<form id="a"><block><set-speed-and-time speed="0.3" time="5s"/></block>
+      <on event="error"/></form>"""
+    other = '<form id="a"><block><speak>I talk for a second.</speak></block></form>'
+    made = rehearse(tmp_path, body, BREAKS.format("locomotion", how), other=other)
+    assert not [r for r in made.records if r["phase"] == "fail" and r["app"] == "other"]
+    rehearsal = Rehearsal(api.load_scenario(tmp_path / "scenario.xml").cast, policy_named("prima"))
+    moving = [(rehearsal.now, rehearsal.world.moving) for _ in rehearsal.run()]
+    assert {time for time, moves in moving if moves} <= set(range(700))
+    assert (0, True) in moving
+
+
+def test_a_device_that_hangs_is_given_up_120_seconds_after_what_it_may_take(tmp_path: Path) -> None:
+    body = """<form id="a"><field name="q" type="text">
+      <prompt timeout="7s">Who?</prompt><noinput><log>silence</log></noinput></field>
+      <on event="error.device"><log expr="event.name"/><exit/></on></form>"""
+    script = BREAKS.format("speech-recognition", 'hangs="true"')
+    script += '<when at="5s"><touch sensor="head"/><repair device="speech-recognition"/></when>'
+    transcript = rehearse(tmp_path, body, script, until="600s")
+    logs = [(r["time"], r["message"]) for r in transcript.records if r["phase"] == "log"]
+    assert logs == [(120.0 + 7.0 + 0.5 * len("Who?"), "error.device.speaker")]
+    assert "the speech-recognition hangs" in told(transcript)
 
 
 def test_a_blocked_way_and_an_unknown_place_are_events(tmp_path: Path) -> None:

@@ -268,8 +268,10 @@ class Person:
             case "sensor":
                 self.sensors[values["name"]] = _plain(values["value"])
             case "fail":
-                self.robot.broken[values["device"]] = bool(values["hangs"])
-                return [Narrated("environment", f"the {values['device']} fails")]
+                device, hangs = values["device"], bool(values["hangs"])
+                how = "hangs" if hangs else "fails"
+                note = Narrated("environment", f"the {device} {how}")
+                return [note, *self.robot.broke(device, hangs)]
             case "repair":
                 self.robot.broken.pop(values["device"], None)
                 return [Narrated("environment", f"the {values['device']} works again")]

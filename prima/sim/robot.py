@@ -44,6 +44,7 @@ AFTERMATH_MS = 1000
 """How long after it moved the body a dance answers for where the robot is (X5)."""
 FAILING_MS = 300
 """How long a broken device tries before it says that it fails."""
+FAILS = "the device fails"
 ITS_OWN = frozenset({"human", "position", "moving"})
 """What it measures itself, by the first part of the sensors' names."""
 
@@ -173,8 +174,27 @@ class Robot:
 
     def _abort(self, behavior: str) -> None:
         task = self.tasks.pop(behavior, None)
-        if task is not None and "locomotion" in task.devices - task.lost:
+        if task is not None:
+            self._stand(task)
+
+    def _stand(self, task: Task) -> None:
+        """Stop the wheels, where it is this task that turns them."""
+        if "locomotion" in task.devices - task.lost:
             self.world.drive = (0.0, 0.0)
+
+    def broke(self, device: str, hangs: bool) -> list[Inbound]:
+        """A device fails, and what runs on it with it (E1); or it hangs, and says nothing more."""
+        self.broken[device] = hangs
+        told: list[Inbound] = []
+        for task in [one for one in self.tasks.values() if device in one.devices - one.lost]:
+            self._stand(task)
+            if hangs:
+                task.ends = task.listens = task.control = None
+                task.listening = False
+            else:
+                task.fails = device, FAILS
+                told += self._end(task)
+        return told
 
     def _start(self, order: Order) -> None:
         command = order.command
@@ -190,7 +210,7 @@ class Robot:
         if broken:
             if not self.broken[broken[0]]:
                 task.ends = self._now + FAILING_MS
-                task.fails = (broken[0], "the device fails")
+                task.fails = broken[0], FAILS
             return
         row = self.profile.commands[command.type]
         if (command.text or command.cues) and (order.loop <= 1 or order.resumed):
