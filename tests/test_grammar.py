@@ -240,6 +240,21 @@ def test_values_of_other_documents_that_json_lacks(uri: str) -> None:
     assert one.interpretation == [None, None, None, {"n": None}]
 
 
+@pytest.mark.parametrize(("greedy", "fits"), [(6, True), (0, False)])
+def test_further_documents_have_less_memory_for_their_tags(greedy: int, fits: bool) -> None:
+    eats = "var k = []; while (k.length < 3000) k.push('x'.repeat(1000) + k.length);"
+    files = {
+        f"http://x.org/{n}": f"{SCRIPT}$r = {f'$<{n + 1}>' if n < 6 else 'x'}"
+        f" {{!{{{eats if n == greedy else ''} out = {n}}}!}};"
+        for n in range(7)
+    }
+    grammar = load(
+        files["http://x.org/0"], base="http://x.org/0", fetch=lambda uri: files[uri].encode()
+    )
+    (one,) = grammar.match("x")
+    assert (one.interpretation, one.error is None) == ((0, True) if fits else (None, False))
+
+
 def test_documents_of_several_formats_and_through_several() -> None:
     grammar = reaching(
         "$r = $<plain.gram#up> {out = rules.latest().code} | $<plain.gram>~<application/srgs>;"

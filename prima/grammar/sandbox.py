@@ -29,6 +29,8 @@ from prima.values import well_formed, well_formed_json
 
 DONE = 1_000_000
 """What comes after a rule's last tag."""
+LEAST_MEMORY = 1024 * 1024
+"""Bytes that each sandbox may use, however many there are: each further one has half as many."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves the engine."""
 
@@ -105,9 +107,10 @@ class ScriptError(Exception):
 class Sandbox:
     """The ECMAScript of one grammar document while one utterance is interpreted."""
 
-    def __init__(self, budget: Budget) -> None:
+    def __init__(self, budget: Budget, others: int = 0) -> None:
+        """``others`` is how many sandboxes the same utterance has already."""
         context = quickjs.Context()
-        context.set_memory_limit(MEMORY_LIMIT)
+        context.set_memory_limit(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         context.eval(GUARDS)

@@ -192,7 +192,7 @@ class Interpreter:
         if found is None:
             from prima.grammar.sandbox import Sandbox, ScriptError
 
-            found = self._sandboxes[id(document)] = Sandbox(self.budget)
+            found = self._sandboxes[id(document)] = Sandbox(self.budget, len(self._sandboxes))
             _check([(tag, tag.code) for tag in document.globals], document, found)
             for tag in document.globals:
                 try:
