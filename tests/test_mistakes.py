@@ -235,7 +235,7 @@ def scenario(content: str, attributes: str = "") -> str:
         '<expect state="start" at="10s"/>',
         '<expect state="start" at="end"/>',
         '<person x="4" y="3"/>',
-        '<when at="1s"><walk x="2" y="9"/></when>',
+        '<person x="4" y="3"/><when at="1s"><walk x="2" y="9"/></when>',
     ],
 )
 def test_what_is_right_in_a_scenario_is_not_told(tmp_path: Path, content: str) -> None:
