@@ -29,8 +29,6 @@ MOST_READ = 300
 """How many characters a built-in type reads inside an utterance."""
 MOST_EMPTY = 1000
 """How often what is repeated may match nothing; where it has to more often, all of it is one time."""
-GARBAGE_COST = 10.0
-"""The cost of a word that GARBAGE takes: anything else is better."""
 
 
 class Way(NamedTuple):
@@ -41,6 +39,8 @@ class Way(NamedTuple):
     cost: float
     left: Cell | None
     right: Cell | None
+    lost: int = 0
+    """How many words GARBAGE takes: anything else is better, whatever it costs."""
 
 
 class Cell:
@@ -249,7 +249,7 @@ class Chart:
             ends = self.utterance.words_from(spot.start)
             self.steps_left -= len(ends)
             for words, end in enumerate(ends, 1):
-                way = Way(0, GARBAGE_COST * words, None, None)
+                way = Way(0, 0.0, None, None, words)
                 self._finish(spot, self.utterance.after(end), way)
 
     def _built_in(self, spot: Spot, part: BuiltIn) -> None:

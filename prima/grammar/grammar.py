@@ -9,7 +9,7 @@ from functools import cached_property
 from prima.deferred import dataclass
 from prima.errors import Problem
 from prima.grammar.budget import Budget
-from prima.grammar.chart import GARBAGE_COST, Chart
+from prima.grammar.chart import Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Mode, Reference
@@ -146,7 +146,7 @@ class Grammar:
             work += analysis.size
             if found and (work > MOST_WORK or budget.over):
                 break
-            frame, lost = frames(analysis, said)
+            frame = frames(analysis, said)
             reader = Interpreter(mode, budget)
             value: Json = None
             error = None
@@ -162,8 +162,8 @@ class Grammar:
                     reader.text(),
                     tuple(reader.tokens),
                     value,
-                    round(1 - GARBAGE_SHARE * lost / max(len(said.ends), 1), 3),
-                    round(math.exp(GARBAGE_COST * lost - analysis.cost), 9),
+                    round(1 - GARBAGE_SHARE * analysis.lost / max(len(said.ends), 1), 3),
+                    round(math.exp(-analysis.cost), 9),
                     mode,
                     error,
                 )

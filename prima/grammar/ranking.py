@@ -1,7 +1,8 @@
 """Which of the ways that a chart holds is best, and what it says in order.
 
-Lower costs come first; of equal ones that which takes the alternative written first, and of
-repeats that which takes more. Costs are those of weights, repeat probabilities and GARBAGE.
+What leaves fewer words to GARBAGE comes first, then lower costs, which are those of weights and
+repeat probabilities; of equal ones that which takes the alternative written first, and of repeats
+that which takes more.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 from prima.deferred import dataclass, field
 from prima.grammar.chart import Cell, Way
-from prima.grammar.model import BuiltIn, Reference, Rule, Special, Tag, Words
+from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
 from prima.grammar.text import Utterance
 from prima.messages import Json
 
@@ -24,8 +25,10 @@ MOST_KNOWN = 100_000
 
 
 class Analysis(NamedTuple):
-    """One way through a cell: its cost, and the analyses of what it is made of."""
+    """One way through a cell: how good it is, and the analyses of what it is made of."""
 
+    lost: int
+    """How many words GARBAGE takes in it."""
     cost: float
     cell: Cell
     left: Analysis | None
@@ -62,8 +65,8 @@ def best(top: Cell, most: int) -> list[Analysis]:
     return known[top.number]
 
 
-Candidate = tuple[float, int, int, int, int, int]
-"""Cost, rank of the way and where its last part begins; which analyses of its parts; which way."""
+Candidate = tuple[int, float, int, int, int, int, int]
+"""Words lost, cost, rank of the way and where its last part begins; which analyses of its parts; which way."""
 
 
 def _best(
@@ -80,15 +83,16 @@ def _best(
         if i >= len(lefts) or j >= len(rights):
             return None
         way, left, right = ways[number], lefts[i], rights[j]
+        lost = way.lost + (left.lost if left else 0) + (right.lost if right else 0)
         cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
-        return round(cost, 9), way.rank, -(way.left.end if way.left else 0), i, j, number
+        return lost, round(cost, 9), way.rank, -(way.left.end if way.left else 0), i, j, number
 
     first = [one for number in range(len(ways)) if (one := candidate(number, 0, 0))]
     heapify(first)
     found: list[Analysis] = []
     seen: set[tuple[int, int, int]] = set()
     while first and len(found) < most:
-        *_, i, j, number = heappop(first)
+        lost, *_, i, j, number = heappop(first)
         if (number, i, j) in seen:
             continue
         seen.add((number, i, j))
@@ -96,7 +100,7 @@ def _best(
         size = 1 + (left.size if left else 0) + (right.size if right else 0)
         if size <= MOST_CELLS:
             cost = ways[number].cost + (left.cost if left else 0) + (right.cost if right else 0)
-            found.append(Analysis(cost, cell, left, right, size))
+            found.append(Analysis(lost, cost, cell, left, right, size))
         if most > 1:
             for one in (candidate(number, i + 1, j), candidate(number, i, j + 1)):
                 if one is not None:
@@ -148,11 +152,10 @@ def _parts(cell: Cell, strict: bool) -> Iterator[Cell]:
             yield way.right
 
 
-def frames(analysis: Analysis, said: Utterance) -> tuple[Frame, int]:
-    """What an analysis says, rule by rule, and how many words of it GARBAGE took."""
+def frames(analysis: Analysis, said: Utterance) -> Frame:
+    """What an analysis says, rule by rule."""
     top: Frame | None = None
     open_frames: list[Frame] = []
-    lost = 0
     todo: list[Analysis | None] = [analysis]  # None ends a frame
     while todo:
         one = todo.pop()
@@ -172,8 +175,6 @@ def frames(analysis: Analysis, said: Utterance) -> tuple[Frame, int]:
         elif isinstance(part, BuiltIn):
             text = said.said[one.cell.start : one.cell.end].strip()
             open_frames[-1].events.append(Value(one.cell.value, text))
-        elif isinstance(part, Special):
-            lost += said.words(one.cell.start, one.cell.end)
         todo.extend(child for child in (one.right, one.left) if child is not None)
     assert top is not None
-    return top, lost
+    return top

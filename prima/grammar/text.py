@@ -96,10 +96,6 @@ class Utterance:
         """Where a stretch of whole words that begins at a place may end."""
         return self.ends[bisect_right(self.ends, start) :]
 
-    def words(self, start: int, end: int) -> int:
-        """How many words end in a stretch."""
-        return bisect_right(self.ends, end) - bisect_right(self.ends, start)
-
 
 def utterance(text: str, mode: str) -> Utterance | None:
     """Prepare an utterance; None if it can match nothing."""
