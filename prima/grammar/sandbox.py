@@ -40,7 +40,7 @@ HELPERS = r"""
 const stringify = JSON.stringify, parse = JSON.parse, isArray = Array.isArray;
 const assign = Object.assign, define = Object.defineProperty;
 const hidden = (object, name, value) => define(object, name, { value: value, writable: true });
-const keys = Object.keys;
+const keys = Object.keys, create = Object.create;
 const strange = '\0';
 // What JSON lacks, as objects that nobody writes:
 const mark = (value) => {
@@ -67,7 +67,7 @@ return {
   take: function (text) { return { v: unmark(parse(text)) }; },
   environment: function (text, merges) {
     let last, lastMeta = { text: '', score: 1 }, at = 0;
-    const own = { text: text, score: 1 }, rules = {}, meta = {}, waiting = [];
+    const own = { text: text, score: 1 }, rules = create(null), meta = create(null), waiting = [];
     hidden(rules, 'latest', function () { return last; });
     hidden(meta, 'latest', function () { return lastMeta; });
     hidden(meta, 'current', function () { return own; });
