@@ -499,6 +499,12 @@ def test_hostile_tags_fail(tag: str) -> None:
     assert perf_counter() - began < 10
 
 
+def test_null_that_a_tag_throws_is_told() -> None:
+    error = load(f"{SCRIPT}$r = x {{throw null}};").match("x")[0].error
+    assert error is not None
+    assert error.message == 'The tag "throw null" failed: it threw null, or used too much memory.'
+
+
 def test_the_time_limit_is_of_the_whole_utterance() -> None:
     grammar = load(SCRIPT + "$r = $b<0->; $b = x {!{var i = 0; while (i < 200000) i++}!};")
     began = perf_counter()

@@ -227,6 +227,8 @@ def _said(text: str) -> str:
     message = (text.splitlines() or [""])[0]
     if message.startswith("InternalError: interrupted"):
         return f"it took longer than {TIME_LIMIT:g} s"
-    if message == "null" or "out of memory" in message or not message:
+    if message == "null":  # all that the engine says where no memory is left for an error
+        return "it threw null, or used too much memory"
+    if "out of memory" in message or not message:
         return "it used too much memory"
     return message
