@@ -72,6 +72,13 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
             "A tag that holds a } itself is written {!{ ... }!}.",
         ),
         (
+            HEAD + "$r = $s!en<2>; $s = a;",
+            4,
+            8,
+            "!en<2>; $s = a;",
+            "A language stands only after a token or a bracket, before its repeat: oui!fr<2>.",
+        ),
+        (
             HEAD + '$r = "a b;',
             4,
             6,

@@ -160,6 +160,8 @@ def _unexpected(source: Source, error: UnexpectedInput) -> Problem:
 def _remedy(error: UnexpectedInput, found: str, token: Token | None) -> str:
     if found.startswith("}"):
         return "A tag that holds a } itself is written {!{ ... }!}."
+    if found.startswith("!"):
+        return "A language stands only after a token or a bracket, before its repeat: oui!fr<2>."
     if token is None and found[:1] in _UNCLOSED:
         return _UNCLOSED[found[0]]
     assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
