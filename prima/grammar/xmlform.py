@@ -193,11 +193,17 @@ class _Reader:
                 if item.tag in EXPANSION:
                     parts += self._part(item, depth)
                 elif item.tag == "example" and node.tag == "rule":
-                    self._no_elements(item)
+                    self._example(item, first=not parts)
                 else:
                     message = f"<{item.tag}> cannot stand in <{node.tag}>."
                     self.note(item, "misplaced-element", message)
         return parts
+
+    def _example(self, node: Node, first: bool) -> None:
+        if not first:
+            message = "<example> stands after what the rule takes."
+            self.note(node, "misplaced-element", message, "Put it first in the <rule>.")
+        self._no_elements(node)
 
     def _part(self, node: Node, depth: int) -> list[Part]:
         match node.tag:
