@@ -663,6 +663,41 @@ def check_page(body: str) -> list[Problem]:
     return read_page("a.vxml", "a.vxml", vxml(body).encode()).problems
 
 
+EACH = '<foreach item="i" array="[1]">'
+EXECUTABLE = ["<if cond='i'>x</if>", "<script>i</script>", "<log>x</log>", "<goto next='#f'/>"]
+MARKUP = ["<break/>", "<emphasis>x</emphasis>", "<s>x</s>", "<mark name='m'/>", "<desc>x</desc>"]
+BOTH = ["x", "<value expr='i'/>", "<audio src='a.wav'/>", f"{EACH}x</foreach>"]
+
+
+@pytest.mark.parametrize(
+    ("around", "good", "bad"),
+    [
+        ("<prompt>{}</prompt>", [*MARKUP[:4], *BOTH], [*EXECUTABLE, "<prompt>x</prompt>"]),
+        ("<prompt><prosody>{}</prosody></prompt>", [*MARKUP[:4], *BOTH], EXECUTABLE),
+        ("{}", [*EXECUTABLE, *BOTH, "<prompt>x</prompt>"], MARKUP),
+        ("<if cond='1'>{}</if>", [*EXECUTABLE, *BOTH], MARKUP),
+    ],
+)
+def test_a_foreach_holds_what_stands_where_it_stands(
+    around: str, good: list[str], bad: list[str]
+) -> None:  # 2.1, 6
+    def codes(held: str) -> list[str]:
+        whole = around.format(f"{EACH}{held}</foreach>")
+        text = f"<form id='f'><block>{whole}</block></form>"
+        return [one.code for one in check_page(text)]
+
+    assert [codes(one) for one in good] == [[]] * len(good)
+    assert [codes(one) for one in bad] == [["misplaced-element"]] * len(bad)
+
+
+def test_what_a_foreach_cannot_hold_is_told_by_where_it_stands() -> None:
+    (problem,) = check_page(
+        f"<form><block><prompt>{EACH}<log>x</log></foreach></prompt></block></form>"
+    )
+    assert problem.message == "<log> cannot stand in a <foreach> of a prompt."
+    assert "foreach" not in problem.remedy
+
+
 @pytest.mark.parametrize(
     ("name", "value", "remedy"),
     [

@@ -257,7 +257,7 @@ DEFINES: dict[tuple[str, str, str], str] = {
             *("transfer", "data"),
         )
     },
-    ("voicexml", "foreach", "item"): "variable",
+    **{("voicexml", key, "item"): "variable" for key in ("foreach", "said-foreach")},
     **{("voicexml", key, "event"): "event" for key in ("throw", "link", "return", "choice")},
     ("srgs", "rule", "id"): "rule",
 }

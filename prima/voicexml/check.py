@@ -44,13 +44,18 @@ HABITS = {
     "iu": "VoiceXML has no units; an application of PRIMA's own language has.",
 }
 """What to write for elements of other languages."""
+HOLDERS = {
+    "foreach": "a <foreach> of executable content",
+    "said-foreach": "a <foreach> of a prompt",
+}
+"""What elements are that hold different things by where they stand."""
 INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
 FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
 SPEAKING = frozenset(
     [
         "prompt",
         "audio",
-        "foreach",
+        "said-foreach",
         "emphasis",
         "prosody",
         "voice",
@@ -185,8 +190,10 @@ def _misplaced(child: Node, node: Node) -> Problem:
         if child.tag in COMMANDS and child.tag not in HABITS:
             hint = f'It is a Command of PRIMA: write <p:{child.tag}>, with xmlns:p="{PRIMA_NAMESPACE}".'
         return Problem(child.place, "error", "unknown-element", message, hint)
-    message = f"<{child.tag}> cannot stand in <{node.tag}>."
-    remedy = f"It may stand in {one_of(VOICEXML.parents(child.tag))}."
+    holder = HOLDERS.get(node.key, f"<{node.tag}>")
+    message = f"<{child.tag}> cannot stand in {holder}."
+    others = [tag for tag in VOICEXML.parents(child.tag) if tag != node.tag]
+    remedy = f"It may stand in {one_of(others)}."
     return Problem(child.place, "error", "misplaced-element", message, remedy)
 
 

@@ -14,7 +14,7 @@ COMMANDS = frozenset(TABLE_4_2) - {"q-and-a"} | {"command"}
 """Elements of PRIMA's namespace that executable content may hold."""
 
 SPEECH = "audio break emphasis mark phoneme prosody say-as sub voice value"
-BLOCKS = f"{SPEECH} p s paragraph sentence enumerate foreach lexicon metadata meta desc"
+BLOCKS = f"{SPEECH} p s paragraph sentence enumerate said-foreach lexicon metadata meta desc"
 EXECUTABLE = (
     "assign audio clear data disconnect enumerate exit foreach goto if log prompt reprompt return"
     " script submit throw value var"
@@ -23,7 +23,7 @@ HANDLERS = "catch error help noinput nomatch"
 ITEM = "name expr cond"
 FETCH = "fetchhint fetchtimeout maxage maxstale"
 
-# Each line: element | attributes (* required) | children | text? | section of VoiceXML 2.0.
+# Each line: element, or a key of its own for it = element | attributes (* required) | children | text? | section of VoiceXML 2.0.
 TABLE = f"""
 vxml|version* application xml:base xml:lang|{HANDLERS} data form link menu meta metadata property script var||1.5
 form|id scope|{HANDLERS} block data field filled grammar initial link object property record script subdialog transfer var||2.1
@@ -82,7 +82,8 @@ disconnect|namelist|||5.3.11
 script|src srcexpr charset {FETCH}||text|5.3.12
 log|label expr|value|text|5.3.13
 throw|event eventexpr message messageexpr|||5.2.1
-foreach|array* item*|{EXECUTABLE} {BLOCKS}|text|VoiceXML 2.1, 6
+foreach|array* item*|{EXECUTABLE}|text|VoiceXML 2.1, 6
+said-foreach=foreach|array* item*|{BLOCKS}|text|VoiceXML 2.1, 6
 data|src srcexpr name method enctype namelist fetchaudio {FETCH}|||VoiceXML 2.1, 5
 """
 GRAMMAR_PARTS = {"example", "one-of", "item", "rule", "ruleref", "tag", "token"}
@@ -91,7 +92,8 @@ GRAMMAR_PARTS = {"example", "one-of", "item", "rule", "ruleref", "tag", "token"}
 def _elements() -> list[Element]:
     made = []
     for row in TABLE.strip().splitlines():
-        name, attributes, children, text, section = row.split("|")
+        names, attributes, children, text, section = row.split("|")
+        key, _, name = names.partition("=")
         held = [
             Attribute(word.rstrip("*"), "text", "", word.endswith("*"))
             for word in attributes.split()
@@ -101,7 +103,7 @@ def _elements() -> list[Element]:
                 child for child in children.split() if child != "*" and child not in GRAMMAR_PARTS
             )
         )
-        made.append(Element(name, "", tuple(held), kept, bool(text), source=section))
+        made.append(Element(key, "", tuple(held), kept, bool(text), name, section))
     return made
 
 
