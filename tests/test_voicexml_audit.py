@@ -864,3 +864,16 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
         <form id="sub"><catch><log>in</log><return event="error.semantic"/></catch>
         <block><return eventexpr="void 0"/></block></form>"""
     assert run(text).logs()[-1:] == ["error.semantic"]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("Hear <audio src='a.wav'><desc>a bell</desc></audio>.", "Hear [a.wav] ."),
+        ("Hear <audio src='a.wav'><desc>a bell</desc>a ring</audio>.", "Hear a ring ."),
+        ("It is <sub alias=''>gone</sub> here.", "It is here."),
+        ("It is <sub alias='away'>gone</sub> here.", "It is away here."),
+    ],
+)
+def test_a_description_and_what_has_an_alias_are_not_said(content: str, said: str) -> None:
+    assert run(f"<form><block><prompt>{content}</prompt></block></form>").said() == [said]

@@ -299,7 +299,7 @@ class Speaker:
                 self.demand(node)
                 self.audio(node, context, local, speech)
             case "sub":
-                speech.parts.append(f" {node.get('alias') or node.text} ")
+                speech.parts.append(f" {node.get('alias', node.text)} ")
             case "mark":
                 self.demand(node)
                 self.mark_here(node, context, local, speech)
@@ -370,7 +370,7 @@ class Speaker:
                 return
         ms = self.recording(context.page.base(), speech.base, name)
         speech.parts.append(" ")
-        if node.text or node.nodes:
+        if node.text or any(one.tag not in SILENT for one in node.nodes):
             silent, speech.silent = speech.silent, speech.silent or ms is not None
             opened = speech.open(ms)
             self.read_all(node, context, local, speech)
