@@ -79,6 +79,40 @@ def test_two_subdialogs_of_the_same_uri_listen_with_their_own_grammars() -> None
     assert call.said() == ["tea?", "Got tea.", "milk?", "Got milk."]
 
 
+ROOT = """<var name="n" expr="1"/><catch event="tell">Root {0}, n <value expr="n"/>.
+    <exit/></catch><form><block>In root {0}. <assign name="n" expr="n + 1"/>
+    <goto next="http://h.example/leaf"/></block></form>
+    <form id="last"><block>Back in root {0}, n <value expr="n"/>.<exit/></block></form>"""
+LEAF = """<form><block>In leaf, n <value expr="n"/>. <assign name="application.n" expr="n + 1"/>
+    {}</block></form>"""
+LEAF_HEAD = (
+    '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" application="http://h.example/root">'
+)
+
+
+@pytest.mark.parametrize(
+    ("then", "said"),
+    [
+        ("<throw event='tell'/>", ["In root A.", "In leaf, n 2.", "Root A, n 3."]),
+        ("<goto next='root#last'/>", ["In root A.", "In leaf, n 2.", "Back in root A, n 3."]),
+        ("<goto next='second'/>", ["In root A.", "In leaf, n 2.", "In leaf, n 3.", "Back in root A, n 4."]),
+    ],
+)  # fmt: skip
+def test_a_root_that_a_submit_has_brought_stays_that_of_its_leaves(
+    then: str, said: list[str]
+) -> None:  # 1.5.2
+    web = {
+        "http://h.example/root": vxml(ROOT.format("A")),
+        "http://h.example/leaf": vxml(LEAF.format(then), LEAF_HEAD),
+        "http://h.example/second": vxml(LEAF.format("<goto next='root#last'/>"), LEAF_HEAD),
+    }
+    call = Online(web, block('<submit next="http://h.example/root"/>'))
+    call.web = {**web, "http://h.example/root": vxml(ROOT.format("B"))}
+    call.play()
+    assert call.said() == said
+    assert [one["data"]["to"] for one in call.phases("send")].count("http://h.example/root") == 1
+
+
 def test_data_of_a_host_is_a_document() -> None:
     call = Online(
         {"http://x.example/w?q": '<w><sky c="1">blue</sky></w>'},

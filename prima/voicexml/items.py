@@ -158,6 +158,8 @@ class Items:
         request = Request(item.get("method"), values) if names else None
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
+        if fetched is not None:
+            yield from self.owner.documents.root(fetched)  # its own, which is not the caller's
         blank = self.engine.scope()
         inner = Context(context.session, page, blank, blank, self.engine.named("dialog"))
         inner.params, inner.depth = params, context.depth + 1

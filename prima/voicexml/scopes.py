@@ -53,7 +53,7 @@ class Documents:
 
     def enter(self, context: Context, page: Page, submitted: bool = False) -> Flow:
         """Make a document the active one, with what it keeps of its application (1.5.2)."""
-        root = yield from self.root(page)
+        root = yield from self.root(page, context)
         to_root = root is None and context.root is not None and context.root.uri == page.uri
         if to_root and not submitted:
             context.document = context.application
@@ -69,8 +69,10 @@ class Documents:
                 context.application = context.document
         yield from self._declare(context, page)
 
-    def root(self, page: Page) -> Generator[None, Resume, Page | None]:
-        """The application root of a leaf.
+    def root(
+        self, page: Page, context: Context | None = None
+    ) -> Generator[None, Resume, Page | None]:
+        """The application root of a leaf: the one that a context has loaded, or another (1.5.2).
 
         Raises:
             Thrown: ``error.badfetch`` or ``error.semantic``.
@@ -78,6 +80,9 @@ class Documents:
         uri = page.application
         if not uri or uri == page.uri:
             return None
+        for loaded in (context.page, context.root) if context is not None else ():
+            if loaded is not None and loaded.uri == uri and not loaded.application:
+                return loaded
         return (yield from load_page(self.owner, uri, page.root))
 
     def _enter_root(self, context: Context, root: Page) -> Flow:
@@ -128,6 +133,8 @@ class Documents:
             Thrown: ``error.badfetch``.
         """
         page, dialog = yield from self.find(context, uri, node, request, base)
+        if page is not None:
+            yield from self.root(page, context)  # a document without its root is none
         raise GoDialog(page, dialog, submitted=request is not None)
 
     def find(
@@ -151,8 +158,11 @@ class Documents:
         page = None
         if target or request is not None:
             whole = urldefrag((base or context.page).resolve(uri, node))[0]
-            page = yield from load_page(self.owner, whole, node, request)
-            yield from self.root(page)  # a document without its root is none
+            root = context.root
+            if request is None and root is not None and root.uri == whole:
+                page = root  # it is loaded, even if it is what a submit was answered with
+            else:
+                page = yield from load_page(self.owner, whole, node, request)
         if (page or context.page).dialog(fragment) is None:
             where = f" in {page.uri}" if page else ""
             message = f'{source(node)}: there is no dialog "{fragment}"{where}'
