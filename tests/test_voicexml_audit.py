@@ -877,3 +877,10 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
 )
 def test_a_description_and_what_has_an_alias_are_not_said(content: str, said: str) -> None:
     assert run(f"<form><block><prompt>{content}</prompt></block></form>").said() == [said]
+
+
+@pytest.mark.parametrize("tag", ["s", "sentence", "emphasis"])
+def test_the_choices_may_be_enumerated_in_a_sentence(tag: str) -> None:  # 2.2.4
+    text = f"""<menu><prompt>Say <{tag}>one of <enumerate/></{tag}></prompt>
+        <choice event="exit">tea</choice><choice event="exit">milk</choice></menu>"""
+    assert run(text).said() == ["Say one of tea; milk"]

@@ -13,8 +13,8 @@ PRIMA_NAMESPACE = "urn:prima:dialogue:1"
 COMMANDS = frozenset(TABLE_4_2) - {"q-and-a"} | {"command"}
 """Elements of PRIMA's namespace that executable content may hold."""
 
-SPEECH = "audio break emphasis mark phoneme prosody say-as sub voice value"
-BLOCKS = f"{SPEECH} p s paragraph sentence enumerate said-foreach lexicon metadata meta desc"
+SPEECH = "audio break emphasis enumerate mark phoneme prosody say-as sub voice value"
+BLOCKS = f"{SPEECH} p s paragraph sentence said-foreach lexicon metadata meta desc"
 EXECUTABLE = (
     "assign audio clear data disconnect enumerate exit foreach goto if log prompt reprompt return"
     " script submit throw value var"
