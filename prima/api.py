@@ -75,10 +75,19 @@ class Transcript:
         return format_rows(self.rows(), why)
 
     def summary(self) -> Summary:
-        """What can be counted in it."""
+        """What can be counted in it.
+
+        Raises:
+            UsageError: a record lacks what its phase has.
+        """
         from prima.transcript.measures import summarize
 
-        return self.measure.summary() if self.measure else summarize(self.records)
+        if self.measure:
+            return self.measure.summary()
+        try:
+            return summarize(self.records)
+        except (KeyError, TypeError, ValueError, AttributeError):
+            raise UsageError(f"{self.name}: a record lacks what its phase has.") from None
 
     @property
     def early(self) -> str:
