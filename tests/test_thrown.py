@@ -76,6 +76,28 @@ def test_what_is_thrown_is_told_within_the_limits(way: str) -> None:
         assert told.startswith(expected), code
 
 
+@pytest.mark.parametrize(
+    ("thrown", "told"),
+    [
+        ("{a: 1}", "it threw an object that is no Error"),
+        ("Object.create(null)", "it threw a value that cannot be shown"),
+        ("null", "it threw null, or used too much memory"),
+    ],
+)
+def test_what_is_no_error_is_told_alike_of_tags_and_scripts(thrown: str, told: str) -> None:
+    from prima.grammar import sandbox as grammar
+    from prima.grammar.budget import Budget
+    from prima.interpreter import expressions
+    from prima.interpreter.evaluation import SCOPES
+
+    sandbox, engine = grammar.Sandbox(Budget(0)), expressions.Engine()
+    with pytest.raises(grammar.ScriptError, match=told):
+        sandbox.run(f"throw {thrown}")
+    scopes = tuple(engine.named(name) for name in SCOPES)
+    with pytest.raises(expressions.ScriptError, match=told):
+        engine.script(f"throw {thrown}", scopes[1], scopes)
+
+
 def test_what_a_grammars_script_declares_is_there_for_its_tags() -> None:
     from prima.grammar.budget import Budget
     from prima.grammar.sandbox import Sandbox

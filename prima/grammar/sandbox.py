@@ -41,6 +41,9 @@ const stringify = JSON.stringify, parse = JSON.parse, isArray = Array.isArray;
 const assign = Object.assign, define = Object.defineProperty;
 const hidden = (object, name, value) => define(object, name, { value: value, writable: true });
 const keys = Object.keys, create = Object.create;
+// Rules may have any name; so nothing else is there that looks like one, but for this method.
+const named = create(null);
+hidden(named, 'hasOwnProperty', Object.prototype.hasOwnProperty);
 const strange = '\0';
 // What JSON lacks, as objects that nobody writes:
 const mark = (value) => {
@@ -67,7 +70,7 @@ return {
   take: function (text) { return { v: unmark(parse(text)) }; },
   environment: function (text, merges) {
     let last, lastMeta = { text: '', score: 1 }, at = 0;
-    const own = { text: text, score: 1 }, rules = create(null), meta = create(null), waiting = [];
+    const own = { text: text, score: 1 }, rules = create(named), meta = create(named), waiting = [];
     hidden(rules, 'latest', function () { return last; });
     hidden(meta, 'latest', function () { return lastMeta; });
     hidden(meta, 'current', function () { return own; });
@@ -229,6 +232,10 @@ def _said(text: str) -> str:
         return f"it took longer than {TIME_LIMIT:g} s"
     if message == "null":  # all that the engine says where no memory is left for an error
         return "it threw null, or used too much memory"
+    if message == "[object Object]":
+        return "it threw an object that is no Error"
+    if message.startswith("(Failed obtaining"):
+        return "it threw a value that cannot be shown"
     if "out of memory" in message or not message:
         return "it used too much memory"
     return message
