@@ -88,13 +88,13 @@ def test_what_is_no_error_is_told_alike_of_tags_and_scripts(thrown: str, told: s
     from prima.grammar import sandbox as grammar
     from prima.grammar.budget import Budget
     from prima.interpreter import expressions
-    from prima.interpreter.evaluation import SCOPES
+    from prima.interpreter.evaluation import SCOPES, ScriptError
 
     sandbox, engine = grammar.Sandbox(Budget(0)), expressions.Engine()
     with pytest.raises(grammar.ScriptError, match=told):
         sandbox.run(f"throw {thrown}")
     scopes = tuple(engine.named(name) for name in SCOPES)
-    with pytest.raises(expressions.ScriptError, match=told):
+    with pytest.raises(ScriptError, match=told):
         engine.script(f"throw {thrown}", scopes[1], scopes)
 
 
