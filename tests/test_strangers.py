@@ -16,7 +16,7 @@ def prima(*args: str, cwd: Path, input: str = "") -> subprocess.CompletedProcess
     """The command line in a process of its own."""
     return subprocess.run(
         [sys.executable, "-m", "prima", *args],
-        capture_output=True, text=True, errors="surrogateescape", timeout=60, cwd=cwd, check=False, input=input,
+        capture_output=True, text=True, encoding="utf-8", errors="surrogateescape", timeout=60, cwd=cwd, check=False, input=input,
     )  # fmt: skip
 
 
@@ -107,6 +107,51 @@ def test_a_name_that_is_not_utf8_is_told(tmp_path: Path) -> None:
     assert (tmp_path / "x.jsonl").read_text() == "kept"
     done = prima("new", "ea", os.fsdecode(b"m\xe9"), cwd=tmp_path)
     assert done.returncode == 2 and "rename it" in done.stderr
+
+
+FOREIGN = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ave"><form id="a">
+<block><speak>“Café” 日本.</speak><exit/></block></form></prima>"""
+NARROW = [
+    {"PYTHONIOENCODING": "latin-1"},
+    {"PYTHONIOENCODING": "cp1252"},
+    {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"},
+]
+FOR_PEOPLE = [
+    "run s.xml",
+    "show t.jsonl",
+    "explain t.jsonl 1",
+    "diff t.jsonl t.jsonl",
+    "talk s.xml",
+]
+FOR_PROGRAMS = [
+    *("run s.xml --format json", "run s.xml -o -", "talk s.xml --format json"),
+    *("explain t.jsonl 1 --format json", "diff t.jsonl u.jsonl --format json"),
+    *("diff t.jsonl t.jsonl --format html", "report t.jsonl", "replay t.jsonl s.xml -o -"),
+    *("export t.jsonl --to csv", "graph t.jsonl --to dot"),
+]
+
+
+@pytest.mark.parametrize("env", NARROW, ids=["latin-1", "cp1252", "C"])
+def test_what_a_terminal_cannot_show_is_no_failure(
+    env: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario_of(tmp_path)
+    (tmp_path / "greets.xml").write_text(FOREIGN, encoding="utf-8")
+    prima("run", "s.xml", "-o", "t.jsonl", cwd=tmp_path)
+    text = (tmp_path / "t.jsonl").read_text(encoding="utf-8")
+    (tmp_path / "u.jsonl").write_text(text.replace("Caf", "Surf"), encoding="utf-8")
+    usual = {words: prima(*words.split(), cwd=tmp_path).stdout for words in FOR_PROGRAMS}
+    for name, value in env.items():
+        monkeypatch.setenv(name, value)
+    for words in FOR_PEOPLE:
+        done = prima(*words.split(), cwd=tmp_path)
+        assert (done.returncode, "Caf" in done.stdout) == (0, True), (words, done.stderr)
+        if env.get("PYTHONIOENCODING") in ("latin-1", "cp1252"):
+            assert "\\u65e5\\u672c" in done.stdout, words
+    for words in FOR_PROGRAMS:
+        done = prima(*words.split(), cwd=tmp_path)
+        assert done.returncode == ("u.jsonl" in words), (words, done.stderr)
+        assert done.stdout == usual[words] and "日本" in done.stdout, words
 
 
 def test_a_grammar_that_is_ambiguous_over_and_over_comes_to_an_end(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 import click
 
 from prima import __version__
-from prima.cli.common import SourceLines, tell
+from prima.cli.common import SourceLines, escape_for_people, tell
 from prima.errors import DocumentError, RunError, UsageError, did_you_mean
 
 COMMANDS = {
@@ -89,6 +89,7 @@ def main() -> None:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    escape_for_people()
     code: Any = 0
     try:
         code = cli.main(standalone_mode=False)

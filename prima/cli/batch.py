@@ -111,6 +111,8 @@ class _Table:
     def __init__(self, plan: Plan, form: str) -> None:
         self.wide = min(max(map(len, ["scenario", *plan.scenarios])), WIDEST)
         self.form = form
+        if form == "json":
+            common.write_for_programs()
         if form == "text":
             put(format_head(self.wide))
 

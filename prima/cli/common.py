@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Callable
@@ -45,6 +46,8 @@ def or_stdout(_context: click.Context, _option: click.Parameter, path: str | Non
     return None if path == "-" else path
 
 
+REFUSING = ("strict", "surrogateescape")
+"""Ways of Python to deal with what an encoding lacks that end in an error."""
 PROGRESS_SECONDS = 0.5
 """How often a terminal is told how far a long run is."""
 format_option = click.option(
@@ -78,8 +81,25 @@ def clean(text: str) -> str:
     )
 
 
+def escape_for_people() -> None:
+    """Let stdout show with escapes what its encoding lacks, as stderr does."""
+    out = sys.stdout
+    if isinstance(out, io.TextIOWrapper) and not _is_utf8(out) and out.errors in REFUSING:
+        out.reconfigure(errors="backslashreplace")
+
+
+def write_for_programs() -> None:
+    """Let what programs read go to stdout as UTF-8, whatever encoding people see there."""
+    if isinstance(sys.stdout, io.TextIOWrapper) and not _is_utf8(sys.stdout):
+        sys.stdout.reconfigure(encoding="utf-8", errors="strict")
+
+
+def _is_utf8(out: io.TextIOWrapper) -> bool:
+    return out.encoding.lower().replace("-", "").replace("_", "") == "utf8"
+
+
 def put(text: str) -> None:
-    """Data, to stdout."""
+    """Text for people, to stdout."""
     click.echo(clean(text), nl=not text.endswith("\n"))
 
 
@@ -106,6 +126,7 @@ def print_json(data: Any) -> None:
     """Data as JSON, to stdout."""
     import json
 
+    write_for_programs()
     click.echo(json.dumps(data, ensure_ascii=False, indent=2))
 
 

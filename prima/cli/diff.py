@@ -18,6 +18,7 @@ from prima.cli.common import (
     start_watchdog,
     suggesting,
     tell_cut,
+    write_for_programs,
 )
 from prima.errors import UsageError
 
@@ -79,6 +80,7 @@ def diff(
 
         write_page(make([old, new]), output)
     elif form == "json":
+        write_for_programs()
         sys.stdout.writelines(difference_json(difference))
     else:
         click.echo(format_difference(difference, coloured()), nl=False, color=coloured())

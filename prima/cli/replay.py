@@ -7,7 +7,7 @@ import sys
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, run_into, tell
+from prima.cli.common import check_output, run_into, tell, write_for_programs
 
 
 @click.command()
@@ -27,6 +27,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     original = api.read(transcript)
     again = api.replay(original, scenario)
     if output == "-":
+        write_for_programs()
         sys.stdout.write(again.dumps())
     elif output is not None:
         run_into(output, lambda write: (write(again.dumps()), again)[1])

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, start_watchdog, tell, tell_cut
+from prima.cli.common import check_output, start_watchdog, tell, tell_cut, write_for_programs
 from prima.errors import UsageError
 
 
@@ -58,6 +58,7 @@ def write_page(page: str, output: str | None) -> None:
     from pathlib import Path
 
     if output is None:
+        write_for_programs()
         click.echo(page, nl=False)
         return
     try:

@@ -22,6 +22,7 @@ from prima.cli.common import (
     suggesting,
     tell,
     why_option,
+    write_for_programs,
 )
 from prima.errors import RunError, UsageError, counted
 
@@ -180,6 +181,7 @@ def _run_one(
         )
         tell(f"{output}: {_outline(transcript)}")
     elif form == "json":
+        write_for_programs()
         transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, False, hosts)
     else:
         transcript = api.rehearse(loaded, policy, bound, hosts=hosts)

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from prima.cli.common import Choice, print_json, put, start_watchdog
+from prima.cli.common import Choice, print_json, put, start_watchdog, write_for_programs
 
 
 @click.command()
@@ -42,5 +42,8 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
             click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
     if form == "json":
         print_json([result_data(result) for result in results])
+    elif form == "csv":
+        write_for_programs()
+        put(format_csv(results))
     else:
-        put(format_csv(results) if form == "csv" else format_table(results))
+        put(format_table(results))

@@ -22,6 +22,7 @@ from prima.cli.common import (
     suggesting,
     tell,
     why_option,
+    write_for_programs,
 )
 from prima.cli.terminal import Keyboard, Piped, Typist, edit_lines, ending_well
 from prima.errors import RunError, UsageError
@@ -119,6 +120,7 @@ def talk(
     if target is not None:
         conversation.check_target(target)
     if form == "json":
+        write_for_programs()
         _write([_head(game, loaded)])
     _greet(game, screen)
     with ending_well(lambda: _keep(conversation, target)):
