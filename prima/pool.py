@@ -240,8 +240,10 @@ def _starting() -> Iterator[None]:
     settings = {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
     before = {name: os.environ.get(name) for name in settings}
     os.environ.update(settings)
-    waiting = _mask(signal.SIG_BLOCK, {signal.SIGINT})
+    waiting = _mask(signal.SIG_BLOCK, ())
     try:
+        _track()
+        _mask(signal.SIG_BLOCK, {signal.SIGINT})
         yield
     finally:
         for name, value in before.items():
@@ -250,6 +252,17 @@ def _starting() -> Iterator[None]:
             else:
                 os.environ[name] = value
         _mask(signal.SIG_SETMASK, waiting)
+
+
+def _track() -> None:
+    """Let the process begin that Python wants beside any other, which has to be the first.
+
+    Once that has begun Python lets interrupts through again, which are to wait for the others.
+    """
+    if hasattr(signal, "pthread_sigmask"):
+        from multiprocessing.resource_tracker import ensure_running
+
+        ensure_running()
 
 
 def _mask(how: int, signals: Iterable[int]) -> Iterable[int]:

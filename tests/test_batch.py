@@ -444,6 +444,31 @@ def begun(stage: Path) -> subprocess.Popen[str]:
     return made
 
 
+SPAWNS = """
+import os, signal
+from multiprocessing import util
+from prima import pool
+
+def waits():
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+def spawn(path, args, fds, real=util.spawnv_passfds):
+    print(args[-1].split()[1], waits(), os.environ.get("PYTHONSAFEPATH"))
+    return real(path, args, fds)
+
+util.spawnv_passfds = spawn
+pool.warm_up()
+print(waits(), os.environ.get("PYTHONSAFEPATH"))
+"""
+
+
+def test_no_process_begins_that_an_interrupt_could_end_before_it_takes_care() -> None:
+    done = subprocess.run([sys.executable, "-c", SPAWNS], capture_output=True, text=True)
+    begun = ["multiprocessing.resource_tracker", "multiprocessing.forkserver"]
+    expected = [*(f"{name} True 1" for name in begun), "False None"]
+    assert done.stdout.splitlines() == expected, done.stderr
+
+
 def test_ctrl_c_ends_all_at_once(stage: Path) -> None:
     made = begun(stage)
     below = children(made.pid)
