@@ -663,6 +663,30 @@ def check_page(body: str) -> list[Problem]:
     return read_page("a.vxml", "a.vxml", vxml(body).encode()).problems
 
 
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        ("<p>One <p>two</p></p>", "misplaced-element"),
+        ("<paragraph>One <p>two</p></paragraph>", "misplaced-element"),
+        ("<p>One <paragraph>two</paragraph></p>", "misplaced-element"),
+        ("<desc>x</desc>", "misplaced-element"),
+        ("<p><desc>x</desc></p>", "misplaced-element"),
+        ("<s><lexicon uri='l'/></s>", "misplaced-element"),
+        ("<voice><meta name='a' content='b'/></voice>", "misplaced-element"),
+        ("<audio src='a'><metadata/></audio>", "misplaced-element"),
+        ("<s xml:lang='e n'>x</s>", "bad-value"),
+        ("<p xml:lang='123'>x</p>", "bad-value"),
+        ("<sub alias='a' xml:lang='123'>x</sub>", "bad-value"),
+        ("<lexicon uri='l'/><meta name='a' content='b'/><metadata/>x", ""),
+        ("<audio src='a'><desc>x</desc><p>One <s>two</s></p></audio>", ""),
+        ("<p xml:lang='zh-Hant-TW'>One <voice><s xml:lang=''>two</s></voice></p>", ""),
+    ],
+)
+def test_speech_markup_stands_where_it_may(content: str, wrong: str) -> None:  # 4.1.1, SSML
+    problems = check_page(f"<form><block><prompt>{content}</prompt></block></form>")
+    assert [one.code for one in problems] == ([wrong] if wrong else [])
+
+
 EACH = '<foreach item="i" array="[1]">'
 EXECUTABLE = ["<if cond='i'>x</if>", "<script>i</script>", "<log>x</log>", "<goto next='#f'/>"]
 MARKUP = ["<break/>", "<emphasis>x</emphasis>", "<s>x</s>", "<mark name='m'/>", "<desc>x</desc>"]

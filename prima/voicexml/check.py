@@ -82,6 +82,7 @@ class Entry:
 def _entry(element: Element) -> Entry:
     names = [item.name for item in element.attributes]
     kinds = {name: VALUES.get(f"{element.key} {name}") or VALUES.get(name, "") for name in names}
+    kinds["xml:lang"] = "" if element.key == "grammar" else "language"  # a grammar tells it itself
     return Entry(
         frozenset(names),
         tuple(item.name for item in element.attributes if item.required),
@@ -218,6 +219,7 @@ _REMEDIES = {
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
     "integer": "Write a whole number from 1.",
     "share": "Write a number from 0 to 1.",
+    "language": 'Write a language tag such as "en".',
 }
 
 
@@ -225,15 +227,22 @@ def _fits(kind: str, text: str) -> bool:
     if kind == "integer":
         return text.isascii() and text.isdigit() and int(text) > 0
     if kind == "time":
-        try:
-            return read_value("duration", text.strip()) >= 0  # type: ignore[operator]
-        except ValueError:
-            return False
+        return _reads("duration", text.strip())
+    if kind == "language":
+        return not text.strip() or _reads("language", text)
     if kind == "share":
         return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
     if kind == "rate":
         return is_rate(text)
     return text in kind.split()
+
+
+def _reads(kind: str, text: str) -> bool:
+    try:
+        read_value(kind, text)
+    except ValueError:
+        return False
+    return True
 
 
 def _bad_value(node: Node, name: str, text: str, kind: str) -> Problem:

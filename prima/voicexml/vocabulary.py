@@ -14,7 +14,8 @@ COMMANDS = frozenset(TABLE_4_2) - {"q-and-a"} | {"command"}
 """Elements of PRIMA's namespace that executable content may hold."""
 
 SPEECH = "audio break emphasis enumerate mark phoneme prosody say-as sub voice value"
-BLOCKS = f"{SPEECH} p s paragraph sentence said-foreach lexicon metadata meta desc"
+PARAGRAPH = f"{SPEECH} s sentence said-foreach"
+BLOCKS = f"{PARAGRAPH} p paragraph"
 EXECUTABLE = (
     "assign audio clear data disconnect enumerate exit foreach goto if log prompt reprompt return"
     " script submit throw value var"
@@ -46,8 +47,8 @@ error|cond count|{EXECUTABLE}|text|5.2.3
 help|cond count|{EXECUTABLE}|text|5.2.3
 noinput|cond count|{EXECUTABLE}|text|5.2.3
 nomatch|cond count|{EXECUTABLE}|text|5.2.3
-prompt|bargein bargeintype cond count timeout xml:lang xml:base|{BLOCKS}|text|4.1
-audio|src expr {FETCH}|{BLOCKS}|text|4.1.3
+prompt|bargein bargeintype cond count timeout xml:lang xml:base|{BLOCKS} lexicon meta metadata|text|4.1
+audio|src expr {FETCH}|{BLOCKS} desc|text|4.1.3
 value|expr* class mode recsrc|||4.1.4
 break|strength time size|||4.1.1
 emphasis|level|{SPEECH}|text|4.1.1
@@ -57,9 +58,9 @@ prosody|pitch contour range rate duration volume|{BLOCKS}|text|4.1.1
 say-as|interpret-as format detail type|value|text|4.1.1
 sub|alias*||text|4.1.1
 voice|xml:lang gender age variant name|{BLOCKS}|text|4.1.1
-p|xml:lang|{BLOCKS}|text|4.1.1
+p|xml:lang|{PARAGRAPH}|text|4.1.1
 s|xml:lang|{SPEECH}|text|4.1.1
-paragraph|xml:lang|{BLOCKS}|text|4.1.1
+paragraph|xml:lang|{PARAGRAPH}|text|4.1.1
 sentence|xml:lang|{SPEECH}|text|4.1.1
 desc|xml:lang||text|4.1.3
 lexicon|uri* type|||4.1.1
