@@ -908,3 +908,28 @@ def test_the_choices_may_be_enumerated_in_a_sentence(tag: str) -> None:  # 2.2.4
     text = f"""<menu><prompt>Say <{tag}>one of <enumerate/></{tag}></prompt>
         <choice event="exit">tea</choice><choice event="exit">milk</choice></menu>"""
     assert run(text).said() == ["Say one of tea; milk"]
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ("<var name='_a'/>", ['"_a" is reserved']),
+        ("<form><field name='a$'><option>x</option></field></form>", ['"a$" is reserved']),
+        ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is no name']),
+        ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is no name']),
+        ("<menu><choice dtmf='1 x' event='e'>a</choice></menu>", ['dtmf "1 x"']),
+        ("<menu><choice dtmf='1 2*#A' event='e.f-g_1'>a</choice></menu>", []),
+        ("<form><field name='f'><option dtmf='one'>a</option></field></form>", ['dtmf "one"']),
+        ("<link dtmf='' event='e'/>", ['dtmf ""']),
+        ("<link dtmf='9' event=''/>", ['event ""']),
+        ("<form><block><throw event=''/></block></form>", ['event ""']),
+        ("<form><block><throw event='a b'/></block></form>", ['event "a b"']),
+        ("<form><block><throw event='a..b'/></block></form>", ['event "a..b"']),
+        ("<catch event='a,b'/>", ['event "a,b"']),
+        ("<catch event='error. a.b'/><catch event='.'/><catch event=''/><catch/>", []),
+    ],
+)  # fmt: skip
+def test_names_keys_and_events_that_are_none_are_warned_of(body: str, told: list[str]) -> None:
+    problems = read_page("a.vxml", "a.vxml", vxml(body).encode()).warnings()
+    assert all(one.severity == "warning" for one in problems)
+    assert [one.message[: len(start)] for one, start in zip(problems, told, strict=True)] == told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,6 +34,7 @@ from prima.voicexml.vocabulary import (
     VOICEXML,
 )
 
+KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 VERSIONS = ("2.0", "2.1")
 MOST_ALIKE = 5
 """Of problems that say the same, so many are told, each with its place."""
@@ -219,6 +221,9 @@ _REMEDIES = {
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
     "integer": "Write a whole number from 1.",
     "share": "Write a number from 0 to 1.",
+    "keys": "Write keys, 0 to 9, *, # and A to D, with spaces between or without.",
+    "event": 'Write a name such as "order.cancelled".',
+    "events": 'Write names such as "order.cancelled", with spaces between.',
     "language": 'Write a language tag such as "en".',
 }
 
@@ -230,6 +235,12 @@ def _fits(kind: str, text: str) -> bool:
         return _reads("duration", text.strip())
     if kind == "language":
         return not text.strip() or _reads("language", text)
+    if kind == "event":
+        return _reads("event", text)
+    if kind == "events":  # a dot alone, as no name at all, is for all events
+        return all(name == "." or _reads("event", name) for name in text.split())
+    if kind == "keys":
+        return KEYS.fullmatch(text) is not None
     if kind == "share":
         return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
     if kind == "rate":
@@ -390,8 +401,10 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
             problems += _grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):
             problems += _type_problems(node)
-        if node.key in NAMING and node.get("name"):
-            problems += _name_problems(node)
+        naming = NAMING.get(node.key, "")
+        if node.get(naming):
+            problems += _name_problems(node, naming)
+        problems += _value_problems(node)
         if node.key == "property":
             problems += _property_problems(node)
         for name in ("next", "src"):
@@ -406,18 +419,47 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
 
 SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
 """Words that are names, too, in the ECMAScript of documents."""
-NAMING = frozenset([*FORM_ITEMS, "var", "data"])
-"""Elements whose name is a variable."""
+NAMING = {
+    **dict.fromkeys([*FORM_ITEMS, "var", "data"], "name"),
+    **dict.fromkeys(["foreach", "said-foreach"], "item"),
+}
+"""Elements that have a variable, and the attribute that names it."""
 
 
-def _name_problems(node: Node) -> list[Problem]:
-    """A variable that no expression can name (5.1.1)."""
-    name = node.get("name")
-    if IDENTIFIER.fullmatch(name) and name not in RESERVED - SOMETIMES:
-        return []
-    message = f'"{name}" is no name of ECMAScript: no expression can read it.'
+def _name_problems(node: Node, attribute: str) -> list[Problem]:
+    """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
+    name = node.get(attribute)
     remedy = "Write letters, digits and _, and no word that ECMAScript has for itself."
-    return [Problem(node.attribute_place("name"), "warning", "bad-value", message, remedy)]
+    if not IDENTIFIER.fullmatch(name) or name in RESERVED - SOMETIMES:
+        message = f'"{name}" is no name of ECMAScript: no expression can read it.'
+    elif name.startswith("_") or name[1:].endswith("$"):  # $ alone is no shadow variable
+        message = (
+            f'"{name}" is reserved: names that begin with _ or end with $ are the platform\'s.'
+        )
+        remedy = "Write another name."
+    else:
+        return []
+    return [Problem(node.attribute_place(attribute), "warning", "bad-value", message, remedy)]
+
+
+LATER_VALUES = {
+    "choice": {"dtmf": "keys", "event": "event"},
+    "link": {"dtmf": "keys", "event": "event"},
+    "option": {"dtmf": "keys"},
+    "throw": {"event": "event"},
+    "return": {"event": "event"},
+    "catch": {"event": "events"},
+}
+"""Keys that nobody can press, and events that nothing throws or takes."""
+
+
+def _value_problems(node: Node) -> list[Problem]:
+    """Values that do nothing, though they are no error when they are reached."""
+    return [
+        _bad_value(node, name, node.get(name), kind)._replace(severity="warning")
+        for name, kind in LATER_VALUES.get(node.key, {}).items()
+        if name in node.attributes and not _fits(kind, node.get(name))
+    ]
 
 
 PROPERTIES = {
