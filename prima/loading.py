@@ -128,13 +128,7 @@ def read_application(
         own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
     )
     document.glance = lambda uri, most: _glance(folder, uri, most)
-    later = [
-        one._replace(
-            severity="warning", remedy=f"{one.remedy} Reached, it is error.badfetch.".strip()
-        )
-        for one in page.later
-    ]
-    return document, [*page.problems, *later]
+    return document, [*page.problems, *page.later]
 
 
 VOICEXML = pattern(rb"<(?:[\w.-]+:)?vxml[\s>/]")

@@ -12,6 +12,7 @@ import pytest
 import prima
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import Engine
+from prima.loading import validate
 from tests.voice import Call
 
 DEMO = prima.documents_folder()
@@ -442,3 +443,15 @@ def test_an_external_grammar_without_a_language_has_the_documents() -> None:
     call = Call(field, **{"g.grxml": grammar})
     call.answer("tea")
     assert call.ended == "exit"
+
+
+def test_attributes_that_exclude_each_other_are_one_warning_wherever_they_are_told(
+    tmp_path: Path,
+) -> None:
+    application = tmp_path / "app.vxml"
+    body = '<form id="a"><block><goto next="#a" expr="1"/><audio/></block></form>'
+    application.write_text(f"{HEAD}{body}</vxml>", encoding="utf-8")
+    path = scenario(tmp_path, "app.vxml")
+    told = [("warning", "exclusive"), ("warning", "missing-attribute")]
+    for files in ([application], [path], [application, path]):
+        assert [(one.severity, one.code) for one in validate(files)] == told

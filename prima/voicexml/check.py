@@ -100,8 +100,9 @@ ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
     """Give every node its key, take out what is of foreign namespaces, and tell what is wrong.
 
-    The second list has elements whose attributes exclude each other, or lack one of several:
-    they are ``error.badfetch`` when they are reached (5.3.7 and others), and no error before.
+    The second list has, as warnings, elements whose attributes exclude each other, or lack one
+    of several: they are ``error.badfetch`` when they are reached (5.3.7 and others), and no
+    error before.
     """
     root.key = "vxml"
     if problem := version_problem(root):
@@ -114,7 +115,10 @@ def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
         entry = ENTRIES[node.key]
         if node.attributes or entry.required or entry.alternatives:
             _check_attributes(node, entry, problems)
-            (problems if node.key == "meta" else later).extend(alternatives(node))
+            if node.key == "meta":  # which nothing reaches
+                problems += alternatives(node)
+            else:
+                later += map(_when_reached, alternatives(node))
         check = RULES.get(node.key)
         if check is not None:
             check(node, problems)
@@ -124,6 +128,12 @@ def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
     return _most(problems), _most(later)
+
+
+def _when_reached(problem: Problem) -> Problem:
+    """A problem as a warning of what it is at run time."""
+    remedy = f"{problem.remedy} Reached, it is error.badfetch.".strip()
+    return problem._replace(severity="warning", remedy=remedy)
 
 
 def _most(problems: list[Problem]) -> list[Problem]:
