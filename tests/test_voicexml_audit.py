@@ -933,3 +933,11 @@ def test_names_keys_and_events_that_are_none_are_warned_of(body: str, told: list
     problems = read_page("a.vxml", "a.vxml", vxml(body).encode()).warnings()
     assert all(one.severity == "warning" for one in problems)
     assert [one.message[: len(start)] for one, start in zip(problems, told, strict=True)] == told
+
+
+@pytest.mark.parametrize("around", ["{}", "<prompt>{}</prompt>"])
+def test_the_item_of_a_foreach_is_a_variable_without_a_scope(around: str) -> None:  # 2.1, 6
+    each = around.format("<foreach item='dialog.a' array='[1]'>x</foreach>")
+    text = f"<form><catch event='error.semantic'>{PASS}</catch><block>{each}</block></form>"
+    call = run(text)
+    assert (call.logs(), call.said()) == (["pass"], [])

@@ -129,13 +129,6 @@ class Content(Speaker):
             return
         self.put(scope, node.get("name"), node, "expr", context, local)
 
-    @staticmethod
-    def check_name(node: Node) -> None:
-        """Refuse to declare a variable by a name that says its scope."""
-        if "." in node.get("name"):
-            message = f'{source(node)}: "{node.get("name")}" names a scope; declare it there'
-            raise Thrown("error.semantic", message, source(node))
-
     def put(
         self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
     ) -> None:

@@ -184,6 +184,7 @@ class Speaker:
 
     def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
         """The elements of a foreach's array, as the engine's values."""
+        self.check_name(node, "item")
         try:
             found = self.engine.elements(node.get("array"), context.scopes(local), MAX_REPEATS)
         except ScriptError as error:
@@ -191,6 +192,14 @@ class Speaker:
         for _ in found:
             self.owner.count_step(node)
         return found
+
+    @staticmethod
+    def check_name(node: Node, attribute: str = "name") -> None:
+        """Refuse to declare a variable by a name that says its scope."""
+        name = node.get(attribute)
+        if "." in name:
+            message = f'{source(node)}: "{name}" names a scope; declare it there'
+            raise Thrown("error.semantic", message, source(node))
 
     def demand(self, node: Node) -> None:
         """See that an element has just one of the attributes that exclude each other.
