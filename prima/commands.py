@@ -14,7 +14,7 @@ from typing import Literal
 
 from prima.deferred import dataclass, field
 from prima.errors import did_you_mean, one_of
-from prima.values import Value, outside, read_value, shown, within
+from prima.values import Value, outside, quoted, read_value, within
 
 DEVICES = (
     "human-detection",
@@ -307,7 +307,7 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
     Raises:
         ValueError: with a sentence about the argument, for the author.
     """
-    said = f'{name} "{shown(value)}"'
+    said = f"{name} {quoted(value)}"
     wrong = f"{said} is not {_A_KIND[argument.kind]}."
     if isinstance(value, str):
         try:

@@ -287,6 +287,11 @@ def shown(value: object) -> str:
     return str(value)
 
 
+def quoted(value: object) -> str:
+    """A value in quotation marks; null and undefined, which are one in plain data, without."""
+    return "(null or undefined)" if value is None else f'"{shown(value)}"'
+
+
 def outside(kind: str, low: float | None, high: float | None) -> str:
     """Say that a number is beyond its bounds, these in the unit that an author writes."""
 

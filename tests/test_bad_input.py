@@ -583,6 +583,13 @@ def test_expressions(prima: Prima, tmp_path: Path, name: str, code: str, message
     assert said.startswith("caught app.xml:3: ") and message in said
 
 
+@pytest.mark.parametrize("code", ["null", "undefined", "String(1) ? null : 1"])
+def test_nothing_in_the_place_of_a_value_is_told(prima: Prima, tmp_path: Path, code: str) -> None:
+    turns = app(form(f'<block><turn angle-expr="{code}"/></block>{CATCH}'))
+    prima("run", stage(tmp_path, turns), "-o", "t")
+    assert "angle (null or undefined) is not a number." in messages(tmp_path / "t")[0]
+
+
 BAD = "document.x.y"
 SITES = [
     ("log", block(f'<log expr="{BAD}"/>')),

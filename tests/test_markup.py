@@ -266,7 +266,7 @@ def test_places_of_elements_and_of_characters_in_attributes_and_texts() -> None:
 @pytest.mark.parametrize(
     ("value", "kind", "message"),
     [
-        (None, "id", 'x "undefined" is not a name.'),
+        (None, "id", "x (null or undefined) is not a name."),
         (math.nan, "number", 'x "NaN" is not a number.'),
         (math.inf, "number", 'x "Infinity" is not a number.'),
         (True, "number", 'x "true" is not a number.'),

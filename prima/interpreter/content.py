@@ -43,7 +43,7 @@ from prima.interpreter.frame import (
 from prima.interpreter.plain import PlainEngine
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step
-from prima.values import read_value, shown
+from prima.values import quoted, read_value, shown
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
@@ -286,7 +286,7 @@ class Executor:
                 return round(value) if "delay" in node.attributes else round(value * 1000)
         except ValueError:
             pass
-        message = f'{source(node)}: delay "{shown(value)}" is not a time'
+        message = f"{source(node)}: delay {quoted(value)} is not a time"
         raise Thrown(self.owner.internal("error.semantic", message), source(node))
 
     # Commands -----------------------------------------------------------------
