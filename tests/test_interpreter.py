@@ -394,6 +394,34 @@ def test_an_error_that_nobody_handles_ends_this_application_alone() -> None:
 
 
 @pytest.mark.parametrize(
+    ("expr", "told"),
+    [
+        ("''", '""'),
+        ("'a..b'", '"a..b"'),
+        ("'a b'", '"a b"'),
+        ("null", "(null or undefined)"),
+        ("[]", '"[]"'),
+    ],
+)
+def test_what_is_no_events_name_cannot_be_thrown(expr: str, told: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><block><throw event-expr="{expr}"/></block>
+        <on event="error.semantic"><log expr="event.data.message"/></on></form>"""
+    )
+    remedy = 'is not an event name. Write one such as "touch.head".'
+    assert bench.logs() == [f"app.xml:1: event {told} {remedy}"]
+
+
+@pytest.mark.parametrize("expr", ["'a.b'", "'a' + '.b'", "'a.b.'"])
+def test_an_events_name_may_be_computed(expr: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><block><throw event-expr="{expr}"/></block>
+        <on event="a.b"><log>taken</log></on></form>"""
+    )
+    assert bench.logs() == ["taken"]
+
+
+@pytest.mark.parametrize(
     "expr",
     [
         "(function () { throw new Error('thrown'); })()",

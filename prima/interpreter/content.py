@@ -204,9 +204,21 @@ class Executor:
 
     def throw(self, act: Throw, fiber: Fiber) -> NoReturn:
         """Throw an event (VoiceXML 5.2.1)."""
-        name = shown(self.plain(act.event, fiber))[:MAX_NAME]
+        name = self.event_name(act, fiber)
         message = shown(self.plain(act.message, fiber) or "")
         raise Thrown(self.owner.internal(name, message), source(act.node))
+
+    def event_name(self, act: Throw, fiber: Fiber) -> str:
+        """The name of the event to throw; that of an expression may be none."""
+        value = self.plain(act.event, fiber)
+        name = shown(value)[:MAX_NAME]
+        if not isinstance(act.event, Expression):
+            return name
+        try:
+            return str(read_value("event", "" if value is None else name))
+        except ValueError as error:
+            message = f"{source(act.node)}: event {quoted(value)} {error}"
+            raise Thrown(self.owner.internal("error.semantic", message), source(act.node)) from None
 
     def leave(self, act: Return, fiber: Fiber) -> Transfer:
         """Return from a subdialog, with values (VoiceXML 5.3.10)."""
