@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 from prima import __version__
 from prima.deferred import dataclass, field
-from prima.errors import DocumentError, PrimaError, UsageError
+from prima.errors import TOO_MUCH, DocumentError, PrimaError, UsageError
 from prima.pool import Died, cores, spread
 
 if TYPE_CHECKING:
@@ -370,7 +370,7 @@ def _row(job: Job, loaded: Loaded, made: Transcript) -> Row:
     measure, summary = made.measure, made.summary()
     messages = [told_failure(failure) for failure in made.failures]
     if made.outcome == "limit":
-        messages.append("the run made more records than a run may.")
+        messages.append(TOO_MUCH)
     return Row(
         job.scenario,
         job.policy or loaded.cast.scenario.policy,

@@ -13,6 +13,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
+TOO_MUCH = (
+    "the run made more records, or more text, than a run may."
+    " Let what comes again and again in it wait longer each time, or end the run earlier (until)."
+)
+"""Why a run ends that goes past its limits, and what an author can do."""
 MANY_LETTERS, MANY_WORDS = 60, 300
 """Beyond these no guess is made at what was meant: it would take too long."""
 

@@ -254,7 +254,11 @@ def limits() -> str:
             f"{evaluation.INSTANT_SECONDS:g} s",
             "the run ends (exit code 3)",
         ),
-        ("steps of content in one instant", f"{bounds.MAX_STEPS:,}", "the application ends"),
+        (
+            "steps of content in one instant, or in instants joined by events sent without delay",
+            f"{bounds.MAX_STEPS:,}",
+            "the application ends",
+        ),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
         ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),

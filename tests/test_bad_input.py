@@ -722,17 +722,22 @@ def test_nobody_answers_all_day(
     monkeypatch.setattr(rehearsal, "MAX_RECORDS", 5_000)
     body = form('<field name="q" type="text"><prompt timeout="0s"/></field>')
     path = stage(tmp_path, app(body), attributes='until="86400s"')
-    prima("run", path, "-o", "t").check(3, "more records, or more text, than a run may")
+    prima("run", path, "-o", "t").check(
+        3, "more records, or more text, than a run may. Let what", "wait longer each time"
+    )
     prima("show", "t").check(0)
 
 
 # Documents that do not wait ---------------------------------------------------------
 
+AT_ONCE = '<send event="a.b" delay="0s"/>'
 LOOPS = [
     ("goto", block('<goto next="#f"/>'), "loops without ever waiting"),
     ("goto-cycle", block('<goto next="#g"/>') + form('<block><goto next="#f"/></block>', "g"), "without ever waiting"),
     ("item", form('<block name="b"><goto nextitem="b"/></block>'), "without ever waiting"),
     ("clear", block("<clear/>"), "without ever waiting"),
+    ("send", block(AT_ONCE).replace("</form>", f'<on event="a.b">{AT_ONCE}<log>x</log></on></form>'), "without ever waiting"),
+    ("sends", block(AT_ONCE * 40).replace("</form>", f'<on event="a.b"><log>x</log>{AT_ONCE}</on></form>'), "without ever waiting"),
     ("throw", block('<throw event="a"/>').replace("</form>", '<on event="a"><throw event="a"/></on></form>'), "throw without end"),
     ("throw-deep", block('<throw event="a"/>').replace("</form>", '<on event="a">' + '<if cond="true">' * 90 + '<throw event="a"/>' + "</if>" * 90 + "</on></form>"), "throw without end"),
     ("error-in-error", form(f'<block><throw event="error.x"/></block><on event="error"><log expr="{BAD}"/></on>'), "throw without end"),
@@ -745,6 +750,27 @@ LOOPS = [
 @pytest.mark.parametrize(("name", "body", "message"), LOOPS)
 def test_loops(prima: Prima, tmp_path: Path, name: str, body: str, message: str) -> None:
     prima("run", stage(tmp_path, app(body))).check(3, "prima: a: ", "app.xml:2", message)
+
+
+def test_who_sends_himself_event_after_event_ends_alone(prima: Prima, tmp_path: Path) -> None:
+    loops = block(AT_ONCE).replace("</form>", f'<on event="a.b">{AT_ONCE}</on></form>')
+    write(tmp_path, "bad.xml", app(loops, name="bad"))
+    write(tmp_path, "app.xml", GOOD)
+    write(tmp_path, "s.xml", scenario('<application src="bad.xml"/>' + PLAY))
+    prima("run", "s.xml", "-o", "t").check(3, "prima: bad: error.semantic: bad.xml:2: it loops")
+    assert messages(tmp_path / "t") == ["alive"]
+    assert len((tmp_path / "t").read_bytes()) < 5_000_000
+
+
+def test_who_waits_between_his_events_may_go_on(prima: Prima, tmp_path: Path) -> None:
+    ticks = AT_ONCE.replace("0s", "20ms")
+    path = stage(
+        tmp_path,
+        app(block(AT_ONCE).replace("</form>", f'<on event="a.b">{ticks}</on></form>')),
+        attributes='until="600s"',
+    )
+    prima("run", path, "-o", "t").check(0)
+    assert (tmp_path / "t").read_text().count('"a.b"') > 29_000
 
 
 def test_subdialogs_inside_each_other_can_be_handled(prima: Prima, tmp_path: Path) -> None:

@@ -113,7 +113,7 @@ def _transcript(path: str, policy: str | None, whole: bool) -> Transcript:
         RunError: the run ended by a limit.
     """
     from prima import api
-    from prima.errors import RunError
+    from prima.errors import TOO_MUCH, RunError
 
     if policy is None and not _is_markup(path):
         return api.read(path, partial=True) if whole else api.skim(path)
@@ -121,7 +121,7 @@ def _transcript(path: str, policy: str | None, whole: bool) -> Transcript:
     made = api.rehearse(path, policy)
     made.name = f"{path} ({policy})" if policy else path
     if made.outcome == "limit":
-        raise RunError(f"{path}: the run made more records than a run may.")
+        raise RunError(f"{path}: {TOO_MUCH}")
     return made
 
 

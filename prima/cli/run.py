@@ -24,7 +24,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
-from prima.errors import RunError, UsageError, counted
+from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -194,7 +194,7 @@ def _run_one(
         for failure in transcript.failures:
             tell(f"prima: {told_failure(failure)}")
     if transcript.outcome == "limit":
-        raise RunError("the run made more records, or more text, than a run may.")
+        raise RunError(TOO_MUCH)
     if transcript.failures:
         raise Exit(3)
 

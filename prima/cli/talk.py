@@ -25,7 +25,7 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.cli.terminal import Keyboard, Piped, Typist, edit_lines, ending_well
-from prima.errors import RunError, UsageError
+from prima.errors import TOO_MUCH, RunError, UsageError
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
@@ -129,7 +129,7 @@ def talk(
         finally:
             _keep(conversation, target)
     if game.stopped == "limit":
-        raise RunError("the run made more records than a run may.")
+        raise RunError(TOO_MUCH)
     if game.failures:
         raise Exit(3)
     if conversation.wrong and not terminal:

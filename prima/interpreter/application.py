@@ -281,6 +281,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if len(self._timers) >= MAX_TIMERS:
             raise Thrown(self.internal("error.semantic", f"more than {MAX_TIMERS} delayed events"))
         due = self.now + max(milliseconds, 1)
+        if milliseconds <= 1:  # who sends himself one after the other loops without ever waiting
+            self.hurried = due
         timer = (due, next(self._timer_serial), name, data, fiber.frame.state)
         self._keep_timers([*self._timers, timer])
 

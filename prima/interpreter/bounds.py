@@ -37,6 +37,8 @@ class Bounds(Generic[Evaluator]):
         """Characters said, logged and sent since the start."""
         self.steps = 0
         """Pieces of content gone through in this instant."""
+        self.hurried = -1
+        """An instant that is none of its own: of an event sent without delay just before."""
         self._output = 0
         self._spent = 0.0
         """Seconds of scripts in the instants before."""
@@ -44,7 +46,9 @@ class Bounds(Generic[Evaluator]):
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
         self.now = now
-        self.steps = self._output = 0
+        if now != self.hurried:
+            self.steps = 0
+        self._output = 0
         engine = self.engine
         engine.now = self.began + now
         if engine.spent:

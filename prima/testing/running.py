@@ -11,7 +11,7 @@ from time import perf_counter
 from typing import Any, Literal
 
 from prima import api
-from prima.errors import DocumentError, PrimaError, RunError, UsageError
+from prima.errors import TOO_MUCH, DocumentError, PrimaError, RunError, UsageError
 from prima.loading import Loaded, load_scenario
 from prima.pool import Died, spread
 from prima.testing.checking import Failure, check, make_run
@@ -104,7 +104,7 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
     _compare(transcript.table(), choice.compare, own, made)
     unexpected = _unexpected(transcript.failures, loaded)
     if transcript.outcome == "limit":
-        unexpected.append(Failure(scenario.node.place, "The run made more records than a run may."))
+        unexpected.append(Failure(scenario.node.place, TOO_MUCH[0].upper() + TOO_MUCH[1:]))
     if unexpected:
         made.status = "error"
         made.failures += unexpected
