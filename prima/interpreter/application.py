@@ -40,7 +40,7 @@ from prima.interpreter.frame import (
 from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
-from prima.interpreter.reactions import DONE, Hop
+from prima.interpreter.reactions import DONE
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.messages import (
     Action,
@@ -132,24 +132,26 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.serial = event.serial
         frame = self.frame
         if frame is not None:
-            item, reactions, react = frame.item, frame.form.reactions, None
+            item, reactions, reaction = frame.item, frame.form.reactions, None
             if reactions is not None:
                 key = event.name if item is None else (item.name, event.name)
-                react = reactions.get(key)
+                reaction = reactions.get(key)
             try:
-                if react is None or not self.quick or frame.units:
+                if reaction is None or not self.quick or frame.units:
                     self.handling.dispatch(event, frame)
                 else:
-                    transfer = react(self, frame, event)
-                    if transfer is None:
+                    react, given = reaction
+                    way = react(self, frame, event, given)
+                    if way is None:
                         if frame.form.items:
                             self.go_on(frame)
-                    elif type(transfer) is Hop and not (
-                        frame.asked or frame.fibers or frame.caller or self._timers
-                    ):  # there is nothing to leave and nothing to begin: the frame may stay
-                        frame.form, frame.state = transfer.target, next(self.states)
-                    elif transfer is not DONE:
-                        self.transfer(frame, transfer)
+                    elif type(way) is not Form:
+                        if way is not DONE:
+                            self.transfer(frame, way)
+                    elif frame.asked or frame.fibers or frame.caller or self._timers:
+                        self.transfer(frame, GoForm(way.id))
+                    else:  # there is nothing to leave and nothing to begin: the frame may stay
+                        frame.form, frame.state = way, next(self.states)
             except (Thrown, ScriptError, GoOut) as error:
                 self._rescue(error)
         self.cause = None

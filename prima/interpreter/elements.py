@@ -337,8 +337,9 @@ class Form:
     known: Known | None = field(default=None, repr=False, compare=False)
     """What has been found out of the events that have happened in it."""
     reactions: dict[Any, Any] | None = field(default=None, repr=False, compare=False)
-    """What events do in it that have happened often, as functions; None if that cannot be. They
-    are kept by their names, or by the name of the item that was being visited and theirs."""
+    """What events do in it that have happened often, as functions and what these are called with;
+    None if that cannot be. They are kept by their names, or by the name of the item that was being
+    visited and theirs."""
 
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""

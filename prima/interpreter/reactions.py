@@ -44,8 +44,14 @@ from prima.messages import Event
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
 
-Reaction = Callable[["Interpreter", Frame, Event], Transfer | None]
-"""What an event does: gives the transfer of control in which it ends, or :data:`DONE`."""
+Given = tuple[Any, ...]
+"""What differs from one handler to others alike: the seldom needed in one tuple, then the rest."""
+React = Callable[["Interpreter", Frame, Event, Given], Transfer | Form | None]
+"""What an event does: gives the transfer of control in which it ends, or :data:`DONE`; or the form
+to which it leads, where neither form has anything to do but to wait for events."""
+Reaction = tuple[React, Given]
+"""A function, and what it is to be called with. Handlers alike have one function, so that what each
+has of its own is little: of many states what is needed next is then at hand."""
 Place = tuple[Handler | None, Expression | None]
 """Where something may fail: in a handler or a condition before it, and in which expression."""
 
@@ -56,16 +62,6 @@ DEEPEST = 30
 WORD = pattern(r"[\w$]+")
 MOST_ACTS = 300
 """Pieces of content that are written out for one event."""
-
-
-class Hop(GoForm):
-    """A goto from a form to another, where neither has anything to do but to wait for events."""
-
-    __slots__ = ("target",)
-
-    def __init__(self, target: Form) -> None:
-        super().__init__(target.id)
-        self.target = target
 
 
 class _Beyond(Exception):
@@ -87,17 +83,16 @@ def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction 
         writer.reaction(handlers)
     except _Beyond:
         return None
-    made = _maker("\n".join(writer.lines), len(writer.given))
-    return made((*writer.rare, tuple(writer.places)), *writer.given)
+    rare = (*writer.rare, tuple(writer.places))
+    return _function("\n".join(writer.lines)), (rare, *writer.given)
 
 
 @lru_cache(maxsize=1_000)
-def _maker(code: str, given: int) -> Callable[..., Reaction]:
-    """What makes a reaction of what is given to it."""
+def _function(code: str) -> React:
+    """A function by its text."""
     held: dict[str, Any] = {}
-    names = "".join(f", c{index}" for index in range(given))
-    exec(f"def make(rare{names}):\n{code}\n return react", NAMES, held)
-    return held["make"]  # type: ignore[no-any-return]
+    exec(code, NAMES, held)
+    return held["react"]  # type: ignore[no-any-return]
 
 
 class _Writer:
@@ -119,9 +114,9 @@ class _Writer:
         """The scopes in a reaction, for those who need all of them: few do."""
         self.lines: list[str] = []
         self.given: list[Any] = []
-        """What the function is made with, as ``c0``, ``c1``, ..."""
+        """What the function is called with, behind what is seldom needed."""
         self.rare: list[Any] = []
-        """What it seldom needs: in one tuple, as each call takes up all that it was made with."""
+        """What it seldom needs, for the tuple that is ``given[0]``; the last of it are the places."""
         self.places: list[Place] = [(None, None)]
         self.with_fiber = False
         """Whether the handler that is being written calls anything that needs its fiber."""
@@ -130,7 +125,7 @@ class _Writer:
 
     def reaction(self, handlers: Sequence[Handler]) -> None:
         """The whole function."""
-        self.write(1, "def react(owner, frame, event):")
+        self.write(0, "def react(owner, frame, event, given):")
         before = len(self.lines)
         self.write(2, "document = frame.document")
         if self.has_dialog:
@@ -142,7 +137,7 @@ class _Writer:
         self.write(2, "try:")
         self.handlers(handlers)
         self.write(2, "except failures as error:")
-        self.write(3, "return failed(owner, frame, event, error, rare[-1][at])")
+        self.write(3, "return failed(owner, frame, event, error, given[0][-1][at])")
         self.write(2, "return untaken(event)")
         if self.with_sensors:
             line = "  if owner.untold: owner.handling.tell_sensors()"
@@ -153,9 +148,9 @@ class _Writer:
         self.lines.append(" " * depth + line)
 
     def give(self, value: Any) -> str:
-        """The name of something that the function is made with."""
+        """Something that the function is called with."""
         self.given.append(value)
-        return f"c{len(self.given) - 1}"
+        return f"given[{len(self.given)}]"
 
     def at(self, handler: Handler | None, expr: Expression | None) -> str:
         """The place, by its number, where something may fail from here on."""
@@ -215,7 +210,7 @@ class _Writer:
         self.write(depth, f"owner.steps += {len(content)}")
         if content:
             over = f"owner.steps > {MAX_STEPS} or owner.engine.spent > {MAX_SCRIPT_SECONDS}"
-            self.write(depth, f"if {over}: owner.count_step(rare[{len(self.rare)}], 0)")
+            self.write(depth, f"if {over}: owner.count_step(given[0][{len(self.rare)}], 0)")
             self.rare.append(content[0].node)
         for act in content:
             match act:
@@ -280,13 +275,13 @@ class _Writer:
             case Assign() | Declare() | If():
                 return True
             case Goto(form=str(form), item=None) if form in self.document.forms:
-                return isinstance(self.way(form), Hop)
+                return isinstance(self.way(form), Form)
         return False
 
-    def way(self, form: str) -> Transfer:
-        """The way to a form."""
+    def way(self, form: str) -> Transfer | Form:
+        """The way to a form: the form itself where there is nothing to leave and to begin."""
         target = self.document.forms[form]
-        return Hop(target) if self.form.bare and target.bare else GoForm(form)
+        return target if self.form.bare and target.bare else GoForm(form)
 
     def repeat(self, depth: int, act: Foreach) -> None:
         """Content for each element of an array."""
@@ -324,7 +319,7 @@ class _EngineWriter(_Writer):
             return "(owner.application, document)"
         return self.all_scopes
 
-    def way(self, form: str) -> Transfer:
+    def way(self, form: str) -> Transfer | Form:
         """The way to a form; a scope that scripts may have put something into does not stay."""
         return GoForm(form) if self.document.tampering else super().way(form)
 
