@@ -109,24 +109,29 @@ GUARDS = r"""
   };
   for (const name of Object.keys(given)) define(globalThis, name, { value: given[name] });
   const { get: getStack, set: setStack } = Object.getOwnPropertyDescriptor(Err.prototype, 'stack');
-  const kinds = ['Error', 'EvalError', 'RangeError', 'ReferenceError', 'SyntaxError', 'TypeError',
-    'URIError', 'InternalError', 'AggregateError', 'SuppressedError'];
-  for (const kind of kinds.filter((name) => typeof globalThis[name] === 'function')) {
-    const prototype = globalThis[kind].prototype;
-    for (const key of ['name', 'message', 'toString', Symbol.toPrimitive]) {
-      const value = prototype[key];
-      const set = function (own) {  // what inherits from it may have its own
-        if (this === prototype) return;
-        define(this, key, { value: own, writable: true, configurable: true, enumerable: true });
-      };
-      define(prototype, key, { get: () => value, set: set, enumerable: false, configurable: false });
-    }
-    define(prototype, 'stack',
-      { get: getStack, set: setStack, enumerable: false, configurable: false });
+  const still = (value) => () => value, none = still(undefined), message = still('');
+  const prototypes = [], toString = still(Err.prototype.toString);
+  const setter = (key) => function (own) {  // what inherits from a prototype may have its own
+    for (let i = 0; i < prototypes.length; i++) if (prototypes[i] === this) return;
+    define(this, key, { value: own, writable: true, configurable: true, enumerable: true });
+  };
+  const setters = {};
+  for (const key of ['name', 'message', 'toString']) setters[key] = setter(key);
+  const setPrimitive = setter(Symbol.toPrimitive);
+  const lock = (prototype, key, get, set) =>
+    define(prototype, key, { get: get, set: set, enumerable: false, configurable: false });
+  for (const kind of ['Error', 'EvalError', 'RangeError', 'ReferenceError', 'SyntaxError',
+      'TypeError', 'URIError', 'InternalError', 'AggregateError', 'SuppressedError']) {
+    if (typeof globalThis[kind] !== 'function') continue;
+    const prototype = prototypes[prototypes.length] = globalThis[kind].prototype;
+    lock(prototype, 'name', still(kind), setters.name);
+    lock(prototype, 'message', message, setters.message);
+    lock(prototype, 'toString', toString, setters.toString);
+    lock(prototype, Symbol.toPrimitive, none, setPrimitive);
+    lock(prototype, 'stack', getStack, setStack);
   }
   for (const key of ['prepareStackTrace', 'stackTraceLimit']) {
-    const value = Err[key];
-    define(Err, key, { get: () => value, set: () => { }, enumerable: false, configurable: false });
+    lock(Err, key, still(Err[key]), none);
   }
 })();
 """

@@ -120,6 +120,19 @@ def _script_error(error: Exception) -> ScriptError:
     return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
 
 
+class _Helpers(dict[str, Any]):
+    """Our functions in an engine by their names, each fetched when it is first needed."""
+
+    def __init__(self, context: Any) -> None:
+        super().__init__()
+        self._all = context.eval(HELPERS)
+        self._guarded = context.eval(f"(all, name) => {GUARD}(all[name])")
+
+    def __missing__(self, name: str) -> Any:
+        found = self[name] = self._guarded(self._all, name)
+        return found
+
+
 class Engine:
     """The ECMAScript of one application, or of several that trust each other.
 
@@ -143,13 +156,7 @@ class Engine:
         self._assigning: dict[tuple[str, str, int], Any] = {}
         self._scripts: dict[str, tuple[Any, Hoisted]] = {}
         context.eval(GUARDS)
-        helpers = context.eval(HELPERS)
-        context.set("__h", helpers)
-        self._help = {
-            name: context.eval(f"{GUARD}(__h.{name})")
-            for name in re.findall(r"(\w+): function", HELPERS)
-        }
-        context.eval("delete globalThis.__h")
+        self._help = _Helpers(context)
         self.now = self._told = 0
         """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
         self._clocked = False
