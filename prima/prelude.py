@@ -101,9 +101,12 @@ GUARDS = r"""
     (f) => function (a, b, c) { try { return f(a, b, c); } catch (e) { throw safe(e); } },
     (f) => function (a, b, c, d) { try { return f(a, b, c, d); } catch (e) { throw safe(e); } },
   ];
+  const any = (f) => function (...all) {
+    try { return apply(f, undefined, all); } catch (e) { throw safe(e); }
+  };
   const given = {
     '\u01c0safe': safe,
-    '\u01c0guard': (f) => guards[f.length](f),
+    '\u01c0guard': (f) => (guards[f.length] || any)(f),
     '\u01c0evaluate': guards[1]((code) => { evaluate(code); }),
     '\u01c0name': (f, name) => define(f, 'name', { value: name, configurable: true }),
   };

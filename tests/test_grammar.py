@@ -240,6 +240,29 @@ def test_values_of_other_documents_that_json_lacks(uri: str) -> None:
     assert one.interpretation == [None, None, None, {"n": None}]
 
 
+@pytest.mark.parametrize(
+    ("code", "seen"),
+    [
+        ("Symbol('x')", "undefined"),
+        ("{toJSON: function () {}}", "undefined"),
+        ("new Number(3)", "3"),
+        ("new String('pizza')", '"pizza"'),
+        ("{n: new Number(5), b: new Boolean(false)}", '{"n":5,"b":false}'),
+        ('JSON.parse(\'{"__proto__":{"a":1},"b":2}\')', '{"__proto__":{"a":1},"b":2}'),
+        ("{'\\0': 5}", '{"\\u0000":5}'),
+    ],
+)
+def test_odd_values_of_other_documents(code: str, seen: str) -> None:
+    other = f"{SCRIPT}$r = x {{!{{out = {code}}}!}};"
+    grammar = load(
+        SCRIPT + "$r = $<b> {out = '' + JSON.stringify(rules.latest())};",
+        base="http://x.org/a",
+        fetch=lambda _: other.encode(),
+    )
+    (one,) = grammar.match("x")
+    assert (one.error, one.interpretation) == (None, seen)
+
+
 @pytest.mark.parametrize(("greedy", "fits"), [(6, True), (0, False)])
 def test_further_documents_have_less_memory_for_their_tags(greedy: int, fits: bool) -> None:
     eats = "var k = []; while (k.length < 3000) k.push('x'.repeat(1000) + k.length);"

@@ -25,6 +25,9 @@ THROWN = [
     (f"Error.prepareStackTrace = () => ({{toString: {LOOP}}}); for (;;);", LATE),
     (f"Error.stackTraceLimit = {{valueOf: {LOOP}}}; for (;;);", LATE),
     (f"String = {LOOP}; throw 'told'", "told"),
+    (f"eval('var \\u01c0safe = function () {{ return {{toString: {LOOP}}}; }}'); null.x", "TypeError"),
+    (f"eval('var \\u01c0 = 1'); throw {{toString: {LOOP}}}", LATE),
+    (f"\\u0065val('var \\\\u01c0safe = 1'); throw {{toString: {LOOP}}}", LATE),
     ("throw 'a\\ud800b'", "a\ufffdb"),
     ("throw undefined", "undefined"),
     ("class E extends Error { constructor(m) { super(m); this.name = 'E'; } } throw new E('x')", "E: x"),
@@ -105,6 +108,16 @@ def test_what_a_grammars_script_declares_is_there_for_its_tags() -> None:
     sandbox = Sandbox(Budget(0))
     sandbox.run("'use strict'; let a = 1; const b = 2; var c = 3; class D { x() { return a; } }")
     sandbox.run("function f() { return a + b; } { let hidden = 1; } var x = class Inner {};")
-    code = "out = [a, b, c, new D().x(), f(), typeof hidden, typeof Inner]"
+    sandbox.run(
+        "// the class for drinks\nvar price = 3, told = 'let if', re = /[/]const /, t = `let ${price}`;"
+    )
+    sandbox.run("let d = 4, {e, g} = {e: 5, g: 6}; const [h] = [7]; for (let i = 0; i < 2; i++) {}")
+    sandbox.run(
+        "let n = 0; function inc() { n++; } function get() { return n; } var q = n++ / 2 / 1;"
+    )
+    code = "n = 5; inc(); out = [a, b, c, new D().x(), f(), d, e, g, h, get(), told, t, q]"
     box = sandbox.rule(code, sandbox.environment("x", False))
-    assert sandbox.json(box) == [1, 2, 3, 1, 3, "undefined", "undefined"]
+    assert sandbox.json(box) == [1, 2, 3, 1, 3, 4, 5, 6, 7, 6, "let if", "let 3", 0]
+    code = "out = [typeof hidden, typeof Inner, typeof i, typeof drinks]"
+    box = sandbox.rule(code, sandbox.environment("x", False))
+    assert sandbox.json(box) == ["undefined"] * 4

@@ -2069,3 +2069,11 @@ def test_the_property_holds_for_the_platforms_own_words(allowed: bool) -> None: 
     assert call.saying() != ["Which?"]
     call.hears("red")
     assert call.logs() == (["red"] if allowed else [])
+
+
+def test_an_expression_of_an_attribute_may_have_commas() -> None:
+    call = Call(
+        """<form><block><goto expr="'#nowhere', '#b'"/></block></form>
+        <form id="b"><block><log>b</log></block></form>"""
+    )
+    assert call.logs() == ["b"]

@@ -12,6 +12,7 @@ import re
 from functools import lru_cache
 
 from prima.grammar.model import Document
+from prima.grammar.text import PASSED
 
 FORMATS = {
     "": "",
@@ -25,18 +26,10 @@ FORMATS = {
 """Tag formats and how their tags are read; where none is told, the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
-_PASSED = r"""(?xs)(?P<passed>
-    "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' | `(?:\\.|[^`\\])*`
-    | //[^\n]* | /\*.*?(?:\*/|\Z)
-    | (?:(?<=[=(,:;!&|?{}\[+\-*%<>~^])|(?<![\w$.])(?:return|typeof|case)|\A)\s*
-      /(?:\\[^\n]|\[(?:\\[^\n]|[^\]\\\n])*+\]?+|[^/\\\n\[])++(?:/\w*|(?=\n)|\Z)
-    | \\.
-)"""
-"""Strings, templates, comments and regular expressions: what ``$`` and names mean nothing in."""
-_SKIPPED = re.compile(_PASSED)
-_SIGN = r"(?<![\w$.])\$(?:\$|(?P<rule>[^\W\d]\w*))?(?![\w$])"
+_SKIPPED = re.compile(PASSED, re.VERBOSE | re.DOTALL)
+_SIGN = r"(?:(?<![\w$.])|(?<=\.\.\.))\$(?:\$|(?P<rule>[^\W\d]\w*))?(?![\w$])"
 _DOLLAR = re.compile(_SIGN)
-_DOLLARS = re.compile(rf"{_PASSED}|{_SIGN}")
+_DOLLARS = re.compile(rf"(?P<passed>{PASSED})|{_SIGN}", re.VERBOSE | re.DOTALL)
 _DECLARED = re.compile(r"(?<![\w$.])(?:var|let|const|class|function)\s+(\$[\w$]*)")
 _PARAMETERS = re.compile(r"(?<![\w$.])function\b\s*+\*?\s*+[\w$]*+\s*+\(([^()]*)\)")
 _USED = re.compile(

@@ -14,6 +14,7 @@ from typing import Any
 import _quickjs as quickjs
 
 from prima.grammar.budget import TIME_LIMIT, Budget
+from prima.grammar.text import PASSED
 from prima.messages import Json
 from prima.prelude import (
     CLOCK,
@@ -41,6 +42,9 @@ const stringify = JSON.stringify, parse = JSON.parse, isArray = Array.isArray;
 const assign = Object.assign, define = Object.defineProperty;
 const hidden = (object, name, value) => define(object, name, { value: value, writable: true });
 const keys = Object.keys, create = Object.create;
+const own = Object.hasOwn, number = Number;
+const apply = Reflect.apply, truth = Boolean.prototype.valueOf;
+const wrapped = [[Number, Number], [String, String], [Boolean, (v) => apply(truth, v, [])]];
 // Rules may have any name; so nothing else is there that looks like one, but for this method.
 const named = create(null);
 hidden(named, 'hasOwnProperty', Object.prototype.hasOwnProperty);
@@ -51,14 +55,19 @@ const mark = (value) => {
   if (typeof value === 'number' && value - value !== 0) return { [strange]: String(value) };
   if (value === null || typeof value !== 'object') return value;
   if (typeof value.toJSON === 'function') return value;
+  for (let i = 0; i < wrapped.length; i++)
+    if (value instanceof wrapped[i][0]) return mark(wrapped[i][1](value));
   const made = isArray(value) ? [] : {};
-  for (const key of keys(value)) made[key] = mark(value[key]);
+  for (const key of keys(value))
+    define(made, key, { value: mark(value[key]), writable: true, configurable: true, enumerable: true });
   if (isArray(value)) made.length = value.length;
   return made;
 };
 const unmark = (value) => {
   if (value === null || typeof value !== 'object') return value;
-  if (strange in value) return value[strange] === 'undefined' ? undefined : Number(value[strange]);
+  const told = own(value, strange) ? value[strange] : undefined;
+  if (told === 'undefined') return undefined;
+  if (told === 'NaN' || told === 'Infinity' || told === '-Infinity') return number(told);
   for (const key of keys(value)) value[key] = unmark(value[key]);
   return value;
 };
@@ -66,7 +75,10 @@ const plain = (value) => value !== null && typeof value === 'object' && !isArray
 return {
   box: function (text) { return { v: parse(text) }; },
   json: function (box) { return stringify(box.v); },
-  carry: function (box) { return stringify(mark(box.v)); },
+  carry: function (box) {
+    const text = stringify(mark(box.v));
+    return text === undefined ? stringify(mark(undefined)) : text;
+  },
   take: function (text) { return { v: unmark(parse(text)) }; },
   environment: function (text, merges) {
     let last, lastMeta = { text: '', score: 1 }, at = 0;
@@ -99,8 +111,35 @@ CHECK = r"""
 """Compiles a script by itself, which ends before it begins; it declares nothing outside."""
 
 
-LEXICAL = re.compile(r"\b(?:let|const|class)\s+([A-Za-z_$][\w$]*)")
-"""Names that code may declare for itself alone where it is evaluated, not for the global scope."""
+_PIECE = re.compile(
+    rf"{PASSED} | (?P<open>[(\[{{]) | (?P<close>[)\]}}]) | (?<![\w$.])(?P<word>let|const)(?=\s|[\[{{])"
+    r" | (?:\A|(?<=[;}\n]))\s*+(?P<class>class)\s+(?P<name>[A-Za-z_$][\w$]*)",
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def shared(code: str) -> str:
+    """A script whose declarations at its top are all of the global scope, by which others see them.
+
+    ``let`` and ``const`` would be seen nowhere else where code is evaluated by a function.
+    """
+    depth, in_class = 0, False
+
+    def put(match: re.Match[str]) -> str:
+        nonlocal depth, in_class
+        depth += (match["open"] is not None) - (match["close"] is not None)
+        text = match[0]
+        if depth == 0 and match["word"]:
+            return "var"
+        if depth == 0 and match["class"]:
+            in_class = True
+            return text.replace("class", f"var {match['name']} = class", 1)
+        if depth == 0 and in_class and text == "}":
+            in_class = False
+            return "};"
+        return text
+
+    return _PIECE.sub(put, code)
 
 
 class ScriptError(Exception):
@@ -142,11 +181,7 @@ class Sandbox:
 
     def run(self, code: str) -> None:
         """Run a script in the global scope (SISR 1.0: global tags)."""
-        names = {name for name in LEXICAL.findall(code) if name not in ("extends", "of", "in")}
-        keep = "".join(
-            f"if(typeof {name}!=='undefined')globalThis.{name}={name};" for name in sorted(names)
-        )
-        self._call(self._context.eval(EVALUATE), f";{code}\n;{keep}")
+        self._call(self._context.eval(EVALUATE), f";{shared(code)}\n;0")
 
     def box(self, value: Json) -> Any:
         """A value from outside, as functions of the sandbox take it."""

@@ -94,6 +94,8 @@ MAY_ASK_TIME = re.compile(
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
 )
 """Code that names ``Date``, or may find it without naming it."""
+EVALUATING = re.compile(r"eval|\\u")
+"""Code that may evaluate other code in its own place."""
 FAILURES = (
     *(quickjs.JSException, quickjs.StackOverflow),
     *(TypeError, ValueError, OverflowError, MemoryError, SystemError),
@@ -216,8 +218,11 @@ class Engine:
 
     def _function(self, parameters: str, body: str) -> Any:
         """A function of the engine; what code in it throws comes out as an error of ours."""
-        caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
-        code = f"(function({parameters}){{try{{{body}}}{caught}}})"
+        if EVALUATING.search(body):  # it might declare anything, also in our function
+            code = f"{GUARD}(function({parameters}){{{body}}})"
+        else:
+            caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
+            code = f"(function({parameters}){{try{{{body}}}{caught}}})"
         return self._call(self._context.eval, (code,))
 
     def scope(self, **values: Json) -> Scope:

@@ -178,7 +178,7 @@ class Speaker:
         code = node.get(attribute)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place
-            return self.engine.value(f"({how})({code}\n)", context.scopes(local))
+            return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
