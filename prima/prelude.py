@@ -86,7 +86,7 @@ GUARDS = r"""
   // an error of ours instead, in which nobody's code is left; errors of the engine itself, which
   // cannot be caught, are told by prototypes that nobody can change.
   const safe = (thrown) => {
-    let said = '(Failed obtaining', stack = '';
+    let said = '(Failed obtaining)', stack = '';
     try { said = text(thrown); } catch (_) { }
     try { stack = thrown.stack; } catch (_) { }
     const made = new Err(short(said, 2000));
@@ -138,6 +138,23 @@ GUARDS = r"""
   }
 })();
 """
+
+
+def reason(text: str, seconds: float) -> str:
+    """Why a script failed, in words, by what the engine says; ``seconds`` is its limit."""
+    message = (text.splitlines() or [""])[0]
+    if message.startswith("InternalError: interrupted"):
+        return f"it took longer than {seconds:g} s"
+    if message == "null":  # all that the engine says where no memory is left for an error
+        return "it threw null, or used too much memory"
+    if "out of memory" in message or message == "" or "string too long" in message:
+        return "it used too much memory"
+    if message.startswith("(Failed obtaining"):
+        return "it threw a value that cannot be shown"
+    if message == "[object Object]":
+        return "it threw an object that is no Error"
+    return message
+
 
 START = "2005-03-01T10:00:00"
 """When a run begins by its own calendar, if nobody says (UTC)."""

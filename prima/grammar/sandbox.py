@@ -25,6 +25,7 @@ from prima.prelude import (
     MEMORY_LIMIT,
     PRELUDE,
     STACK_LIMIT,
+    reason,
 )
 from prima.values import well_formed, well_formed_json
 
@@ -173,7 +174,7 @@ class Sandbox:
         try:
             return function(*given)
         except (quickjs.JSException, quickjs.StackOverflow) as error:
-            raise ScriptError(_said(str(error))) from None
+            raise ScriptError(reason(str(error), TIME_LIMIT)) from None
         except (TypeError, ValueError, OverflowError, MemoryError, SystemError) as error:
             raise ScriptError(f"it gives what cannot be used: {error}") from None
         finally:
@@ -220,7 +221,7 @@ class Sandbox:
         try:
             self._check(code)
         except (quickjs.JSException, quickjs.StackOverflow) as error:
-            return _said(str(error))
+            return reason(str(error), TIME_LIMIT)
         return ""
 
     def carry(self, box: Any) -> str:
@@ -258,19 +259,3 @@ class Sandbox:
         if getter is None:
             getter = self._functions[f".{name}"] = self._context.eval(f"((o) => o.{name})")
         return self._call(getter, thing)
-
-
-def _said(text: str) -> str:
-    """The engine's message, in words."""
-    message = (text.splitlines() or [""])[0]
-    if message.startswith("InternalError: interrupted"):
-        return f"it took longer than {TIME_LIMIT:g} s"
-    if message == "null":  # all that the engine says where no memory is left for an error
-        return "it threw null, or used too much memory"
-    if message == "[object Object]":
-        return "it threw an object that is no Error"
-    if message.startswith("(Failed obtaining"):
-        return "it threw a value that cannot be shown"
-    if "out of memory" in message or not message:
-        return "it used too much memory"
-    return message

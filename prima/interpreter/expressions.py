@@ -41,6 +41,7 @@ from prima.prelude import (
     PRELUDE,
     SAFE,
     STACK_LIMIT,
+    reason,
 )
 from prima.values import well_formed, well_formed_json
 
@@ -105,18 +106,7 @@ FAILURES = (
 
 def _script_error(error: Exception) -> ScriptError:
     text = str(error)
-    lines = text.splitlines() or [type(error).__name__]
-    message = lines[0]
-    if message.startswith("InternalError: interrupted"):
-        message = f"it took longer than {TIME_LIMIT:g} s"
-    elif message == "null":  # all that the engine says where no memory is left for an error
-        message = "it threw null, or used too much memory"
-    elif "out of memory" in message or message == "" or "string too long" in message:
-        message = "it used too much memory"
-    elif message.startswith("(Failed obtaining"):
-        message = "it threw a value that cannot be shown"
-    elif message == "[object Object]":
-        message = "it threw an object that is no Error"
+    message = reason(text or type(error).__name__, TIME_LIMIT)
     # The outermost place is in this code; inner ones may be in a function declared elsewhere.
     found = re.findall(r"<input>:(\d+):(\d+)", text)
     return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
