@@ -1,9 +1,9 @@
-# Verbs: demo test check bench schemas core test-core. Each sets up what it needs in .venv.
+# Verbs: demo test check bench schemas. Each sets up what it needs in .venv.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench schemas core test-core build clean
+.PHONY: demo test check bench schemas build clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/prima run documents/scenarios/follow-during-navigation.xml
@@ -19,7 +19,6 @@ check: $(VENV)/.dev
 	$(BIN)/python -m prima.pictures --check
 
 bench: $(VENV)/.bench
-	-$(MAKE) core
 	$(BIN)/python -m bench.peers
 	$(BIN)/python -m bench.run
 
@@ -29,18 +28,6 @@ schemas: $(VENV)/.dev
 
 build: $(VENV)/.dev
 	$(BIN)/python -m build --wheel
-
-# The package with its mediator compiled: see docs/performance.md.
-core: $(VENV)/.dev
-	rm -rf build/core
-	HATCH_BUILD_HOOK_ENABLE_CUSTOM=1 $(BIN)/python -m pip install --quiet --no-deps --target build/core .
-
-# The tests on it, in a copy of the checkout: a compiled module hides its source.
-test-core: core
-	rm -rf build/tested && mkdir -p build/tested
-	tar cf - --exclude=./build --exclude=./.git --exclude=./.venv --exclude=./bench/peers/node_modules . | tar xf - -C build/tested
-	cd build/core && find . -name '*.so' | tar cf - -T - | tar xf - -C ../tested
-	cd build/tested && PRIMA_CORE=compiled PYTHONPATH=. $(abspath $(BIN))/python -m pytest -n auto $(CORE_TESTS)
 
 clean:
 	rm -rf $(VENV) dist build

@@ -6,7 +6,6 @@ import random
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from bench import core
 from bench.fresh import check
 
 if TYPE_CHECKING:
@@ -18,14 +17,12 @@ MOST = 100_000
 """Decisions of one measurement."""
 
 
-def decisions(waiting: int, seconds: float, policy: str = "prima", written: bool = False) -> float:
+def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     """Decisions a second while ABs of so many applications wait.
 
     One more application's AB runs. Each decision is the end of what runs, told to the mediator,
     and a selection with its records and orders. All Commands are requested before; the clock
-    stands still while an application whose Commands have all been done asks for new ones. As the
-    trace of the rates of events, the records are kept, and looked at while the clock stands still;
-    ``written`` says that they are drained, as somebody does who writes them.
+    stands still while an application whose Commands have all been done asks for new ones.
     """
     from prima.commands import TABLE_4_2
     from prima.messages import Command, Request, Step
@@ -66,10 +63,8 @@ def decisions(waiting: int, seconds: float, policy: str = "prima", written: bool
             mediator.told.clear()
             mediator.select()
             (order,) = mediator.drain_orders()
-            if written:
-                records += chronicle.drain()
+            records += chronicle.drain()
         lasted += perf_counter() - began
-        records += chronicle.drain()
         winners = [record["app"] for record in records if record["phase"] == "decision"]
         check(len(winners) == CHAIN, f"{len(winners)} decisions are recorded")
         check(len(set(winners[:-1])) == 1, "an application's next Command does not go on (S2c)")
@@ -78,12 +73,6 @@ def decisions(waiting: int, seconds: float, policy: str = "prima", written: bool
         chronicle.drain()
     check(turns == expected_turns(times, len(turns)), "another application had its turn (S2e, S2f)")
     return CHAIN * len(turns) / lasted
-
-
-def compiled(waiting: int, seconds: float, policy: str = "prima", written: bool = False) -> float:
-    """The same with the compiled core."""
-    core.use()
-    return decisions(waiting, seconds, policy, written)
 
 
 def cost(waiting: int, seconds: float) -> float:

@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from statistics import median, quantiles
 from time import perf_counter
 
-from bench import core, peers
+from bench import peers
 from bench.fresh import ROOT, Figure, WrongAnswer, fresh
 from bench.rows import MOST, SECTIONS, Call, Row
 
@@ -79,8 +79,6 @@ def available(name: str) -> bool:
     """Whether what a row needs is installed."""
     if name in peers.PEERS:
         return peers.installed(name)
-    if name == "core":
-        return core.built()
     return not name or find_spec(name) is not None
 
 

@@ -122,7 +122,7 @@ class Session:
             else:
                 self._take(value)
         mediator = self.mediator
-        if self._due or mediator.memory.running or mediator.holds:
+        if self._due or mediator.memory.behaviors or mediator.holds:
             self._time_out(now)
         if mediator.told:
             self._settle()
@@ -258,7 +258,7 @@ class Session:
         app.sensors.update(self._sensors)
         if not isinstance(app, Interpreter):
             app.connection = value.connection
-        self.mediator.load(name, app.kind, app.document.lang)
+        self.mediator.load(name, app.kind, app.document.lang, self.order[name])
         app.start(self.chronicle.now)
         self._act(app)
         if self._sensors:  # what it watches for may be so already
@@ -271,6 +271,8 @@ class Session:
         self.chronicle.event(name, value.actor, app, data, serial)
         if name in SEEING:
             self.mediator.sees_user(name == "human.found")
+        elif value.actor == "user":
+            self.mediator.senses_user()
         apps = self._alive if app is None else self._alone(app)
         if apps is None or len(apps) > 1:
             apps = self._in_order()
@@ -295,6 +297,7 @@ class Session:
 
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""
+        self.mediator.senses_user()
         self._serial += 1
         told = dict(value.data)
         self._record(
@@ -339,7 +342,7 @@ class Session:
     def _breaks_in(self, text: str, data: dict[str, Json]) -> bool:
         """Whether an application takes what the user says while its prompts are being said."""
         now, memory = self.chronicle.now, self.mediator.memory
-        for ab in [*memory.running.values(), *memory.waiting]:
+        for ab in [*memory.running.values(), *memory.waiting.values()]:
             app = self.apps[ab.app.name]
             if isinstance(app, Interpreter) or ab.command is None or ab.silent:
                 continue

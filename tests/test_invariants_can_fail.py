@@ -14,18 +14,16 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
 from prima.messages import Command, Data
-from prima.scheduler import selection, selector, waiting
+from prima.scheduler import rules
 from prima.scheduler.behavior import Application, Behavior, Stream
 from prima.scheduler.effects import Body, Effects
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
-from prima.scheduler.selection import Policy, Refusal
+from prima.scheduler.rules import Refusal
+from prima.scheduler.selection import Policy
 from prima.scheduler.selector import Selector
-from tests.core import in_python
 from tests.generated import Ask, Leave, Play, Run, Script, World, drive, perform, plays, scripts
 from tests.invariants import check, numbers
-
-pytestmark = in_python
 
 Patch = Callable[[pytest.MonkeyPatch], None]
 
@@ -130,7 +128,7 @@ def floor_ignored(patch: pytest.MonkeyPatch) -> None:
     def refused(ab: Behavior, memory: Memory) -> None:
         return None
 
-    patch.setattr(selection, "refused_by_floor", refused)
+    patch.setattr(rules, "f2", refused)
 
 
 def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
@@ -148,7 +146,7 @@ def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
     def rank(ab: Behavior, memory: Memory) -> tuple[int, ...]:
         return (0, 0, 0)
 
-    patch.setattr(selection, "rank_reaction", rank)
+    patch.setattr(rules, "s2b", rank)
 
 
 def channel_ignored(patch: pytest.MonkeyPatch) -> None:
@@ -157,7 +155,7 @@ def channel_ignored(patch: pytest.MonkeyPatch) -> None:
     def refused(ab: Behavior, memory: Memory) -> None:
         return None
 
-    patch.setattr(selection, "refused_by_channel", refused)
+    patch.setattr(rules, "k1", refused)
 
 
 def ends_untold(patch: pytest.MonkeyPatch) -> None:
@@ -178,7 +176,7 @@ def chance(patch: pytest.MonkeyPatch) -> None:
             seen.append(ab)
         return ab.serial * (-1 if len(seen) > 2 else 1)
 
-    patch.setattr(waiting, "rank_declared", rank)
+    patch.setattr(rules, "s2f", rank)
 
 
 # The extensions, broken ------------------------------------------------------------
@@ -199,14 +197,13 @@ def carried_by_anything(patch: pytest.MonkeyPatch) -> None:
     def composes(ab: Behavior, memory: Memory) -> bool:
         return ab.motion == "free"
 
-    patch.setattr(selection, "composes_with_floor", composes)
-    patch.setattr(selector, "composes_with_floor", composes)
+    patch.setattr(rules, "x5", composes)
 
 
 def unmarked_interrupted(patch: pytest.MonkeyPatch) -> None:
     """X2 interrupts what is not restartable."""
 
-    def give_way(selector: Selector, reaction: Behavior) -> bool:
+    def give_way(selector: Selector, reaction: Behavior, held: object) -> bool:
         if reaction.reaction is None:
             return False
         for ab in selector.memory.conflicts(reaction):
@@ -257,7 +254,7 @@ def restarted_as_new(patch: pytest.MonkeyPatch) -> None:
 def nothing_interrupted(patch: pytest.MonkeyPatch) -> None:
     """X2 is gone, though it is on."""
 
-    def give_way(selector: Selector, reaction: Behavior) -> bool:
+    def give_way(selector: Selector, reaction: Behavior, held: object) -> bool:
         return False
 
     patch.setattr(Selector, "_give_way", give_way)
@@ -286,7 +283,7 @@ def camera_forgotten(patch: pytest.MonkeyPatch) -> None:
     prepare = Selector._prepare
 
     def blind(selector: Selector, ab: Behavior, now: int) -> bool:
-        selector.in_view = False
+        selector.memory.in_view = False
         return prepare(selector, ab, now)
 
     patch.setattr(Selector, "_prepare", blind)
@@ -350,27 +347,25 @@ def held_without_floor(patch: pytest.MonkeyPatch) -> None:
 
 def held_without_channel(patch: pytest.MonkeyPatch) -> None:
     """X3 keeps the stream, but not the channel."""
-    engages = Stream.engages_user
+    engages = rules.engages
 
-    def engages_user(stream: Stream) -> bool:
-        return stream.held_until is None and engages(stream)
+    def unless_held(stream: Stream, memory: Memory) -> bool:
+        return stream.held_until is None and engages(stream, memory)
 
-    patch.setattr(Stream, "engages_user", engages_user)
+    patch.setattr(rules, "engages", unless_held)
 
 
 def nothing_joins(patch: pytest.MonkeyPatch) -> None:
     """X3 holds a stream that no request joins."""
-    place = Mediator._place
+    stream = Mediator._stream
 
-    def apart(
-        mediator: Mediator, app: Application, reaction: int | None, unit: Behavior | None
-    ) -> tuple[Stream, Behavior | None]:
+    def apart(mediator: Mediator, app: Application, reaction: int | None) -> Stream:
         holds, mediator.holds = mediator.holds, {}
-        found = place(mediator, app, reaction, unit)
+        found = stream(mediator, app, reaction)
         mediator.holds = holds
         return found
 
-    patch.setattr(Mediator, "_place", apart)
+    patch.setattr(Mediator, "_stream", apart)
 
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:

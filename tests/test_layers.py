@@ -37,8 +37,8 @@ INSIDE = {
     "scheduler": [
         {"effects"},
         {"behavior"},
-        {"waiting"},
         {"chronicle", "memory", "intake"},
+        {"rules"},
         {"selection"},
         {"selector"},
         {"endings"},

@@ -8,19 +8,14 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from functools import lru_cache
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 from prima.commands import CommandType
 from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group, Record
 from prima.scheduler.effects import Effects
 
-Rank = tuple[Any, ...]
-"""Where a waiting AB stands, by the numbers of a policy's rules, S2a to S2f: the smallest first.
-
-The serial number is the last of them, which no two have; behind it comes the AB itself."""
 HIGH: Final = 1
 
 
@@ -51,7 +46,10 @@ class Stream:
     name: str
     app: Application
     members: dict[str, Behavior] = field(default_factory=dict)
-    windows: int = 0
+    turn: int = 0
+    """When an AB of it started last, as a counter; 0 while none has (S2b, S2d)."""
+    spoken: bool = False
+    """Whether an AB of it has spoken (F6)."""
     engaged: bool = False
     causes: set[int] = field(default_factory=set)
     """Serial numbers of the events that the stream has reacted to (F2)."""
@@ -66,19 +64,27 @@ class Stream:
 
     @property
     def open(self) -> bool:
-        """Whether the stream has an AB in working memory, an open window, or is held (C1, X3)."""
-        return bool(self.members) or self.windows > 0 or self.held_until is not None
+        """Whether the stream has an AB in working memory, or is held (C1, X3).
+
+        Nobody asks while a window is open: streams end in the selection, after all windows.
+        """
+        return bool(self.members) or self.held_until is not None
+
+    @property
+    def runs(self) -> bool:
+        """Whether an AB of the stream runs."""
+        return any(ab.state is RUNNING for ab in self.members.values())
 
     def contending(self) -> list[Behavior]:
-        """What runs and waits, as F2 and K1 see it; other linked ABs compete for nothing."""
-        return [one for ab in self.members.values() if ab.state is not LINKED for one in ab.meant()]
+        """What runs and waits, as F2 and K1 see it; what is linked competes for nothing."""
+        return [one for ab in self.members.values() if not ab.dormant for one in ab.meant()]
 
-    def engages_user(self) -> bool:
-        """Whether the stream keeps the channel (rule K1)."""
-        if not self.engaged:
-            return False
-        contending = self.contending()
-        return not contending or not all(ab.leaves for ab in contending)
+    def latest(self) -> Behavior | None:
+        """The latest of its ABs that its application has requested, if any is in memory (O1)."""
+        return next(
+            (ab for ab in reversed(self.members.values()) if ab.unit is None and not ab.inserted),
+            None,
+        )
 
 
 @dataclass(slots=True, eq=False)
@@ -177,10 +183,6 @@ class Behavior:
     """The devices in the order in which they are looked at and told."""
     id: str = ""
     """The AB's name in the transcript; a loop of a feedback Command has its number."""
-    line: Line | None = None
-    """In which it waits, if it does: see :mod:`prima.scheduler.waiting`."""
-    rank: Rank | None = None
-    """Where it stands there, as one that reacts to nothing and was not freed just now."""
     late: int | None = None
     """When it will have run for longer than it may (U5, E1), once it has started."""
     told: Record | None = None
@@ -218,30 +220,12 @@ class Behavior:
         return behind or [self]
 
     @property
+    def dormant(self) -> bool:
+        """Whether the AB is linked, or inside a unit that is: it neither runs nor waits."""
+        return self.state is LINKED or (self.unit is not None and self.unit.dormant)
+
+    @property
     def restartable(self) -> bool:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         what = self.group or self.command
         return what is not None and what.restartable and not self.silent
-
-
-def of(rank: Rank) -> Behavior:
-    """Whose rank it is."""
-    ab: Behavior = rank[-1]
-    return ab
-
-
-class Line:
-    """The waiting ABs of one kind that react to nothing, first come first."""
-
-    __slots__ = ("devices", "leaves", "priority", "ranks")
-
-    def __init__(self, devices: frozenset[str], priority: int, leaves: bool) -> None:
-        self.devices = devices
-        self.priority = priority
-        self.leaves = leaves
-        self.ranks: list[Rank] = []
-
-    def below(self, rank: Rank) -> int:
-        """Where those begin that stand behind a rank."""
-        ranks = self.ranks
-        return 0 if not ranks or rank < ranks[0] else bisect_left(ranks, rank)

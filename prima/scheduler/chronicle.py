@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from prima.messages import Cue, Data, Json, Record
-from prima.scheduler.behavior import Behavior, Rank, Stream, of
+from prima.scheduler.behavior import Behavior, Stream
 
 LOSERS_NAMED: Final = 8
 """How many losers of a decision are named; all are counted."""
@@ -99,11 +99,9 @@ class Chronicle:
         """Record what becomes of a stream."""
         self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
 
-    def decision(self, winner: Behavior, rule: str, losers: list[Rank], count: int) -> None:
+    def decision(self, winner: Behavior, rule: str, losers: list[str]) -> None:
         """Record a selection: the rule, who won, who lost, and how many did."""
-        if len(losers) > LOSERS_NAMED:
-            losers = losers[:LOSERS_NAMED]
-        named = [of(rank).id for rank in losers]
+        named, count = losers[:LOSERS_NAMED], len(losers)
         self.records.append(("decision", self.now, winner.app.name, winner.id, rule, named, count))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Final
 
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import (
@@ -21,6 +22,9 @@ from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
 from prima.scheduler.selector import Selector
 
+ABSENCE_MS: Final = 20_000
+"""For how long nobody has to have sensed the user for them to be absent (K1)."""
+
 
 class Told:
     """Notices for one application, to be handled in the window of ``stream`` if any (C3)."""
@@ -37,8 +41,23 @@ class Endings:
     """Working memory, and every way out of it that is no failure."""
 
     def __init__(
-        self, policy: Policy, table: Table, chronicle: Chronicle, bound: int | None = None
+        self,
+        policy: Policy,
+        table: Table,
+        chronicle: Chronicle,
+        bound: int | None = None,
+        absence: int = ABSENCE_MS,
     ) -> None:
+        """Begin with nothing.
+
+        Args:
+            policy: what decides.
+            table: the robot's Commands.
+            chronicle: takes the records.
+            bound: after how many loops of another a waiting AB counts as a reaction (E4).
+            absence: after how long (ms) without being sensed the user is absent (K1).
+        """
+        self._absence = absence
         self.chronicle = chronicle
         chronicle.extensions = policy.extensions
         self.memory = Memory()

@@ -58,10 +58,27 @@ class Failures(Endings):
             self.told.append(Told(ab.app.name, stream, [notice]))
 
     def deadline(self) -> int | None:
-        """The next instant at which a unit, a device or an event waited for is too late."""
+        """The next instant at which a unit, a device or an event waited for is too late (ms)."""
         running = self.memory.running.values()
         late = [ab.late for ab in running if ab.late is not None]
+        lapse = self._lapse()
+        if lapse is not None:
+            late.append(lapse)
         return min((*late, *self.holds.values()), default=None)
+
+    def _lapse(self) -> int | None:
+        """K1: when the user will count as absent, if anything waits for that."""
+        memory = self.memory
+        if memory.in_view or memory.absent or not memory.engaged:
+            return None
+        if not any(ab.leaves for ab in memory.waiting.values()):
+            return None
+        return memory.sensed + self._absence
+
+    def _look_for_user(self) -> None:
+        """K1: nobody engages a user who has not been seen, heard or felt for a while."""
+        memory = self.memory
+        memory.absent = not memory.in_view and self._now() - memory.sensed >= self._absence
 
     def expire(self) -> bool:
         """U5, E1: end what has run longer than it may; tells whether there was any such."""

@@ -63,21 +63,39 @@ def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
     return made
 
 
-def check_steps(steps: list[Step], app: Application, table: Table, unit: bool = False) -> None:
+def check_steps(
+    steps: list[Step], app: Application, table: Table, owned: frozenset[str] | None = None
+) -> None:
     """Check all Commands of a request before any of them is taken in.
+
+    ``owned`` are the devices of the unit that they are requested in, if any (U5).
 
     Raises:
         Refused: for the first bad one.
     """
     for step in steps:
         if isinstance(step.what, Group):
-            check_steps(step.what.steps, app, table, unit=True)
+            check_steps(step.what.steps, app, table, group_devices(step.what, table))
             continue
         check_command(step.what, app, table)
-        row = table[step.what.type]
-        if unit and (row.feedback or row.leaves):
-            message = f"{row.name} cannot stand in a unit: it is not one piece."
-            raise Refused("error.semantic", message, step.what)
+        if owned is not None:
+            check_in_unit(step.what, table[step.what.type], owned)
+
+
+def check_in_unit(command: Command, row: CommandType, owned: frozenset[str]) -> None:
+    """U4, U5: refuse in a unit what is not one piece, or needs a device that the unit lacks.
+
+    Raises:
+        Refused: with ``error.semantic``.
+    """
+    if row.feedback or row.leaves:
+        what = "works in loops" if row.feedback else "leaves the user"
+        message = f"{row.name} cannot be part of a unit: it {what}."
+        raise Refused("error.semantic", message, command)
+    lacking = sorted(row.occupied(command.text) - owned)
+    if lacking:
+        message = f"{row.name} needs {', '.join(lacking)}, which its unit does not own."
+        raise Refused("error.semantic", message, command)
 
 
 def group_devices(group: Group, table: Table) -> frozenset[str]:
@@ -179,11 +197,9 @@ def link(parent: Behavior, child: Behavior) -> None:
     parent.children.append(child)
 
 
-def parent_of(app: Application, unit: Behavior | None) -> Behavior | None:
-    """O1: the latest Command this application requested, if it is in working memory still."""
+def parent_in(app: Application, unit: Behavior) -> Behavior | None:
+    """O1, U5: the latest Command that was requested in a unit, if it is in working memory still."""
     latest = app.latest
-    if latest is None or latest.state is GONE:
-        return None
-    if unit is not None:
-        return latest if latest.unit is unit else None
-    return latest.unit or latest
+    return (
+        latest if latest is not None and latest.unit is unit and latest.state is not GONE else None
+    )

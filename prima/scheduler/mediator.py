@@ -18,25 +18,25 @@ from prima.messages import (
     Order,
     Request,
 )
-from prima.scheduler.behavior import Application, Behavior, Run, Stream
+from prima.scheduler.behavior import GONE, Application, Behavior, Run, Stream
 from prima.scheduler.endings import Told
 from prima.scheduler.failures import Failures, allowance
-from prima.scheduler.intake import Refused, check_steps, link, parent_of, substitute
+from prima.scheduler.intake import Refused, check_steps, link, parent_in, substitute
 
 
 class Mediator(Failures):
     """Mediates the Commands of any number of applications by the rules of one policy."""
 
-    def load(self, name: str, kind: str, lang: str = "") -> None:
+    def load(self, name: str, kind: str, lang: str = "", order: int | None = None) -> None:
         """An application starts, which speaks a language if that is known.
 
-        Its place in the declared order is that of its first call.
+        ``order`` is its place among the declared ones (S2f); by default, behind all that came
+        before.
         """
-        app = Application(name, kind, len(self.memory.apps))
         before = self.memory.apps.get(name)
-        if before is not None:  # it was there before
-            app.order = before.order
-        self.memory.apps[name] = app
+        if order is None:
+            order = before.order if before is not None else len(self.memory.apps)
+        self.memory.apps[name] = Application(name, kind, order)
         self.chronicle.add(
             "load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})}
         )
@@ -54,8 +54,14 @@ class Mediator(Failures):
         self.chronicle.add("unload", "mediator", app=name, rule="E2", outcome=reason)
 
     def sees_user(self, yes: bool) -> None:
-        """V4: the camera has come to see the user, or has lost him (for X4)."""
-        self._selector.in_view = yes
+        """V4: the camera has come to see the user, or has lost them (for X4 and K1)."""
+        self.senses_user()
+        self.memory.in_view = yes
+
+    def senses_user(self) -> None:
+        """K1: the user is seen, heard or felt."""
+        self.memory.sensed = self._now()
+        self.changed = self.changed or self.memory.absent
 
     def request(self, name: str, asked: Request) -> None:
         """Take Commands in as one tree (U3), or refuse them all (E3)."""
@@ -72,17 +78,18 @@ class Mediator(Failures):
                     by=command.type,
                     source=command.source,
                 )
+        unit = app.units.get(asked.unit) if asked.unit is not None else None
         try:
-            check_steps(asked.steps, app, self._maker.table, unit=asked.unit in app.units)
+            check_steps(asked.steps, app, self._maker.table, unit.devices if unit else None)
         except Refused as refused:
             self._refuse(app, asked, refused)
             return
-        unit = app.units.get(asked.unit) if asked.unit is not None else None
         first = asked.steps[0].what
-        if isinstance(first, Command) and first.now:
-            self._order_now(app, first, unit)
+        urgent = first if isinstance(first, Command) and first.now else None
+        if urgent is not None:
+            self._order_now(app, urgent, unit)
         reaction = asked.cause if unit is None else None
-        stream, parent = self._place(app, reaction, unit)
+        stream, parent = self._place(app, reaction, unit, urgent is not None)
         self._hint(stream, asked)
         run = Run(asked.run, app, len(asked.steps))
         made = self._maker.chain(app, stream, asked.steps, asked, self._now(), run, unit)
@@ -136,11 +143,15 @@ class Mediator(Failures):
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
             return
-        self._continue(app, state[-1].stream)
+        self._continue(app, [ab.stream for ab in state])
         self._withdraw(state, "O3")
 
-    def _continue(self, app: Application, stream: Stream) -> None:
-        """O2, O3: what the application asks for in this instant goes on with a stream."""
+    def _continue(self, app: Application, streams: list[Stream]) -> None:
+        """O2, O3: what the application asks for in this instant goes on with one of its streams.
+
+        Of several that is the one of which an AB runs, or has run last; else the latest.
+        """
+        stream = max(reversed(streams), key=lambda one: (one.runs, one.turn))
         app.continuing = (stream, self._now())
         self._continuing.append(app)
 
@@ -159,7 +170,7 @@ class Mediator(Failures):
             if stream.app is app and stream.hold and state in (None, stream.hold_state):
                 stream.hold = None
                 if stream.held_until is not None:
-                    self._continue(app, stream)
+                    self._continue(app, [stream])
                     self._let_go(stream, "left")
 
     def _refuse(self, app: Application, asked: Request, refused: Refused) -> None:
@@ -179,28 +190,44 @@ class Mediator(Failures):
         self.told.append(Told(app.name, None, [notice]))
 
     def _place(
-        self, app: Application, reaction: int | None, unit: Behavior | None
+        self, app: Application, reaction: int | None, unit: Behavior | None, urgent: bool = False
     ) -> tuple[Stream, Behavior | None]:
-        """O1, O2, O3, C3: the stream a new tree belongs to, and its parent there."""
+        """O1, O2, O3, C3: the stream a new tree belongs to, and its parent there.
+
+        A reaction and what is wanted now (``urgent``) have none.
+        """
         if unit is not None:
-            return unit.stream, parent_of(app, unit)
-        parent = parent_of(app, None) if reaction is None else None
+            return unit.stream, None if urgent else parent_in(app, unit)
+        parent = self._parent(app) if reaction is None and not urgent else None
         if parent is not None:
             return parent.stream, parent
-        held = [self.memory.streams[name] for name in self.holds]
-        continuing = app.continuing
-        if any(one.app is app for one in held):
-            stream = next(one for one in reversed(held) if one.app is app)
-        elif continuing is not None and continuing[1] == self._now():
-            stream = continuing[0]
-        elif reaction is None and app.window is not None:
-            stream = app.window
-        else:
-            stream = self._maker.stream(app)
+        stream = self._stream(app, reaction)
         if stream.name not in self.memory.streams:
             self.memory.open(stream)
         self._touched[stream.name] = stream
         return stream, None
+
+    def _parent(self, app: Application) -> Behavior | None:
+        """O1: what a Command follows; in a window that is an AB of the window's stream."""
+        if app.window is not None:
+            return app.window.latest()
+        latest = app.latest
+        if latest is None or latest.state is GONE:
+            return None
+        return latest.unit or latest
+
+    def _stream(self, app: Application, reaction: int | None) -> Stream:
+        """The stream that a tree without a parent goes on with, or a new one."""
+        held = [self.memory.streams[name] for name in self.holds]
+        for stream in reversed(held):
+            if stream.app is app:
+                return stream
+        continuing = app.continuing
+        if continuing is not None and continuing[1] == self._now():
+            return continuing[0]
+        if reaction is None and app.window is not None:
+            return app.window
+        return self._maker.stream(app)
 
     def _root(self, ab: Behavior, parent: Behavior | None, reaction: int | None) -> None:
         """Give a root its parent by O1, its reactive flag by C5, or its place by C3."""
@@ -223,8 +250,9 @@ class Mediator(Failures):
             for ab in self.memory.of_app(app)
             if ab.devices & devices and ab.unit is None
         }
+        if streams:
+            self._continue(app, list(streams.values()))
         for stream in streams.values():
-            self._continue(app, stream)
             self._cancel(list(stream.members.values()), devices)
 
     def open_window(self, told: Told) -> None:
@@ -233,7 +261,6 @@ class Mediator(Failures):
         stream = told.stream
         self.memory.apps[told.app].window = stream
         if stream is not None:
-            stream.windows += 1
             self.chronicle.stream("window", stream, "C3", outcome="open")
 
     def close_window(self, told: Told) -> None:
@@ -242,7 +269,6 @@ class Mediator(Failures):
         stream = told.stream
         self.memory.apps[told.app].window = None
         if stream is not None:
-            stream.windows -= 1
             self._touched[stream.name] = stream
             self.chronicle.stream("window", stream, "C3", outcome="closed")
 
@@ -253,6 +279,7 @@ class Mediator(Failures):
         self.changed = False
         self._close_streams()
         if not self.halted:
+            self._look_for_user()
             self._selector.select(self._now())
             self._set_deadlines()
         if self._rolling is not None and "locomotion" not in self.memory.occupied:

@@ -13,7 +13,6 @@ from prima.scheduler.behavior import (
     Behavior,
     Stream,
 )
-from prima.scheduler.waiting import Waiting
 
 
 class Memory:
@@ -22,15 +21,21 @@ class Memory:
     def __init__(self) -> None:
         self.apps: dict[str, Application] = {}
         self.behaviors: dict[str, Behavior] = {}
-        self.waiting = Waiting()
+        self.waiting: dict[str, Behavior] = {}
+        """Those outside of units."""
         self.running: dict[str, Behavior] = {}
         self.occupied: dict[str, Behavior] = {}
         self.streams: dict[str, Stream] = {}
         self.engaged: dict[str, Stream] = {}
         """Those of the streams in which an AB has engaged the user (K1)."""
         self.floor: list[Stream] = []
-        self._latest: Stream | None = None
-        """The stream of which an AB has started last."""
+        self._turns = 0
+        self.in_view = False
+        """Whether the camera sees the user, as far as it has told (V4)."""
+        self.sensed = 0
+        """When the user was seen, heard or felt last (ms, K1)."""
+        self.absent = False
+        """Whether the user has not been sensed for so long that nobody engages them (K1)."""
 
     @property
     def holder(self) -> Stream | None:
@@ -39,14 +44,16 @@ class Memory:
 
     @property
     def active(self) -> Application | None:
-        """The application whose stream is active: the floor's, else the one that started last.
+        """The application whose stream is active (S2b, V3).
 
-        With no floor there is none once that stream has ended and nothing runs.
+        That is the floor's; with no floor, of the streams that have not ended the one of which
+        an AB started last.
         """
-        holder, latest = self.holder, self._latest
-        if holder is not None:
-            return holder.app
-        return latest.app if latest is not None and (self.running or latest.open) else None
+        for stream in reversed(self.floor):
+            if stream.open:
+                return stream.app
+        latest = max(self.streams.values(), key=turn_of, default=None)
+        return latest.app if latest is not None and turn_of(latest) else None
 
     def add(self, ab: Behavior) -> None:
         """Take a requested AB in: waiting where nothing is before it, else linked."""
@@ -62,15 +69,16 @@ class Memory:
         """Let the AB compete. Commands inside a unit compete within it only."""
         ab.state = WAITING
         if ab.unit is None:
-            self.waiting.add(ab)
+            self.waiting[ab.name] = ab
 
     def start(self, ab: Behavior, now: int) -> None:
         """Move a waiting AB to the running ones; its devices are occupied from here on."""
-        self.waiting.remove(ab)
+        self.waiting.pop(ab.name, None)
         ab.state = RUNNING
         ab.started = now
         self.running[ab.name] = ab
-        self._latest = ab.stream
+        self._turns += 1
+        ab.stream.turn = ab.app.last_turn = self._turns
         unit = ab.unit
         for device in ab.in_order:
             if unit is not None and device in unit.devices:
@@ -103,7 +111,7 @@ class Memory:
         if ab.state is RUNNING:
             self.release(ab)
         else:
-            self.waiting.remove(ab)
+            self.waiting.pop(name, None)
         del self.behaviors[name]
         del ab.app.members[name]
         del ab.stream.members[name]
@@ -131,11 +139,6 @@ class Memory:
         stream.engaged = True
         self.engaged[stream.name] = stream
 
-    def rank_anew(self, stream: Stream) -> None:
-        """C2: a stream has been suspended, or resumed: its waiting ABs rank otherwise (S2d)."""
-        for ab in stream.members.values():
-            self.waiting.moved(ab)
-
     def conflicts(self, ab: Behavior) -> list[Behavior]:
         """All running ABs that occupy one of the devices, in the order of their serial numbers."""
         found = [
@@ -147,7 +150,7 @@ class Memory:
 
     def unwait(self, ab: Behavior) -> None:
         """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
-        self.waiting.remove(ab)
+        del self.waiting[ab.name]
         ab.state = LINKED
 
     def conflict(self, ab: Behavior) -> Behavior | None:
@@ -161,3 +164,8 @@ class Memory:
             if other is not None:
                 return other
         return None
+
+
+def turn_of(stream: Stream) -> int:
+    """When an AB of the stream started last; 0 of one that has not begun, or has ended."""
+    return stream.turn if stream.open else 0

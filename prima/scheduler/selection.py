@@ -1,4 +1,4 @@
-"""The rules of selection (S, F, K), each a short function, and the policies made of them.
+"""Policies: the thesis's, made of the rules of selection (S, F, K), and the baselines.
 
 A policy answers three questions about a waiting AB: where it ranks, whether
 something other than a device keeps it from starting, and whether it holds its
@@ -10,67 +10,10 @@ from __future__ import annotations
 
 from prima.deferred import dataclass
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.scheduler.behavior import RUNNING, Behavior, Rank, Stream
+from prima.scheduler import rules
+from prima.scheduler.behavior import Behavior
 from prima.scheduler.memory import Memory
-from prima.scheduler.waiting import (
-    LATER,
-    NO_REACTION,
-    place,
-    rank_declared,
-)
-
-Refusal = tuple[str, str]
-"""The rule that keeps an AB from starting, and what it is kept back by."""
-
-
-def rank_reaction(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
-    """S2b: reactions, the latest event's first; of one event, the active application's."""
-    if ab.reaction is None:
-        return NO_REACTION
-    return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
-
-
-def rank_continuing(ab: Behavior, now: int) -> int:
-    """S2c: a parent that has ended in this instant goes before others."""
-    return 0 if ab.freed == now else LATER
-
-
-def outranks(priority: int, stream: Stream) -> bool:
-    """F2: whether a priority is higher than that of all that the floor's stream has."""
-    contending = stream.contending()
-    return bool(contending) and all(priority > other.priority for other in contending)
-
-
-def refused_by_floor(ab: Behavior, memory: Memory) -> Refusal | None:
-    """F2: another application's floor lets only certain ABs start."""
-    holder = memory.holder
-    if holder is None or holder.app is ab.app:
-        return None
-    if ab.reaction is not None and ab.reaction not in holder.causes:
-        return None
-    priority = max(one.priority for one in ab.meant())
-    return None if outranks(priority, holder) else ("F2", holder.name)
-
-
-def composes_with_floor(ab: Behavior, memory: Memory) -> bool:
-    """X5: whether the floor's stream does nothing but a motion that this one can carry."""
-    holder = memory.holder
-    if holder is None or ab.motion != "free":
-        return False
-    contending = holder.contending()
-    return bool(contending) and all(
-        other.motion == "faithful" and other.state is RUNNING for other in contending
-    )
-
-
-def refused_by_channel(ab: Behavior, memory: Memory) -> Refusal | None:
-    """K1: an AB that leaves the user waits while another application engages the user."""
-    if not ab.leaves:
-        return None
-    for stream in memory.engaged.values():
-        if stream.app is not ab.app and stream.engages_user():
-            return ("K1", stream.name)
-    return None
+from prima.scheduler.rules import Rank, Refusal
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +25,8 @@ class Policy:
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
-    rules: tuple[str, ...] = ("S2a", *["S2b"] * 3, "S2c", "S2d", "S2e", "S2f", "S2f")
-    """The name of the rule behind each number of a rank."""
+    rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
+    """The name of the rule behind each place of a rank."""
     turning: bool = False
     """Whether a start changes how other ABs rank."""
     extensions: frozenset[str] = frozenset()
@@ -94,35 +37,30 @@ class Policy:
         return extension in self.extensions
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
-        """Where a waiting AB stands: the smallest goes first (S2)."""
-        reacting, event, whose = rank_reaction(ab, memory)
-        return place(ab, reacting, event, whose, rank_continuing(ab, now))
+        """Where a waiting AB ranks: the smallest goes first (S2)."""
+        return (
+            rules.s2a(ab),
+            rules.s2b(ab, memory),
+            rules.s2c(ab, now),
+            rules.s2d(ab),
+            rules.s2e(ab),
+            rules.s2f(ab),
+        )
 
     def decided(self, winner: Rank, loser: Rank) -> str:
         """The rule by which one rank goes before another; they differ in the serial number at least."""
-        for index, rule in enumerate(self.rules):
-            ours: int = winner[index]
-            its: int = loser[index]
-            if ours != its:
-                return rule
-        raise AssertionError("two ABs have one serial number")
+        differ = (ours != its for ours, its in zip(winner, loser, strict=True))
+        return next(rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
-        """What else than a device keeps the AB from starting (F2, K1)."""
-        if not memory.floor and not memory.engaged:
-            return None
-        if self.has("x5") and composes_with_floor(ab, memory):
-            return refused_by_channel(ab, memory)
-        return refused_by_floor(ab, memory) or refused_by_channel(ab, memory)
+        """What else than a device keeps the AB from starting (F2, F6, K1)."""
+        if self.has("x5") and rules.x5(ab, memory):
+            return rules.k1(ab, memory)
+        return rules.f2(ab, memory) or rules.f6(ab, memory) or rules.k1(ab, memory)
 
     def holds_back(self, ab: Behavior) -> bool:
         """S3: whether a waiting AB keeps its devices from those it outranks."""
         return ab.reaction is not None
-
-    @property
-    def lined(self) -> bool:
-        """Whether ABs of one line start in its order, so that most need no look (S1-S4, F, K)."""
-        return not self.extensions
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +69,11 @@ class Fifo(Policy):
 
     name: str = "fifo"
     floor: bool = False
-    rules: tuple[str, ...] = ("fifo", "S2f", "S2f")
+    rules: tuple[str, ...] = ("fifo", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The earlier request goes first."""
-        return (ab.requested, rank_declared(ab), ab.serial, ab)
+        return (rules.s2e(ab), rules.s2f(ab))
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """Nothing but devices keeps an AB from starting."""
@@ -145,11 +83,6 @@ class Fifo(Policy):
         """Every waiting AB holds its devices back from later ones."""
         return True
 
-    @property
-    def lined(self) -> bool:
-        """Other orders than the lines'."""
-        return False
-
 
 @dataclass(frozen=True, slots=True)
 class Fair(Fifo):
@@ -157,11 +90,11 @@ class Fair(Fifo):
 
     name: str = "fair"
     turning: bool = True
-    rules: tuple[str, ...] = ("fair", "fifo", "S2f", "S2f")
+    rules: tuple[str, ...] = ("fair", "fifo", "S2f")
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
-        return (ab.app.last_turn, ab.requested, rank_declared(ab), ab.serial, ab)
+        return (ab.app.last_turn, rules.s2e(ab), rules.s2f(ab))
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,13 +102,13 @@ class Fixed(Fifo):
     """One application, named, always outranks the other (a subsumption architecture)."""
 
     name: str = "fixed"
-    rules: tuple[str, ...] = ("fixed", "fifo", "S2f", "S2f")
+    rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
     first: str = ""
 
     def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
         top = ab.app.name == self.first if self.first else ab.app.order == 0
-        return (0 if top else 1, ab.requested, rank_declared(ab), ab.serial, ab)
+        return (0 if top else 1, rules.s2e(ab), rules.s2f(ab))
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +117,7 @@ class Unmediated(Fifo):
 
     name: str = "none"
     exclusive: bool = False
-    rules: tuple[str, ...] = ("none", "S2f", "S2f")
+    rules: tuple[str, ...] = ("none", "S2f")
 
     def holds_back(self, ab: Behavior) -> bool:
         """Nothing is ever held back."""

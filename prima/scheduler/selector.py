@@ -5,34 +5,23 @@ from __future__ import annotations
 from typing import Final
 
 from prima.messages import Command, Group, Order
-from prima.scheduler.behavior import (
-    RUNNING,
-    WAITING,
-    Application,
-    Behavior,
-    Line,
-    Rank,
-    Stream,
-    of,
-)
-from prima.scheduler.chronicle import LOSERS_NAMED, Chronicle
+from prima.scheduler import rules
+from prima.scheduler.behavior import RUNNING, WAITING, Behavior, Stream
+from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
-from prima.scheduler.selection import Policy, Refusal, composes_with_floor, outranks
+from prima.scheduler.rules import Rank, Refusal
+from prima.scheduler.selection import Policy
 
 STARVING_LOOPS: Final = 20
 """After how many loops of another's feedback Command a waiting AB is reported (E4)."""
-FEW = 8
-"""So many waiting ABs are all looked at; each that may not start is recorded with the reason."""
-EVERYBODY: Final = "everybody"
-NOBODY: Final = "nobody"
 COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
-
-
-Losers = tuple[list[Rank], int]
-"""The first of those whom a winner keeps waiting, by rank, and how many there are."""
+Ranked = tuple[Rank, Behavior]
+"""A waiting AB behind its rank; no two ranks are equal, as they end with a serial number."""
+Held = dict[str, Behavior]
+"""Devices that waiting ABs hold back from those that they outrank, and which does (S3)."""
 
 
 class Selector:
@@ -45,9 +34,6 @@ class Selector:
         self.policy = policy
         self.chronicle = chronicle
         self.bound = bound
-        self.few = FEW
-        # Of the policy, what is asked for every AB that is looked at.
-        self._lining = policy.lined
         self._preparing = policy.has("x1") or policy.has("x4")
         self._composing = policy.has("x5")
         self._yielding = policy.has("x2")
@@ -58,137 +44,73 @@ class Selector:
         """Parts of interrupted units whose devices have still to tell how much was done: the unit,
         what of it had been finished, and of how many Commands it is."""
         self.body = Body()
-        self.in_view = False
-        """Whether the camera sees the user, as far as it has told (V4)."""
         self._maker = maker
-        self._resumed: list[Stream] = []
-        """Streams that have resumed in this pass, whose other ABs rank otherwise afterwards."""
         self._suspensions = 0
-        self._turns = 0
         self._starved = 0
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
         self.started = []
         memory = self.memory
-        memory.waiting.settle(now)
         if memory.running:
             for unit in [ab for ab in memory.running.values() if ab.inner]:
                 self._advance(unit, now)
-        more = True
-        while more and memory.waiting.all:
-            more = self._pass(now)
-            if self._resumed:
-                for stream in self._resumed:
-                    memory.rank_anew(stream)
-                self._resumed.clear()
+        while memory.waiting and self._pass(now):
+            pass
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true when what ranks them changed on the way.
 
-        Until then all stand where they stood in the beginning (S2).
+        Until then all rank as they did in the beginning (S2).
         """
-        memory, policy = self.memory, self.policy
-        many = self._lining and len(memory.waiting.all) > self.few
-        candidates = self._ranked(memory.waiting.apart if many else memory.waiting.all, now)
-        if many:
-            self._add_firsts(candidates)
-        held: dict[str, Behavior] = {}
-        index = 0
-        while index < len(candidates):
-            rank = candidates[index]
-            ab = of(rank)
-            index += 1
-            refusal = policy.refusal(ab, memory)
+        ranked = self._ranked(self.memory.waiting, now)
+        held: Held = {}
+        for index, (rank, ab) in enumerate(ranked):
+            refusal = self.policy.refusal(ab, self.memory)
             if refusal is None:
                 if self._preparing and self._prepare(ab, now):
                     return True
-                refusal = self._refused_by_devices(ab, held)
-                if refusal is not None and policy.holds_back(ab):
-                    for device in ab.devices:
-                        held.setdefault(device, ab)
-            if refusal is None:
-                engaging = ab.engages and not ab.stream.engaged
-                if self._start(ab, rank, candidates, index, now, many):
-                    return True
-                if many and engaging:  # others of a line may be the first that may start (K1)
-                    candidates = [one for one in candidates if of(one).name in memory.waiting.apart]
-                    self._add_firsts(candidates)
-                    index, held = 0, {}
-            elif ab.blocked != refusal:
+                refusal = self._wait_for_devices(ab, held)
+            if refusal is not None:
                 self._hold(ab, refusal)
+            elif self._start(rank, ab, ranked[index + 1 :], held, now):
+                return True
         return False
 
-    def _add_firsts(self, found: list[Rank]) -> None:
-        """Of many waiting ABs those that may be the next, in the order of S2 (S1-S3, F, K).
-
-        In a line all need the same devices: whoever comes after the first that F2 and K1
-        let start has to wait for that one's.
-
-        Args:
-            found: those that stand in no line; the others come in among them.
-        """
-        waiting = self.memory.waiting
-        few = len(waiting.all) <= self.few  # since this pass has begun
-        for line in waiting.lines.values():
-            let = EVERYBODY if few else self._let(line)
-            if isinstance(let, Application):
-                found += [ab.rank for ab in let.members.values() if ab.rank and ab.line is line]
-            elif let is EVERYBODY:
-                if line.devices and not few:
-                    found.append(line.ranks[0])
-                else:
-                    found += line.ranks
-        found.sort()
-
-    def _ranked(self, found: dict[str, Behavior], now: int) -> list[Rank]:
+    def _ranked(self, found: dict[str, Behavior], now: int) -> list[Ranked]:
         policy, memory = self.policy, self.memory
-        ranked = [policy.rank(ab, memory, now) for ab in found.values()]
-        if len(ranked) > 1:
-            ranked.sort()  # no two ranks are equal: they end with the serial number
-        return ranked
+        return sorted((policy.rank(ab, memory, now), ab) for ab in found.values())
 
-    def _let(self, line: Line) -> Application | str:
-        """Whose ABs of a line F2 and K1 let start: everybody's, one application's, nobody's."""
-        holder = self.memory.holder
-        allowed: Application | str = EVERYBODY
-        if holder is not None and not outranks(line.priority, holder):
-            allowed = holder.app
-        if line.leaves:
-            for stream in self.memory.engaged.values():
-                if stream.engages_user():
-                    if allowed not in (EVERYBODY, stream.app):
-                        return NOBODY
-                    allowed = stream.app
-        return allowed
+    def _wait_for_devices(self, ab: Behavior, held: Held) -> Refusal | None:
+        """S1, S3: what keeps a device from the AB, which holds its own back while it waits."""
+        refusal = self._refused_by_devices(ab, held)
+        if refusal is None:
+            return None
+        if self._yielding and refusal[0] == "S1" and self._give_way(ab, held):
+            return None
+        if self.policy.holds_back(ab):
+            for device in ab.devices:
+                held.setdefault(device, ab)
+        return refusal
 
-    def _behind(self, line: Line, winner: Behavior, rank: Rank) -> Losers:
-        """Those of a line who rank below a winner that is gone from it, and must wait."""
-        let: Application | str = NOBODY
-        mine, its = line.devices, winner.devices
-        if not mine or (mine is not its and mine.isdisjoint(its)):
-            let = self._let(line)
-            if let is EVERYBODY:
-                return [], 0
-        ranks, start = line.ranks, line.below(rank)
-        if not isinstance(let, Application):
-            return ranks[start : start + LOSERS_NAMED], len(ranks) - start
-        behind = [other for other in ranks[start:] if of(other).app is not let]
-        return behind[:LOSERS_NAMED], len(behind)
-
-    def _refused_by_devices(self, ab: Behavior, held: dict[str, Behavior]) -> Refusal | None:
+    def _refused_by_devices(self, ab: Behavior, held: Held) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
         if not self.policy.exclusive:
             return None
         other = self._occupant(ab)
-        if other is None and not held:
-            return None
-        kept = next((device for device in ab.in_order if device in held), "") if held else ""
-        if self._yielding and other is not None and not kept and self._give_way(ab):
-            other = self._occupant(ab)
         if other is not None:
             return ("S1", other.id)
-        return ("S3", held[kept].id) if kept else None
+        for device in ab.in_order if held else ():
+            if device in held:
+                return ("S3", held[device].id)
+        return None
+
+    def _could_start(self, ab: Behavior, held: Held) -> bool:
+        """Whether nothing keeps a waiting AB from starting (S1, S3, F2, F6, K1)."""
+        return (
+            self._refused_by_devices(ab, held) is None
+            and self.policy.refusal(ab, self.memory) is None
+        )
 
     def _occupant(self, ab: Behavior) -> Behavior | None:
         """Who occupies one of the AB's devices, but for a motion to be composed with (X5)."""
@@ -207,9 +129,9 @@ class Selector:
 
     # Extensions -------------------------------------------------------------
 
-    def _give_way(self, reaction: Behavior) -> bool:
+    def _give_way(self, reaction: Behavior, held: Held) -> bool:
         """X2: interrupt what is restartable and in the way of a reaction; true if that frees all."""
-        if reaction.reaction is None:
+        if reaction.reaction is None or any(device in held for device in reaction.devices):
             return False
         ways = self._in_the_way(reaction)
         if not all(yields(ab, reaction) for ab in ways):
@@ -273,7 +195,7 @@ class Selector:
                 return True
         if ab.connect and self.policy.has("x4"):
             ab.connect = False
-            return not self.in_view and self._insert(ab, [Command("face-human")], "X4", now)
+            return not self.memory.in_view and self._insert(ab, [Command("face-human")], "X4", now)
         return False
 
     def _insert(self, ab: Behavior, commands: list[Command], rule: str, now: int) -> bool:
@@ -308,81 +230,35 @@ class Selector:
 
     def _hold(self, ab: Behavior, refusal: Refusal) -> None:
         rule, by = refusal
+        if ab.blocked == refusal:
+            return
         changed = ab.blocked[0] != rule or "." not in by
         ab.blocked = refusal
         if changed:  # the next loop of the same feedback Command is no news
             self.chronicle.hold(ab, rule, by)
 
-    def _start(
-        self,
-        ab: Behavior,
-        rank: Rank,
-        candidates: list[Rank],
-        index: int,
-        now: int,
-        many: bool,
-    ) -> bool:
+    def _start(self, rank: Rank, ab: Behavior, lower: list[Ranked], held: Held, now: int) -> bool:
         """Start an AB and record why; true when others rank otherwise now.
 
         Args:
+            rank: the AB's.
             ab: the AB.
-            rank: where it stands.
-            candidates: those that are looked at.
-            index: where among them those begin that rank below it.
+            lower: those that rank below it.
+            held: devices that those above it hold back.
             now: the instant.
-            many: whether so many wait that not each of them is looked at.
         """
-        memory, policy = self.memory, self.policy
-        holder = memory.holder
-        composed = self._composing and composes_with_floor(ab, memory)
-        by_floor_rule = holder is not None and holder.app is not ab.app and not composed
-        others = bool(memory.running)
-        # Where the floor changes, all others are suspended: then each is looked at anyway.
-        waiting = memory.waiting
-        lined = many and ab.reaction is None and not by_floor_rule
-        # What is ranked by the lines alone is left to them,
-        lower = [
-            candidates[place]
-            for place in range(index, len(candidates))
-            if not many or of(candidates[place]).line is None
-        ]
-        if many and not lined:  # or looked for now
-            for line in waiting.lines.values():
-                behind = line.ranks[line.below(rank) :]
-                lower += [other for other in behind if of(other) is not ab]
-            lower.sort()
+        policy, memory = self.policy, self.memory
+        rivals = [one for one in lower if self._could_start(one[1], held)]
+        composed = self._composing and rules.x5(ab, memory)
+        why = self._admitted_by(ab, composed)
         reaction, ab.reaction = ab.reaction, None
         ab.reacted = -1 if reaction is None else reaction
-        changed = False
+        beside = composed or not rules.f3(ab, reaction is not None, memory)
         self._run(ab, now)
-        if reaction is not None or by_floor_rule:
-            changed = self._take_floor(ab, reaction, by_floor_rule)
-        losers = [
-            other
-            for other in lower
-            if of(other).devices & ab.devices or policy.refusal(of(other), memory)
-        ]
-        # Of several reactions that the floor would let in, it is their rank that decided.
-        rivals = reaction is not None and any(of(other).reaction for other in losers)
-        count = len(losers)
-        if lined:
-            for line in waiting.lines.values():
-                firsts, more = self._behind(line, ab, rank)
-                losers = losers + firsts if losers else firsts
-                count += more
-            if lower or len(waiting.lines) > 1:
-                losers.sort()
-        if not policy.exclusive:
-            rule = "none"
-        elif composed:
-            rule = "X5"
-        elif by_floor_rule and policy.floor and not rivals:
-            rule = "F2"
-        elif losers:
-            rule = policy.decided(rank, losers[0])
-        else:
-            rule = "S4" if others else "S1"
-        self.chronicle.decision(ab, rule, losers, count)
+        changed = self._take_floor(ab, reaction, beside)
+        losers = [one for one in rivals if not self._could_start(one[1], held)]
+        rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
+        self.chronicle.decision(ab, rule, [loser.id for _, loser in losers])
         self.chronicle.start(ab, rule, reaction)
         if ab.inner:
             self._advance(ab, now)
@@ -390,12 +266,21 @@ class Selector:
             changed = self._count_starving(ab, now) or changed
         return changed or policy.turning
 
+    def _admitted_by(self, ab: Behavior, composed: bool) -> str:
+        """The rule by which an AB may start with which nothing competes."""
+        policy, holder = self.policy, self.memory.holder
+        if not policy.exclusive:
+            return "none"
+        if composed:
+            return "X5"
+        if policy.floor and holder is not None and holder.app is not ab.app:
+            return "F2"
+        return "S4" if self.memory.running else "S1"
+
     def _run(self, ab: Behavior, now: int) -> None:
         """Let an AB run."""
         if not self.policy.exclusive:
             self._collide(ab)
-        self._turns += 1
-        ab.app.last_turn = self._turns
         ab.blocked = ("", "")
         ab.waited_loops = 0
         ab.resumed = ab.loop > 0 and ab.freed != now
@@ -408,12 +293,11 @@ class Selector:
         ab.restarting = False
         self.memory.start(ab, now)
         stream = ab.stream
+        stream.spoken = stream.spoken or "speaker" in ab.devices
         if ab.engages:
             self.memory.engage(stream)
         if stream.suspended is not None and ab.unit is None:
-            stream.suspended = None
-            self._resumed.append(stream)
-            self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
+            self._resume(stream, ab)
         if ab.command is not None:
             order = Order(
                 "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
@@ -430,15 +314,13 @@ class Selector:
             if other is not None and other is not ab and other is not ab.unit:
                 self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)
 
-    def _take_floor(self, ab: Behavior, reaction: int | None, by_floor_rule: bool) -> bool:
-        """F1, F3: a reaction, or what started by F2, takes the floor; the loser stays beneath."""
+    def _take_floor(self, ab: Behavior, reaction: int | None, beside: bool) -> bool:
+        """F1, F3: a reaction, or what starts by F2, takes the floor; the loser stays beneath."""
         stream = ab.stream
         if reaction is not None:
             stream.causes.add(reaction)
-        if not self.policy.floor:
-            return False
         floor = self.memory.floor
-        if floor and floor[-1] is stream:
+        if not self.policy.floor or (reaction is None and beside) or stream is self.memory.holder:
             return False
         if stream in floor:
             floor.remove(stream)
@@ -455,12 +337,22 @@ class Selector:
         self._suspend_others(stream)
 
     def _suspend_others(self, stream: Stream) -> None:
-        for other in self.memory.streams.values():
-            if other.app is not stream.app and other.open and other.suspended is None:
-                self._suspensions += 1
+        """C2: suspend the others' streams that have begun; together, so that they rank alike."""
+        begun = [
+            other
+            for other in self.memory.streams.values()
+            if other.app is not stream.app and other.open and other.turn
+        ]
+        self._suspensions += 1
+        for other in begun:
+            if other.suspended is None:
                 other.suspended = self._suspensions
-                self.memory.rank_anew(other)
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
+
+    def _resume(self, stream: Stream, ab: Behavior) -> None:
+        """C2: a suspended stream goes on with an AB."""
+        stream.suspended = None
+        self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
 
     def _count_starving(self, ab: Behavior, now: int) -> bool:
         """E4: count the loops that other applications' equal ABs have waited.
@@ -468,7 +360,7 @@ class Selector:
         True if one has waited so long that it counts as a reaction from now on.
         """
         bounded: dict[str, Behavior] = {}
-        for other in self.memory.waiting:
+        for other in self.memory.waiting.values():
             if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
                 continue
             other.waited_loops += 1
@@ -484,11 +376,9 @@ class Selector:
                 )
             if self.bound is not None and other.waited_loops >= self.bound:
                 bounded[other.name] = other
-        for rank in self._ranked(bounded, now):
-            other = of(rank)
+        for _, other in self._ranked(bounded, now):
             self._starved += 1
             other.reaction = -self._starved
-            self.memory.waiting.moved(other)
         return bool(bounded)
 
     # Units ------------------------------------------------------------------

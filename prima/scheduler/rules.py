@@ -1,0 +1,133 @@
+"""The rules of selection (S2, F2, F3, F6, K1), each in one function named after it.
+
+``s2*`` rank an AB: the smaller goes first. The others say what keeps a waiting AB from
+starting, as a :data:`Refusal`, or None.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
+from prima.scheduler.memory import Memory
+
+Refusal = tuple[str, str]
+"""The rule that keeps an AB from starting, and the AB or stream for whose sake."""
+Rank = tuple[Any, ...]
+"""Where a waiting AB ranks, a place for each rule of a policy: the smallest goes first."""
+NO_REACTION = (1, 0, 0)
+
+
+def s2a(ab: Behavior) -> int:
+    """The higher priority goes first."""
+    return -ab.priority
+
+
+def s2b(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
+    """Then reactions, the latest event's first; of one event, the active application's."""
+    if ab.reaction is None:
+        return NO_REACTION
+    return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
+
+
+def s2c(ab: Behavior, now: int) -> int:
+    """Then what follows an AB that has ended in this instant."""
+    return 0 if ab.freed == now else 1
+
+
+def s2d(ab: Behavior) -> int:
+    """Then the stream suspended last; the numbers of suspensions begin with 1."""
+    suspended = ab.stream.suspended
+    return 1 if suspended is None else -suspended
+
+
+def s2e(ab: Behavior) -> int:
+    """Then the earlier request."""
+    return ab.requested
+
+
+def s2f(ab: Behavior) -> tuple[int, int]:
+    """Then the application declared first; of one application, the Command requested first."""
+    return (ab.app.order, ab.serial)
+
+
+def outranks(priority: int, stream: Stream) -> bool:
+    """F2: whether a priority is higher than that of all that the floor's stream has."""
+    contending = stream.contending()
+    return bool(contending) and all(priority > other.priority for other in contending)
+
+
+def f2(ab: Behavior, memory: Memory) -> Refusal | None:
+    """Another application's floor lets start a reaction to another event, or a higher priority."""
+    holder = memory.holder
+    if holder is None or holder.app is ab.app:
+        return None
+    if ab.reaction is not None and ab.reaction not in holder.causes:
+        return None
+    priority = max(one.priority for one in ab.meant())
+    return None if outranks(priority, holder) else ("F2", holder.name)
+
+
+def f3(ab: Behavior, reacts: bool, memory: Memory) -> bool:
+    """Whether what starts while another application holds the floor takes it.
+
+    A reaction does. What starts by its priority alone does if it needs a device of what
+    runs or waits of the floor's stream; else it runs beside it.
+    """
+    holder = memory.holder
+    if holder is None or holder.app is ab.app:
+        return False
+    return reacts or any(ab.devices & other.devices for other in holder.contending())
+
+
+def f6(ab: Behavior, memory: Memory) -> Refusal | None:
+    """A topic is not spoken into: its speaker is kept between two of its utterances."""
+    if "speaker" not in ab.devices or ab.reaction is not None or ab.stream is memory.holder:
+        return None
+    for other in memory.running.values():
+        between = other.unit is None and not other.feedback and other.stream.spoken
+        if between and other.app is not ab.app and speaks_next(other):
+            return ("F6", other.id)
+    return None
+
+
+def speaks_next(ab: Behavior) -> bool:
+    """F6: whether a speaking AB is linked behind this one, through none that works in loops."""
+    return any(
+        child.state is not GONE
+        and ("speaker" in child.devices or (not child.feedback and speaks_next(child)))
+        for child in ab.children
+    )
+
+
+def k1(ab: Behavior, memory: Memory) -> Refusal | None:
+    """What leaves the user waits while another application engages them."""
+    if not ab.leaves:
+        return None
+    for stream in memory.engaged.values():
+        if stream.app is not ab.app and engages(stream, memory):
+            return ("K1", stream.name)
+    return None
+
+
+def engages(stream: Stream, memory: Memory) -> bool:
+    """K1: whether a stream in which an AB has engaged the user does so still.
+
+    It does not while all that it does leaves the user, nor, unless it searches or tracks,
+    while the user is absent.
+    """
+    contending = stream.contending()
+    if memory.absent and not any(ab.feedback and ab.engages for ab in contending):
+        return False
+    return not contending or not all(ab.leaves for ab in contending)
+
+
+def x5(ab: Behavior, memory: Memory) -> bool:
+    """Whether the floor's stream does nothing but a motion that this one can carry."""
+    holder = memory.holder
+    if holder is None or ab.motion != "free":
+        return False
+    contending = holder.contending()
+    return bool(contending) and all(
+        other.motion == "faithful" and other.state is RUNNING for other in contending
+    )
