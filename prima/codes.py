@@ -68,7 +68,8 @@ CODES: dict[str, str] = {
     "fa-only": "Additional arguments (thesis Table 4.1) are for an FA, whose developer knows the"
     " robot. An EA runs on any robot.",
     "not-in-unit": "A unit is one piece that nothing breaks (rule U4). A Command that works in"
-    " loops is many pieces, and one that leaves the user must be able to wait for him.",
+    " loops is many pieces, and one that leaves the user must be able to wait for them. Handlers that"
+    " a unit reaches by an event thrown in it, such as noinput, belong to it (rule U5).",
     "now-inside": "A Command wanted now cancels what the application does on its devices; inside a"
     " par, seq or iu it can only stand first.",
     "long-unit": "While a unit runs the robot reacts to nothing on its devices. Divide what it says"

@@ -13,8 +13,9 @@ from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
 from prima.interpreter.grammar import fold
 from prima.interpreter.sensors import sensors_read
+from prima.interpreter.units import units_of
 from prima.messages import Loaded, Sensed, Unloaded
-from tests.robot import Bench, document
+from tests.robot import Bench, document, read
 
 # Items and content -------------------------------------------------------------------
 
@@ -544,6 +545,119 @@ def test_a_unit_around_items_owns_its_devices_from_question_to_the_last_word() -
     assert bench.saying() == ["Ouch."], "the unit has ended; the reaction goes before Bye"
     bench.finish("Ouch.")
     assert bench.saying() == ["Bye."]
+
+
+REACHING = """<form id="a">{form}
+  <iu name="u">{unit}
+    <field name="x" type="boolean"><prompt>May I?</prompt>{field}</field>
+    <block>{block}</block>
+  </iu>
+  <block><exit/></block>
+</form><form id="b"><block><topological-move to="hall"/><exit/></block></form>{document}"""
+TURNS = '<on event="{}"><turn angle="90"/></on>'
+GOES = '<on event="{}"><topological-move to="hall"/></on>'
+
+
+def reaching(**parts: str) -> str:
+    given = dict.fromkeys(("form", "unit", "field", "block", "document"), "") | parts
+    return REACHING.format(**given)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"field": '<filled><throw event="x.y"/></filled>', "document": TURNS.format("x")},
+        {"block": '<throw event="x"/>', "form": TURNS.format("x")},
+        {"block": "<throw event-expr=\"'x'\"/>", "document": TURNS.format("z")},
+        {"form": TURNS.format("noinput")},
+        {"field": TURNS.format("touch")},
+        {"unit": TURNS.format("touch")},
+        {"form": '<filled><turn angle="90"/></filled>'},
+        {"form": '<filled namelist="x"><turn angle="90"/></filled>'},
+        {"document": TURNS.format("error.device")},
+        {"block": "<speak>Hi.</speak>", "document": TURNS.format("error.unsupported.speak")},
+        {
+            "block": '<throw event="x"/>',
+            "form": '<on event="x"><throw event="y"/></on>',
+            "document": TURNS.format("y"),
+        },
+        {
+            "field": '<noinput><throw event="y"/></noinput>',
+            "document": TURNS.format("y") + "<noinput><turn angle='9'/></noinput>",
+        },
+        {"field": "<noinput count='2'><reprompt/></noinput>", "document": TURNS.format("noinput")},
+        {
+            "field": "<noinput cond='x'><reprompt/></noinput>",
+            "document": TURNS.format("noinput"),
+        },
+    ],
+)
+def test_u5_a_unit_owns_what_the_handlers_need_that_it_can_reach(parts: dict[str, str]) -> None:
+    made, _ = read(reaching(**parts))
+    (unit,) = [unit for _, unit in units_of(made)]
+    assert unit.devices == {"speaker", "speech-recognition", "locomotion"}
+    assert "turn" in unit.types
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"form": TURNS.format("touch")},
+        {"document": TURNS.format("x")},
+        {"document": TURNS.format("error.unit.timeout")},
+        {"document": TURNS.format("error.unsupported.speak")},
+        {"field": "<noinput><reprompt/></noinput>", "document": TURNS.format("noinput")},
+        {"unit": "<noinput><reprompt/></noinput>", "form": TURNS.format("noinput")},
+        {"form": '<field name="y" type="boolean"/><filled namelist="y"><turn angle="9"/></filled>'},
+    ],
+)
+def test_u5_a_unit_owns_nothing_for_handlers_that_it_cannot_reach(parts: dict[str, str]) -> None:
+    made, _ = read(reaching(**parts))
+    (unit,) = [unit for _, unit in units_of(made)]
+    assert unit.devices == {"speaker", "speech-recognition"}
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        (
+            {"field": '<filled><throw event="x"/></filled>', "document": GOES.format("x")},
+            "<topological-move> leaves the user, and the unit in line 2 reaches it by the event"
+            ' "x"; it cannot stand in a unit. Handle "x" in the <iu> as well,'
+            " or leave the <iu> with <goto> first.",
+        ),
+        (
+            {"form": "<noinput><tracking-human/></noinput>"},
+            "<tracking-human> works in a feedback loop, and the unit in line 2 reaches it by the"
+            ' event "noinput"; it cannot stand',
+        ),
+        (
+            {"form": '<filled><topological-move to="hall"/></filled>'},
+            "and the unit in line 2 reaches it; it cannot stand in a unit. Leave the <iu> with",
+        ),
+        ({"field": GOES.format("touch")}, "<topological-move> leaves the user; it cannot stand"),
+    ],
+)
+def test_u5_no_command_that_a_unit_reaches_leaves_the_user(
+    parts: dict[str, str], says: str
+) -> None:
+    _, problems = read(reaching(**parts))
+    (problem,) = [one for one in problems if one.severity == "error"]
+    assert problem.code == "not-in-unit" and says in f"{problem.message} {problem.remedy}"
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"form": GOES.format("touch")},
+        {"document": GOES.format("error.unit.timeout")},
+        {"document": '<noinput><goto next="#b"/></noinput>'},
+        {"field": "<noinput><exit/></noinput>", "document": GOES.format("noinput")},
+    ],
+)
+def test_u5_a_command_that_no_unit_reaches_may_leave_the_user(parts: dict[str, str]) -> None:
+    _, problems = read(reaching(**parts))
+    assert [one for one in problems if one.code == "not-in-unit"] == []
 
 
 def test_leaving_a_unit_by_goto_ends_it() -> None:

@@ -48,7 +48,6 @@ from prima.interpreter.elements import (
     Unit,
     Watch,
     run_commands,
-    unit_commands,
 )
 from prima.interpreter.evaluation import SCOPES
 from prima.interpreter.grammar import (
@@ -57,6 +56,7 @@ from prima.interpreter.grammar import (
 )
 from prima.interpreter.names import HANDLED, RESERVED, STRANGE
 from prima.interpreter.srgs import read_grammar
+from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.values import XML_SPACE, nearest, outside, read_value, within
@@ -233,7 +233,7 @@ class Builder:
             self.problem(
                 root, "no-form", "The application has no form.", "Write at least one <form>."
             )
-        return Document(
+        document = Document(
             id=root.get("id"),
             kind=root.get("kind"),
             lang=self.lang,
@@ -251,6 +251,8 @@ class Builder:
             curious=self.any_has(EVENT),
             tampering=self.any_has(DIALOG),
         )
+        self.settle_units(document)
+        return document
 
     def any_has(self, words: re.Pattern[str]) -> bool:
         """Whether any code of the document, or a variable's name in it, has certain words."""
@@ -492,30 +494,24 @@ class Builder:
         )
 
     def unit(self, node: Node) -> Unit:
-        """A unit around form items; its devices are those of everything in it."""
+        """A unit around form items; what they reach is known when the document is whole."""
         parts = self.parts(node)
         unit = Unit(*self.item(node, parts), items=self.items(parts))
         unit.longest = self.value(node, "longest", "duration", LONGEST_MS)
-        devices: frozenset[str] = frozenset()
-        for item in unit.items:
-            if isinstance(item, Field):
-                devices |= TABLE_4_2["q-and-a"].devices
-        for command in unit_commands(unit):
-            self.in_unit(command)
-            row = TABLE_4_2.get(command.type)
-            if row is not None:
-                devices |= row.occupied("x" if command.text else None)
-        unit.devices = devices
-        unit.types = tuple(sorted({command.type for command in unit_commands(unit)}))
         return unit
 
-    def in_unit(self, command: CommandTemplate) -> None:
-        """U4: no feedback Command and none that leaves the user may be in a unit."""
-        row = TABLE_4_2.get(command.type)
-        if row is not None and (row.feedback or row.leaves):
-            why = "leaves the user" if row.leaves else "works in a feedback loop"
-            message = f"<{command.type}> {why}; it cannot stand in a unit."
-            self.problem(command.node, "not-in-unit", message, "Move it out of the <iu>.")
+    def settle_units(self, document: Document) -> None:
+        """U5: a unit owns the devices of all that may run in it."""
+        finder = Finder(document)
+        told: set[int] = set()
+        for form, unit in units_of(document):
+            reach = finder.reach(form, unit)
+            unit.devices, unit.types = reach.devices, reach.types
+            for one in reach.commands:
+                problem = unit_problem(one, TABLE_4_2.get(one.command.type), unit)
+                if problem is not None and id(one.command) not in told:
+                    told.add(id(one.command))
+                    self.problems.append(problem)
 
     def filleds(self, parts: Parts) -> tuple[Filled, ...]:
         """Filled elements."""
@@ -606,7 +602,8 @@ class Builder:
         steps: list[StepTemplate] = []
         self.sequence(node.nodes, (), steps)
         for command in run_commands(steps):
-            self.in_unit(command)
+            problem = unit_problem(Reached(command, True), TABLE_4_2.get(command.type))
+            self.problems += [problem] if problem is not None else []
         if not steps:
             self.problem(
                 node, "empty", "This <iu> holds no Command.", "Write what must not be cut into it."

@@ -45,11 +45,11 @@ from prima.interpreter.elements import (
     all_acts,
     all_items,
     run_commands,
-    unit_commands,
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
+from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
 from prima.values import read_value
 
@@ -134,26 +134,35 @@ def check_commands(
 
 
 def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
-    """U4: Commands of the profile's own that cannot stand in a unit."""
-    inside: list[CommandTemplate] = []
-    for form in document.forms.values():
-        for item in form.items:
-            if isinstance(item, Unit):
-                inside += unit_commands(item)
+    """U4, U5: Commands of the profile's own that cannot stand in a unit."""
+    problems: dict[int, Problem] = {}
+
+    def look(one: Reached, unit: Unit | None = None) -> None:
+        problem = unit_problem(one, _own_row(one.command, commands), unit)
+        if problem is not None:
+            problems.setdefault(id(one.command), problem)
+
+    finder = Finder(document)
+    for form, unit in units_of(document):
+        for one in finder.reach(form, unit).commands:
+            look(one, unit)
+    for command in _grouped(document):
+        look(Reached(command, True))
+    return [*problems.values()]
+
+
+def _own_row(command: CommandTemplate, commands: Mapping[str, CommandType]) -> CommandType | None:
+    """The row of a Command that a robot's profile adds."""
+    return None if command.type in TABLE_4_2 else commands.get(command.type)
+
+
+def _grouped(document: Document) -> Iterator[CommandTemplate]:
+    """The Commands in units around Commands (U4)."""
     for _, content, _ in document.contents():
         for act in all_acts(content):
             for step in act.steps if isinstance(act, Run) else ():
                 if isinstance(step.what, GroupTemplate):
-                    inside += run_commands([step])
-    problems = []
-    for command in inside:
-        row = commands.get(command.type)
-        if row is not None and row.name not in TABLE_4_2 and (row.feedback or row.leaves):
-            why = "leaves the user" if row.leaves else "works in a feedback loop"
-            message = f'The Command "{row.name}" {why}; it cannot stand in a unit.'
-            remedy = "Move it out of the <iu>."
-            problems.append(Problem(command.node.place, "error", "not-in-unit", message, remedy))
-    return problems
+                    yield from run_commands([step])
 
 
 def document_commands(document: Document) -> Iterator[CommandTemplate]:

@@ -485,20 +485,3 @@ def run_commands(steps: Sequence[StepTemplate]) -> list[CommandTemplate]:
         else:
             found.append(step.what)
     return found
-
-
-def unit_commands(unit: Unit) -> list[CommandTemplate]:
-    """All Commands in a unit, those of its fields' and its own handlers included."""
-    found: list[CommandTemplate] = []
-    contents: list[Sequence[Act]] = [handler.content for handler in unit.handlers]
-    for item in unit.items:
-        contents += [handler.content for handler in item.handlers]
-        if isinstance(item, Block):
-            contents.append(item.content)
-        elif isinstance(item, Field):
-            contents += [part.content for part in item.filled]
-    for content in contents:
-        for act in all_acts(content):
-            if isinstance(act, Run):
-                found += run_commands(act.steps)
-    return found

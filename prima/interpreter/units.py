@@ -1,0 +1,233 @@
+"""What a unit around form items can come to ask for (rule U5).
+
+An event that is thrown in a unit is handled in it, by whatever handler takes it: of the item, the
+unit, the form or the document. What such a handler asks for belongs to the unit as well. An event
+from outside is handled in the unit by the handlers of its items and its own alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from prima.commands import TABLE_4_2, CommandType
+from prima.deferred import dataclass
+from prima.errors import Problem
+from prima.interpreter.elements import (
+    Act,
+    Block,
+    CommandTemplate,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Handler,
+    Item,
+    Run,
+    Subdialog,
+    Throw,
+    Unit,
+    all_acts,
+    all_items,
+    run_commands,
+)
+from prima.interpreter.selection import taking
+
+QUESTION = "q-and-a"
+UNANSWERED = ("noinput", "nomatch")
+"""What a question throws in itself."""
+
+
+@dataclass(slots=True)
+class Reached:
+    """A Command that may run in a unit, and how it comes to do so."""
+
+    command: CommandTemplate
+    inside: bool
+    """Whether it is written inside of the unit."""
+    event: str = ""
+    """The event whose handler outside of the unit asks for it, if any does."""
+
+
+@dataclass(slots=True)
+class Reach:
+    """All that may run in a unit."""
+
+    commands: list[Reached]
+    """Each Command once, in the order in which they are found."""
+    asks: bool
+    """Whether there is a question among its items."""
+
+    @property
+    def devices(self) -> frozenset[str]:
+        """The devices of all of it, as Table 4.2 has them; a robot may add Commands of its own."""
+        found = TABLE_4_2[QUESTION].devices if self.asks else frozenset()
+        for one in self.commands:
+            row = TABLE_4_2.get(one.command.type)
+            found |= row.devices if row is not None else frozenset()
+            found |= {"speaker"} if one.command.text else frozenset()
+        return found
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """The types of its Commands, by name; a question is none of them."""
+        return tuple(sorted({one.command.type for one in self.commands}))
+
+
+def reach_of(document: Document, form: Form, unit: Unit) -> Reach:
+    """Find all that may run in a unit: in its items and in every handler that they can reach."""
+    return Finder(document).reach(form, unit)
+
+
+def units_of(document: Document) -> Iterator[tuple[Form, Unit]]:
+    """Every unit around form items, with its form."""
+    for form in document.forms.values():
+        yield from ((form, item) for item in form.items if isinstance(item, Unit))
+
+
+def not_in_unit(row: CommandType) -> str:
+    """Why a Command cannot run in a unit (U4), if it cannot."""
+    if row.leaves:
+        return "leaves the user"
+    return "works in a feedback loop" if row.feedback else ""
+
+
+def unit_problem(one: Reached, row: CommandType | None, unit: Unit | None = None) -> Problem | None:
+    """What is wrong with a Command of such a row in a unit (U4, U5), if anything is."""
+    if row is None:
+        return None
+    why = not_in_unit(row)
+    if not why:
+        return None
+    message, remedy = f"<{row.name}> {why}", "Move it out of the <iu>."
+    if unit is not None and not one.inside:
+        by = f' by the event "{one.event}"' if one.event else ""
+        message += f", and the unit in line {unit.node.place.line} reaches it{by}"
+        remedy = "Leave the <iu> with <goto> first, and do this there."
+    if one.event:
+        remedy = f'Handle "{one.event}" in the <iu> as well, or leave the <iu> with <goto> first.'
+    place = one.command.node.place
+    return Problem(place, "error", "not-in-unit", f"{message}; it cannot stand in a unit.", remedy)
+
+
+class Piece:
+    """Executable content of a unit or a handler: its Commands and what it throws."""
+
+    __slots__ = ("commands", "throws")
+
+    def __init__(self, content: Sequence[Act]) -> None:
+        acts = all_acts(content)
+        runs = [act for act in acts if isinstance(act, Run)]
+        self.commands = [command for run in runs for command in run_commands(run.steps)]
+        self.throws: set[str | None] = {
+            act.event if isinstance(act.event, str) else None
+            for act in acts
+            if isinstance(act, Throw)
+        }
+        """Names of events; None for one that an expression names."""
+        for command in self.commands:
+            self.throws |= failures(command)
+
+
+def failures(command: CommandTemplate) -> set[str]:
+    """The events by which a Command of a unit can fail in it."""
+    row = TABLE_4_2.get(command.type)
+    devices = row.devices if row is not None else frozenset()
+    if command.text:
+        devices |= {"speaker"}
+    broken = {f"error.device.{device}" for device in devices}
+    return broken | {"error.semantic", f"error.unsupported.{command.type}"}
+
+
+class Finder:
+    """Finds what units of a document reach; what handlers hold is looked at once."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._pieces: dict[int, Piece] = {}
+        self._taking: dict[tuple[str, str | None], list[Handler]] = {}
+        """The handlers of a form and of the document that take an event, by both names."""
+
+    def reach(self, form: Form, unit: Unit) -> Reach:
+        """All that may run in a unit of a form."""
+        found: dict[int, Reached] = {}
+        for item in unit.items:
+            self._visit(form, unit, item, found)
+        return Reach([*found.values()], any(isinstance(item, Field) for item in unit.items))
+
+    def _visit(self, form: Form, unit: Unit, item: Item, found: dict[int, Reached]) -> None:
+        """What may run while an item of a unit is visited."""
+        inner = (*item.handlers, *unit.handlers)
+        waiting: list[tuple[str | None, str]] = [(event, "") for event in thrown_by(item)]
+        for piece in (*map(Piece, _own(item)), *map(self._piece, inner)):
+            waiting += self._take_in(piece, True, "", found)
+        for filled in _answered(form, item):
+            waiting += self._take_in(Piece(filled.content), False, "", found)
+        seen: set[str | None] = set()
+        inside = set(map(id, inner))
+        while waiting:
+            event, first = waiting.pop()
+            if event in seen:
+                continue
+            seen.add(event)
+            for handler in self._takers(form, inner, event):
+                if id(handler) not in inside:
+                    inside.add(id(handler))
+                    told = first or event or handler.events[0]
+                    waiting += self._take_in(self._piece(handler), False, told, found)
+
+    @staticmethod
+    def _take_in(
+        piece: Piece, inside: bool, event: str, found: dict[int, Reached]
+    ) -> list[tuple[str | None, str]]:
+        for command in piece.commands:
+            found.setdefault(id(command), Reached(command, inside, event))
+        return [(name, event) for name in sorted(piece.throws, key=str)]
+
+    def _piece(self, handler: Handler) -> Piece:
+        if id(handler) not in self._pieces:
+            self._pieces[id(handler)] = Piece(handler.content)
+        return self._pieces[id(handler)]
+
+    def _takers(
+        self, form: Form, inner: tuple[Handler, ...], event: str | None
+    ) -> Iterator[Handler]:
+        """The handlers that may take an event in an item, but those that others always go before."""
+        key = (form.id, event)
+        if key not in self._taking:
+            outer = (*form.handlers, *self._document.handlers)
+            self._taking[key] = _taking(outer, event)
+        certain = False
+        for handler in (*_taking(inner, event), *self._taking[key]):
+            if not certain or handler.count > 1:
+                yield handler
+            certain = certain or (event is not None and handler.count <= 1 and not handler.cond)
+
+
+def _taking(handlers: Iterable[Handler], event: str | None) -> list[Handler]:
+    """The handlers that take an event; all of them where nobody knows its name."""
+    if event is None:
+        return [handler for handler in handlers if handler.events]
+    return [handler for handler, _ in taking(handlers, event)]
+
+
+def _own(item: Item) -> list[tuple[Act, ...]]:
+    """The content of an item itself."""
+    if isinstance(item, Block):
+        return [item.content]
+    return [one.content for one in item.filled] if isinstance(item, Field) else []
+
+
+def _answered(form: Form, item: Item) -> Iterator[Filled]:
+    """What the form does with the answer to an item."""
+    if isinstance(item, Field) and form.filled:
+        asking = {one.name for one in all_items(form.items) if isinstance(one, Field | Subdialog)}
+        yield from (one for one in form.filled if item.name in (one.names or asking))
+
+
+def thrown_by(item: Item) -> Iterator[str]:
+    """What visiting an item of a unit may throw by itself."""
+    yield "error.semantic"
+    if isinstance(item, Field):
+        yield from UNANSWERED
+        yield from (f"error.device.{device}" for device in sorted(TABLE_4_2[QUESTION].devices))
+        yield f"error.unsupported.{QUESTION}"
