@@ -21,6 +21,8 @@ Fate = Literal["ended", "done", "cancelled", "failed", "interrupted", "unit-time
 """What an application may be told of its Commands."""
 Verb = Literal["start", "abort", "interrupt", "stop", "send"]
 """What devices may be told to do."""
+PROMOTED = -1
+"""As a request's cause: the event that was promoted last."""
 NO_DEVICES: frozenset[str] = frozenset()
 
 
@@ -189,7 +191,24 @@ class Raise:
     event: str
 
 
-Action = Request | OpenUnit | CloseUnit | LeaveState | Send | Say | Raise | Quit
+@dataclass(slots=True)
+class Promote:
+    """An event of the application's own counts as one to react to (C5): it gets a serial number.
+
+    The next request whose cause is :data:`PROMOTED` reacts to it.
+    """
+
+    event: str
+
+
+@dataclass(slots=True)
+class GoOn:
+    """The events that were raised when a state was entered are handled: its content may begin."""
+
+    state: int
+
+
+Action = Request | OpenUnit | CloseUnit | LeaveState | Send | Say | Raise | Promote | GoOn | Quit
 
 
 # What comes in --------------------------------------------------------------
@@ -443,5 +462,6 @@ class Event:
 
     name: str
     serial: int
+    """The number that the transcript has for it; 0 for what a record does not name."""
     data: Data = field(default_factory=dict)
     reactive: bool = True

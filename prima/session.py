@@ -19,6 +19,7 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.evaluation import PULSE
 from prima.messages import (
+    PROMOTED,
     Action,
     CloseUnit,
     Command,
@@ -28,6 +29,7 @@ from prima.messages import (
     Event,
     Failed,
     Fetched,
+    GoOn,
     Halted,
     Heard,
     Inbound,
@@ -39,6 +41,7 @@ from prima.messages import (
     Occurred,
     OpenUnit,
     Order,
+    Promote,
     Quit,
     Raise,
     Record,
@@ -50,7 +53,7 @@ from prima.messages import (
     Unloaded,
 )
 from prima.prelude import START
-from prima.scheduler.behavior import WAITING, Behavior
+from prima.scheduler.behavior import WAITING, Behavior, Stream
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
@@ -98,6 +101,8 @@ class Session:
         self.failures: list[str] = []
         """Applications that ended by an error, as ``NAME: what``."""
         self._serial = 0
+        self._promoted = 0
+        """The serial number of the event that was promoted last."""
         self._loaded: set[str] = set()
         self._alive: list[App] | None = []
         """Applications that are loaded and not over, in declared order; None if to be looked up."""
@@ -105,6 +110,9 @@ class Session:
         """When applications want to be called, by name."""
         self._sensors: dict[str, Json] = {}
         self._sends: list[Order] = []
+        self._turns: list[tuple[str, Stream]] = []
+        """Streams of which the latest selection suspended or resumed, with which: their
+        applications want to hear of it."""
 
     # Driving ------------------------------------------------------------------
 
@@ -116,6 +124,8 @@ class Session:
         """
         PULSE.instants += 1
         self.chronicle.now = now
+        if self._turns:
+            self._tell_turns()
         for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
             if type(value) is Occurred:  # by far the most
                 self._occurred(value)
@@ -130,6 +140,11 @@ class Session:
         if mediator.changed:  # else it has given no orders either
             mediator.select()
             orders = mediator.drain_orders()
+            self._turns += [
+                (name, stream)
+                for name, stream in mediator.drain_turns()
+                if self.apps[stream.app.name].takes(name)
+            ]
         if self._sends:
             orders += self._sends
             self._sends = []
@@ -137,6 +152,8 @@ class Session:
 
     def deadline(self) -> int | None:
         """The next instant at which :meth:`step` has to be called, if anything is due."""
+        if self._turns:
+            return self.chronicle.now + 1
         due = min(self._due.values(), default=None)
         late = self.mediator.deadline()
         return late if due is None else due if late is None else min(due, late)
@@ -227,10 +244,7 @@ class Session:
             case Narrated():
                 self._record("note", value.actor, text=value.text)
             case Emergency():
-                self.mediator.emergency(value.pressed, value.resume)
-                name = "emergency.stop" if value.pressed else "emergency.release"
-                self._raise(name, {}, self._in_order())
-                self._settle()
+                self._emergency(value)
             case Loaded():
                 self._load(value)
             case Unloaded():
@@ -239,6 +253,17 @@ class Session:
                 if app is not None and value.app in self._loaded:
                     app.stop()
                     self._act(app)
+
+    def _emergency(self, value: Emergency) -> None:
+        """E5: applications are told by an event, whose serial number the record has."""
+        self._serial += 1
+        self.mediator.emergency(value.pressed, value.resume, self._serial)
+        name = "emergency.stop" if value.pressed else "emergency.release"
+        event = Event(name, self._serial, {}, reactive=True)
+        for app in self._in_order():
+            app.event(self.chronicle.now, event)
+            self._act(app)
+        self._settle()
 
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
         self.chronicle.add(phase, actor, inbound=True, **fields)
@@ -286,14 +311,6 @@ class Session:
         """The application of a name, if it is there."""
         app = self.apps.get(name)
         return [app] if app is not None and name in self._loaded and not app.over else []
-
-    def _raise(self, name: str, data: Data, apps: list[App], reactive: bool = True) -> None:
-        """V1: an event goes to every application; each one's handlers decide."""
-        self._serial += 1
-        event = Event(name, self._serial, data, reactive)
-        for app in apps:
-            app.event(self.chronicle.now, event)
-            self._act(app)
 
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""
@@ -400,16 +417,21 @@ class Session:
 
     def _handle_own(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
         """Let the application handle its own event; what it wants then is still to be done."""
+        serial = self._record_own(app, name, data, "environment")
+        app.event(self.chronicle.now, Event(name, serial, data, reactive))
+
+    def _record_own(self, app: App, name: str, data: Data, actor: str) -> int:
+        """Record an event that one application alone has defined; gives its serial number."""
         self._serial += 1
         self.chronicle.add(
             "event",
-            "environment",
+            actor,
             app=app.name,
             event=name,
-            data=data or None,
+            data=dict(data) or None,
             serial=self._serial,
         )
-        app.event(self.chronicle.now, Event(name, self._serial, data, reactive))
+        return self._serial
 
     def _time_out(self, now: int) -> None:
         """V3: timeouts come last."""
@@ -441,6 +463,20 @@ class Session:
             self._act(app)
         self.mediator.close_window(told)
 
+    def _tell_turns(self) -> None:
+        """Tell applications that their streams were suspended or have resumed (C2).
+
+        What they ask for then belongs to the stream and is no reaction.
+        """
+        turns, self._turns = self._turns, []
+        for name, stream in turns:
+            app = self.apps[stream.app.name]
+            told = Told(app.name, stream if stream.open else None, [])
+            self.mediator.open_window(told)
+            app.event(self.chronicle.now, Event(name, 0, {}, reactive=False))
+            self._act(app)
+            self.mediator.close_window(told)
+
     def _act(self, app: App) -> None:
         """Carry out what an application wants, and note when it wants to be called."""
         if app.actions:
@@ -459,8 +495,12 @@ class Session:
             app.actions.clear()
             match action := left.popleft():
                 case Request():
+                    if action.cause == PROMOTED:
+                        action.cause = self._promoted
                     self.mediator.request(app.name, action)
                 case OpenUnit():
+                    if action.cause == PROMOTED:
+                        action.cause = self._promoted
                     self.mediator.open_unit(app.name, action)
                 case CloseUnit():
                     self.mediator.close_unit(app.name, action)
@@ -472,6 +512,10 @@ class Session:
                     self._log(app, action)
                 case Raise():
                     self._handle_own(app, action.event, {}, reactive=True)
+                case Promote():
+                    self._promoted = self._record_own(app, action.event, {}, "robot")
+                case GoOn() if isinstance(app, Interpreter):
+                    app.go_on_entering(action.state)
                 case Quit():
                     self._quit(app, action)
 

@@ -747,7 +747,7 @@ def drive(script: Script, policy: str = "prima") -> Run:
                 case Halted():
                     mediator.interrupted(value.behavior, value.data)
                 case Emergency():
-                    mediator.emergency(value.pressed, value.resume)
+                    mediator.emergency(value.pressed, value.resume, len(events) + steps)
                 case Occurred(name="human.found" | "human.lost"):
                     chronicle.add("event", "environment", event=value.name, inbound=True)
                     mediator.sees_user(value.name == "human.found")

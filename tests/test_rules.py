@@ -619,12 +619,12 @@ def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
     stage.select()
-    stage.at(10).mediator.emergency(True, True)
+    stage.at(10).mediator.emergency(True, True, 8)
     stage.select()
     assert stage.running == set()
     stage.request("fa", say(), cause=EVENT)
     assert stage.select() == []
-    stage.at(20).mediator.emergency(False, True)
+    stage.at(20).mediator.emergency(False, True, 9)
     assert stage.select() == ["fa#1"]
     stage.at(30).end("fa#1")
     assert stage.select() == ["ea#1"], "what was cut is done again"
@@ -634,8 +634,8 @@ def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
     stage.select()
-    stage.at(10).mediator.emergency(True, True)
-    stage.at(20).mediator.emergency(False, False)
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.at(20).mediator.emergency(False, False, 9)
     assert stage.select() == []
     assert stage.told("ea") == ["cancel.speak", "cancel.speak"]
 

@@ -43,14 +43,17 @@ from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.reactions import DONE
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.messages import (
+    PROMOTED,
     Action,
     CloseUnit,
     Command,
     Data,
     Event,
+    GoOn,
     Json,
     LeaveState,
     Notice,
+    Promote,
     Quit,
     Raise,
     Request,
@@ -111,8 +114,8 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         """How often sensors have had new values."""
         self.reported: dict[str, int] = {}
         """Which of the reports was the latest, by the first part of a sensor's name."""
-        self.cause: int | None = None
-        self.serial = 0
+        self.cause: int | str | None = None
+        """What is requested next reacts to this event: its serial, or the name of an own one (C5)."""
         self._timed = "session" in document.node.source.text
         """Whether the document looks at the clock at all."""
 
@@ -122,6 +125,11 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         first = next(iter(self.document.forms.values()))
         self._guard(self._enter, first)
 
+    def takes(self, name: str) -> bool:
+        """Whether a handler in scope takes an event."""
+        frame = self.frame
+        return frame is not None and bool(self.handling.takers(frame, frame.item, name))
+
     def event(self, now: int, event: Event) -> None:
         """Something happened that every application is told of, or this one alone."""
         if now != self.now:
@@ -129,7 +137,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
                 self._tick(now)
             else:
                 self.renew(now)
-        self.serial = event.serial
         frame = self.frame
         if frame is not None:
             item, reactions, reaction = frame.item, frame.form.reactions, None
@@ -159,6 +166,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
         self._tick(now)
+        self._guard(self.count_fate, notice)
         if self.over:
             return
         if notice.what == "unit-timeout":
@@ -212,7 +220,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         if link.event:
             self.event(now, Event(link.event, event.serial, event.data))
             return
-        self.serial = self.cause = event.serial
+        self.cause = event.serial
         frame = self.frame
         if frame is not None:
             self._guard(self.transfer, frame, GoForm(link.form))
@@ -248,14 +256,13 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         data: dict[str, Json] = {"message": message, **more}
         if command is not None:
             data["command"] = command.type
-        return Event(name, self.serial, data, reactive=False)
+        return Event(name, 0, data, reactive=False)
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self._runs)
-        cause, self.cause = self.cause, None
         frame = fiber.frame
-        asked = Request(number, steps, frame.state, cause, fiber.unit)
+        asked = Request(number, steps, frame.state, self.take_cause(), fiber.unit)
         asked.hold = frame.form.hold
         if frame.item is not None and frame.item.hold is not None:
             asked.hold = frame.item.hold
@@ -267,6 +274,14 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self._waiting[number] = fiber
         fiber.waiting = number
         return number
+
+    def take_cause(self) -> int | None:
+        """The serial of the event that a request reacts to, which no further one does (C5)."""
+        cause, self.cause = self.cause, None
+        if isinstance(cause, str):
+            self.actions.append(Promote(cause))
+            return PROMOTED
+        return cause
 
     @staticmethod
     def connects(frame: Frame) -> bool:
@@ -513,7 +528,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self.frame = frame
         if frame.form.bare and not (frame.fresh or frame.called_by):
             return None
-        frame.stalled = False
+        frame.stalled = frame.entering = False
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
         frame.fibers += (fiber,)
@@ -530,13 +545,31 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         return None
 
     def arm_watches(self, frame: Frame) -> None:
-        """C6: what a form watches for counts from its entry, true already or not."""
+        """C6: what a form watches for counts from its entry, true already or not.
+
+        Events that are raised so are handled before the form's content begins, which
+        :meth:`go_on_entering` lets begin: a handler may leave the form (O3).
+        """
         for watch in frame.form.watches:
             self.armed.pop(id(watch), None)
         if frame.form.watches and self.sensors:
             self.untold = True
             names = self.handling.check_watches(frame.form.watches)
-            self.actions += [Raise(name) for name in names]
+            if names:
+                self.actions += [*map(Raise, names), GoOn(frame.state)]
+                frame.entering = True
+
+    def go_on_entering(self, state: int) -> None:
+        """Begin a form's content, unless a handler of the events of its entry has left it."""
+        frame = self.frame
+        while frame is not None and frame.state != state:
+            frame = frame.caller
+        if frame is None or not frame.entering:
+            return
+        frame.entering = False
+        for fiber in frame.fibers:
+            if fiber.main:
+                self._guard(self.drive, fiber, Notice("done", 0))
 
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items (the algorithm's initialisation)."""

@@ -9,6 +9,7 @@ from prima.interpreter.content import source
 from prima.interpreter.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
+from prima.messages import Notice
 from prima.prelude import START
 from prima.values import moment
 
@@ -22,6 +23,9 @@ MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
 MAX_OUTPUT = 1_000_000
 """Characters that an application may say, log and send in one instant."""
+
+MAX_FAILURES = 1_000
+"""Commands of an application that may fail, be refused or be cancelled with none done in between."""
 
 
 class Bounds(Generic[Evaluator]):
@@ -39,6 +43,7 @@ class Bounds(Generic[Evaluator]):
         """Pieces of content gone through in this instant."""
         self.hurried = -1
         """An instant that is none of its own: of an event sent without delay just before."""
+        self._failures = 0
         self._output = 0
         self._spent = 0.0
         """Seconds of scripts in the instants before."""
@@ -71,6 +76,17 @@ class Bounds(Generic[Evaluator]):
         self.written += characters
         if self._output > MAX_OUTPUT:
             self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
+
+    def count_fate(self, notice: Notice) -> None:
+        """Bound how often an application asks for what cannot be done (E1, E3, E5, O2)."""
+        if notice.what in ("ended", "done"):
+            self._failures = 0
+        elif notice.what in ("failed", "cancelled"):
+            self._failures += 1
+        if self._failures > MAX_FAILURES:
+            place = notice.command.source if notice.command is not None else ""
+            reason = f"{MAX_FAILURES:,} Commands in a row failed, were refused or cancelled"
+            raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def give_up(self, node: Node, reason: str) -> NoReturn:
         """End the application: it has gone past a limit that no handler can mend."""

@@ -38,6 +38,8 @@ class Algorithm:
         if setup and not (frame.form.bare and frame.called_by is None):
             yield from self._at_once(frame, fiber, lambda: self.owner.initialise(frame, fiber))
             yield from self._at_once(frame, fiber, lambda: self.owner.arm_watches(frame))
+            if frame.entering:
+                yield 0
         yield from self._visit_all(frame, fiber, frame.form.items, None)
 
     def _at_once(self, frame: Frame, fiber: Fiber, act: Callable[[], None]) -> Content:
@@ -216,14 +218,13 @@ class Algorithm:
     def _span(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
         """A unit around form items: opened here, concluded by whatever way it is left (U5)."""
         number = next(self.owner.units)
-        cause, self.owner.cause = self.owner.cause, None
         self.owner.actions.append(
             OpenUnit(
                 number,
                 frame.state,
                 unit.devices,
                 unit.longest,
-                cause,
+                self.owner.take_cause(),
                 source(unit.node),
                 self.owner.connects(frame),
                 unit.types,

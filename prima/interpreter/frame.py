@@ -34,6 +34,8 @@ class Frame:
     """Whether the state has asked for the channel (X4)."""
     fresh = False
     """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
+    entering = False
+    """Whether events that were raised when the state was entered are still to be handled (C6)."""
     asked = False
     """Whether the mediator has heard of the state: of a Command, or a unit."""
 

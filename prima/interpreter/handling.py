@@ -69,7 +69,7 @@ class Handling:
         fiber.local = self.event_scope(event)
         fiber.commands = ()
         if handler.reactive is not None:  # else a throw keeps what it has (C5)
-            self._allow_reaction(handler, event)
+            self.allow_reaction(handler, event)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
         except (Thrown, ScriptError) as error:
@@ -83,14 +83,14 @@ class Handling:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
         item = frame.item
         self.count_event(frame, item, event.name)
-        candidates = self._taking(frame, item, event.name)
+        candidates = self.takers(frame, item, event.name)
         if self.owner.quick and not frame.units:
             self._count_reaction(frame.form, key_of(item, event.name), candidates)
         if candidates:
             fiber = Fiber(frame, local=self.event_scope(event))
             handler = self._select(frame, fiber, item, candidates)
             if handler is not None:
-                self._allow_reaction(handler, event)
+                self.allow_reaction(handler, event)
                 self._launch(fiber, handler)
                 return
         if event.name.startswith("error."):
@@ -158,7 +158,7 @@ class Handling:
         if frame is None or command is None:
             return
         name = f"{kind}.{command.type}"
-        event = Event(name, self.owner.serial, dict(notice.data), reactive=False)
+        event = Event(name, 0, dict(notice.data), reactive=False)
         fiber = Fiber(frame, commands=command.hook or ())
         candidates = self._candidates(frame, fiber, frame.item, name)
         if not candidates:
@@ -167,7 +167,7 @@ class Handling:
         self.count_event(frame, frame.item, name)
         handler = self._select(frame, fiber, frame.item, candidates)
         if handler is not None:
-            self._allow_reaction(handler, event)
+            self.allow_reaction(handler, event)
             self._launch(fiber, handler)
         self.owner.cause = None
 
@@ -189,10 +189,13 @@ class Handling:
         fiber = Fiber(frame, main=True, local=self.event_scope(event))
         self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, event))
 
-    def _allow_reaction(self, handler: Handler, event: Event) -> None:
+    def allow_reaction(self, handler: Handler, event: Event) -> None:
         """C5: what is requested first because of the event is a reaction, or not."""
-        reactive = event.reactive if handler.reactive is None else handler.reactive
-        self.owner.cause = event.serial if reactive else None
+        owner = self.owner
+        if not (event.reactive if handler.reactive is None else handler.reactive):
+            owner.cause = None
+        elif event.serial or owner.cause is None:
+            owner.cause = event.serial or event.name
 
     def event_scope(self, event: Event) -> Scope:
         """The scope of an event's handler, if any code of the document may look at the event."""
@@ -219,7 +222,7 @@ class Handling:
                 found += unit.handlers
         return [*found, *frame.form.handlers, *self.owner.document.handlers]
 
-    def _taking(self, frame: Frame, item: Item | None, event: str) -> Taking:
+    def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
         """The handlers in scope whose names take an event; a form keeps what has been found."""
         if frame.units:
             return taking(self._in_scope(frame, item), event)
@@ -249,7 +252,7 @@ class Handling:
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""
         inside = taking(fiber.commands, event) if fiber.commands else ()
-        return inside + self._taking(frame, item, event)
+        return inside + self.takers(frame, item, event)
 
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking

@@ -193,7 +193,7 @@ class _Writer:
     def handler(self, handler: Handler) -> None:
         """A handler whose turn it is."""
         if not self.form.bare or any(not self.stays(act) for act in all_acts(handler.content)):
-            causes = {None: "event.serial if event.reactive else None", True: "event.serial"}
+            causes = {None: "event.serial if event.reactive else None", True: "event.serial or event.name"}
             self.write(4, f"owner.cause = {causes.get(handler.reactive)}")
         self.write(4, f"at = {self.at(handler, None)}")
         before, self.with_fiber = len(self.lines), False
@@ -370,8 +370,7 @@ def failed(
     """
     handler, expr = place
     if handler is not None:
-        reactive = event.reactive if handler.reactive is None else handler.reactive
-        owner.cause = event.serial if reactive else None
+        owner.handling.allow_reaction(handler, event)
     if expr is not None and isinstance(error, ScriptError):
         error = owner.execute.failure(error, expr)
     if handler is None:

@@ -90,6 +90,11 @@ class Endings:
             return orders
         return []
 
+    def drain_turns(self) -> list[tuple[str, Stream]]:
+        """Give the streams that were suspended or have resumed since the last time, with which."""
+        turns, self._selector.turns = self._selector.turns, []
+        return turns
+
     def _now(self) -> int:
         return self.chronicle.now
 

@@ -132,10 +132,21 @@ class Failures(Endings):
         )
         self.told.append(Told(unit.app.name, unit.stream, [notice]))
 
-    def emergency(self, pressed: bool, resume: bool) -> None:
-        """E5: every AB ends at once and nothing starts until the stop is released."""
+    def emergency(self, pressed: bool, resume: bool, serial: int) -> None:
+        """E5: every AB ends at once and nothing starts until the stop is released.
+
+        ``serial`` is that of the event by which applications are told.
+        """
         self.changed = True
-        self.chronicle.add("emergency", "mediator", rule="E5", outcome="pressed" if pressed else "released", inbound=True, data=None if pressed else {"resume": resume})  # fmt: skip
+        self.chronicle.add(
+            "emergency",
+            "mediator",
+            rule="E5",
+            outcome="pressed" if pressed else "released",
+            inbound=True,
+            serial=serial,
+            data=None if pressed else {"resume": resume},
+        )
         if pressed:
             self.halted = True
             running = [ab for ab in self.memory.running.values() if ab.unit is None]
@@ -164,7 +175,9 @@ class Failures(Endings):
             return
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
-        self.chronicle.behavior("cancel", ab, rule="E5", outcome="halted")
+        self.chronicle.behavior(
+            "cancel", ab, rule="E5", outcome="running" if given_up else "halted"
+        )
         if given_up:
             self._remove(ab)
         else:

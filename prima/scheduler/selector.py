@@ -45,6 +45,8 @@ class Selector:
         what of it had been finished, and of how many Commands it is."""
         self.body = Body()
         self._maker = maker
+        self.turns: list[tuple[str, Stream]] = []
+        """Streams that were ``suspended`` or have ``resumed``, for their applications to hear."""
         self._suspensions = 0
         self._starved = 0
 
@@ -347,11 +349,13 @@ class Selector:
         for other in begun:
             if other.suspended is None:
                 other.suspended = self._suspensions
+                self.turns.append(("suspended", other))
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
 
     def _resume(self, stream: Stream, ab: Behavior) -> None:
         """C2: a suspended stream goes on with an AB."""
         stream.suspended = None
+        self.turns.append(("resumed", stream))
         self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
 
     def _count_starving(self, ab: Behavior, now: int) -> bool:

@@ -85,6 +85,11 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._flow = self._machine.start()
         self._drive(None)
 
+    def takes(self, name: str) -> bool:
+        """Whether a handler in scope takes an event."""
+        context = self._machine.context
+        return context is not None and self._machine.events.takes(context, Thrown(name, ""))
+
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
@@ -116,6 +121,10 @@ class VoiceInterpreter(Bounds["Engine"]):
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
         self._tick(now)
+        try:
+            self.count_fate(notice)
+        except GoOut as out:
+            self._quit(out.reason, out.failed, out.source)
         if self.over or notice.run != self._run or notice.what in ("ended", "interrupted"):
             return
         if notice.what == "failed":
