@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from prima.codes import CODES
+from prima.commands import ABSENCE_MS
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
 from prima.interpreter.elements import Document
@@ -158,6 +159,7 @@ def rehearse(
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
+    absence = cast.robot.absence
     name = cast.scenario.policy if policy is None else policy
     try:
         chosen = policy_named(name)
@@ -175,6 +177,7 @@ def rehearse(
             "scenario": cast.scenario.id,
             "policy": name,
             "bound": bound,
+            **({} if absence == ABSENCE_MS else {"absence": absence / 1000}),
             "date": cast.scenario.date,
             "applications": [doc.id for doc in cast.documents],
             "files": loaded.files,
@@ -368,7 +371,11 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
     if transcript.records[-1]["time"] > LONGEST_MS / 1000:
         raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
     try:
-        again = list(replay_records(transcript.records, cast.documents, cast.robot.commands))
+        again = list(
+            replay_records(
+                transcript.records, cast.documents, cast.robot.commands, cast.robot.absence
+            )
+        )
     except (KeyError, TypeError, ValueError, AttributeError):
         raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
     return Transcript([finished(record) for record in again], transcript.name)

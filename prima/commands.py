@@ -31,6 +31,9 @@ EFFECTS = frozenset({"position", "direction", "human", "follow", "head"})
 """Where the robot stands, where it looks on the map, that it looks at the human, that it stands
 wherever the human went, and how its head is turned."""
 
+ABSENCE_MS = 20_000
+"""After how long without being seen, heard or felt the user is absent (rule K1), unless the
+profile says otherwise."""
 LOOP_MS = 500
 """How long one loop of a feedback Command lasts unless the profile says otherwise."""
 

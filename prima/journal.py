@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from prima.commands import CommandType
+from prima.commands import ABSENCE_MS, CommandType
 from prima.errors import UsageError
 from prima.messages import (
     Emergency,
@@ -65,7 +65,10 @@ def inbound_of(record: Record) -> Inbound | None:
 
 
 def replay_records(
-    records: Iterable[Record], documents: Iterable[AnyDocument], commands: Mapping[str, CommandType]
+    records: Iterable[Record],
+    documents: Iterable[AnyDocument],
+    commands: Mapping[str, CommandType],
+    absence: int = ABSENCE_MS,
 ) -> Iterator[Record]:
     """Run the inbound records of a transcript through a session; times of both in s and ms.
 
@@ -77,7 +80,7 @@ def replay_records(
     yield {**head, "time": round(head["time"] * 1000)}
     date = settings.get("date", START)
     policy = policy_named(settings["policy"])
-    session = Session(documents, policy, commands, settings.get("bound"), date)
+    session = Session(documents, policy, commands, settings.get("bound"), date, absence=absence)
     batches: dict[int, list[Inbound]] = {}
     for record in held:
         value = inbound_of(record)

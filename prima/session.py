@@ -14,7 +14,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from prima.commands import CommandType
+from prima.commands import ABSENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.evaluation import PULSE
@@ -90,6 +90,7 @@ class Session:
         bound: int | None = None,
         date: str = START,
         engine: Engine | None = None,
+        absence: int = ABSENCE_MS,
     ) -> None:
         self._began = moment(date)
         self._engine = engine
@@ -97,7 +98,7 @@ class Session:
         self.apps = {doc.id: interpreter_of(doc, own, self._began, engine) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
-        self.mediator = Mediator(policy, commands, self.chronicle, bound)
+        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence)
         self.failures: list[str] = []
         """Applications that ended by an error, as ``NAME: what``."""
         self._serial = 0

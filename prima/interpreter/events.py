@@ -27,7 +27,8 @@ from prima.markup.tree import Node
 STANDARD = frozenset(
     [
         *("touch", "message", "human.found", "human.lost", "corner", "noinput", "nomatch", "help"),
-        *("emergency.stop", "emergency.release", "connection.disconnect.hangup", "error"),
+        *("suspended", "resumed", "emergency.stop", "emergency.release"),
+        *("connection.disconnect.hangup", "error"),
         *("error.semantic", "error.badfetch", "error.unsupported", "error.unit.timeout"),
         *("error.service", "end", "cancel", "interrupted", "reply"),
         *(f"error.device.{device}" for device in DEVICES),

@@ -193,7 +193,10 @@ class _Writer:
     def handler(self, handler: Handler) -> None:
         """A handler whose turn it is."""
         if not self.form.bare or any(not self.stays(act) for act in all_acts(handler.content)):
-            causes = {None: "event.serial if event.reactive else None", True: "event.serial or event.name"}
+            causes = {
+                None: "event.serial if event.reactive else None",
+                True: "event.serial or event.name",
+            }
             self.write(4, f"owner.cause = {causes.get(handler.reactive)}")
         self.write(4, f"at = {self.at(handler, None)}")
         before, self.with_fiber = len(self.lines), False

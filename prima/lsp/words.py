@@ -143,6 +143,8 @@ EVENTS = {
     "end": "A Command of this application has ended.",
     "cancel": "A Command of this application has been cancelled.",
     "interrupted": "A restartable Command gave way to a reaction (extension x2).",
+    "suspended": "The application's stream was suspended: another one's has the floor.",
+    "resumed": "The application's suspended stream has resumed.",
     "emergency.stop": "The emergency stop is pressed.",
     "emergency.release": "The emergency stop is released.",
     "error": "Every error.",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Final
 
+from prima.commands import ABSENCE_MS
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import (
     GONE,
@@ -21,9 +21,6 @@ from prima.scheduler.intake import Maker, Table
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
 from prima.scheduler.selector import Selector
-
-ABSENCE_MS: Final = 20_000
-"""For how long nobody has to have sensed the user for them to be absent (K1)."""
 
 
 class Told:

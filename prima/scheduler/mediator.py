@@ -143,7 +143,8 @@ class Mediator(Failures):
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
             return
-        self._continue(app, [ab.stream for ab in state])
+        # In a window that is its stream, and not one that goes with the state.
+        self._continue(app, [app.window] if app.window else [ab.stream for ab in state])
         self._withdraw(state, "O3")
 
     def _continue(self, app: Application, streams: list[Stream]) -> None:

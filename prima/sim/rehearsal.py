@@ -118,7 +118,14 @@ class Rehearsal:
         self.person = Person(scenario, self.world, self.robot)
         self.services = Services(scenario.services, web)
         self.telephone = Telephone(scenario.transfers)
-        self.session = Session(cast.documents, policy, cast.robot.commands, bound, scenario.date)
+        self.session = Session(
+            cast.documents,
+            policy,
+            cast.robot.commands,
+            bound,
+            scenario.date,
+            absence=cast.robot.absence,
+        )
         native = [doc for doc in cast.documents if isinstance(doc, Document)]
         self._watching = any(
             doc.watches or any(form.watches for form in doc.forms.values()) for doc in native

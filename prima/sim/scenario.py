@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from prima.commands import DEVICES, TABLE_4_2, Argument, CommandType
+from prima.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
@@ -200,6 +200,8 @@ class Profile:
     turn_speed: float = 90.0
     head_speed: float = 120.0
     loop: int = 500
+    absence: int = ABSENCE_MS
+    """After how long without being sensed the user is absent (rule K1)."""
     devices: frozenset[str] = frozenset()
     camera_angle: float = 60.0
     camera_range: float = 4.0
@@ -250,6 +252,7 @@ def read_robot(file: str, data: bytes) -> Profile:
         turn_speed=reader.get(root, "turn-speed") or 90.0,
         head_speed=reader.get(root, "head-speed") or 120.0,
         loop=reader.get(root, "loop") or 500,
+        absence=reader.get(root, "absence"),
         devices=frozenset(node.get("name") for node in root.all("device")),
         touch=frozenset(node.get("sensor") for node in root.all("touch")),
     )

@@ -131,6 +131,12 @@ ROBOT = Vocabulary(
                 attribute(
                     "loop", "duration", "a loop of a feedback Command", default="500ms", low=10
                 ),
+                attribute(
+                    "absence",
+                    "duration",
+                    "after how long without being seen, heard or felt the user is absent (K1)",
+                    default="20s",
+                ),
             ),
             ("device", "camera", "voice", "touch", "gesture", "adds", "allows", "substitute"),
         ),

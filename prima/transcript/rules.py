@@ -15,6 +15,7 @@ RULES = {
     "F1": "when a reaction starts, its stream takes the floor, and the others' streams are suspended",
     "F2": "while a stream holds the floor, only another reaction or a higher priority may start",
     "F3": "the floor falls back to the stream beneath when its holder ends",
+    "F6": "a topic is not spoken into between two of its utterances",
     "F5": "a body that nobody moves on is stopped",
     "K1": "a Command that leaves the user waits while another application is engaged with the user",
     "C1": "a stream ends when nothing of it is left and no window is open",

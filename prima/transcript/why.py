@@ -98,7 +98,9 @@ def _selected(record: Record, row: Row) -> Reason:
     lost, rule = record["losers"], record["rule"]
     names = ", ".join(lost)
     count = record["losers_count"]
-    before = f" before {names} ({count} in all)" if names else "; nothing competed with it"
+    before = (
+        f" before {names} ({count} in all)" if names else "; nothing else could start in its place"
+    )
     return Reason(
         record["time"], f"{unit}selected by rule {rule}{before}.", rule, lost=tuple(lost[:8])
     )

@@ -1,0 +1,217 @@
+"""Rules of the mediator as authors meet them: whole documents, run side by side."""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.interpreter.bounds import MAX_FAILURES
+from prima.messages import Ended, Occurred, Sensed
+from tests.robot import Bench, document
+
+IDLE = '<form id="sleep"/>'
+
+
+def pair(ea: str, fa: str = IDLE) -> Bench:
+    return Bench(document(fa, "fa", "fa"), document(ea, "ea", "ea"))
+
+
+# Entering and leaving states --------------------------------------------------------
+
+
+@pytest.mark.parametrize("way", ['<goto next="#b"/>', "<exit/>"])
+def test_o3_a_watch_that_is_true_on_entry_stops_the_entry(way: str) -> None:
+    bench = pair(
+        f"""<form id="start"><on event="go"><goto next="#a"/></on></form>
+        <form id="a">
+          <watch name="dark" when="sensor.light &lt; 5"/>
+          <on event="dark">{way}</on>
+          <block><log>entered</log><speak>In a.</speak></block>
+        </form>
+        <form id="b"><block><speak>In b.</speak></block></form>"""
+    )
+    bench.step(Sensed({"light": 3}))
+    bench.event("go")
+    assert bench.logs() == []
+    assert bench.said() == (["In b."] if "goto" in way else [])
+    assert [r["text"] for r in bench.phases("request")] == bench.said()
+
+
+def test_o4_a_watch_that_is_true_on_entry_and_stays_lets_the_content_begin() -> None:
+    bench = pair(
+        """<form id="start"><on event="go"><goto next="#a"/></on></form>
+        <form id="a">
+          <watch name="dark" when="sensor.light &lt; 5"/>
+          <on event="dark"><log>it is dark</log></on>
+          <block><log>entered</log><speak>In a.</speak></block>
+        </form>"""
+    )
+    bench.step(Sensed({"light": 3}))
+    bench.event("go")
+    assert bench.logs() == ["it is dark", "entered"]
+    assert bench.said() == ["In a."]
+
+
+def test_o3_in_a_window_the_conversation_keeps_its_stream_and_its_floor() -> None:
+    # The event's reaction waits behind the question; the answer leaves the state.
+    bench = pair(
+        """<form id="start"><on event="touch"><goto next="#one"/></on></form>
+        <form id="one">
+          <field name="a" type="boolean"><prompt>One?</prompt><filled><goto next="#two"/></filled></field>
+          <on event="bell"><speak>A bell.</speak></on>
+        </form>
+        <form id="two">
+          <field name="b" type="boolean"><prompt>Two?</prompt></field>
+        </form>""",
+        """<form id="dance"><on event="music"><gesture name="bow"/></on></form>""",
+    )
+    bench.event("touch")
+    bench.event("bell")
+    bench.listens()
+    bench.hears("yes")
+    asked = {r["text"]: r["tree"] for r in bench.phases("request") if r["text"]}
+    assert asked["Two?"] == asked["One?"] != asked["A bell."]
+    floors = [r["outcome"] for r in bench.phases("floor")]
+    assert floors == ["taken"], "the conversation has it still"
+
+
+# Orders --------------------------------------------------------------------------------
+
+
+def test_o2_what_is_wanted_now_does_not_wait_behind_speech() -> None:
+    bench = pair(
+        """<form id="walk">
+          <block><speak>One.</speak><speak>Two.</speak><speak>Three.</speak></block>
+          <on event="door"><set-speed-and-time speed="0.2" time="20s"/></on>
+          <on event="end.speak"><stop-moving/></on>
+        </form>"""
+    )
+    bench.event("door")
+    assert bench.saying() == ["One.", "set-speed-and-time"]
+    bench.finish("One.")
+    assert bench.saying() == ["Two.", "stop-moving"]
+
+
+def test_u5_commands_inside_a_linked_unit_hold_nobody_back() -> None:
+    bench = pair(
+        """<form id="ask">
+          <block><speak>Good day.</speak></block>
+          <iu><field name="name"><prompt>Your name?</prompt><option>Anna</option>
+            <noinput><exit/></noinput></field></iu>
+          <on event="touch"><face-human/><topological-move to="lab"/></on>
+        </form>""",
+        """<form id="sleep">
+          <on event="phone"><speak>The phone.</speak><topological-move to="hall"/></on>
+        </form>""",
+    )
+    bench.event("touch")
+    bench.finish("Good day.")
+    bench.event("phone")
+    for _ in range(20):
+        running = bench.running()
+        if not running:
+            break
+        bench.step(*[Ended(name) for name, what in running.items() if what != "iu"])
+    assert bench.session.idle, bench.session.mediator.memory.behaviors
+
+
+def test_u5_a_unit_owns_what_a_handler_needs_that_is_reached_by_throw() -> None:
+    bench = pair(
+        """<form id="ask">
+          <iu><field name="a" type="boolean">
+            <prompt>Shall I turn?</prompt><filled><throw event="turn"/></filled>
+          </field></iu>
+        </form>
+        <on event="turn"><turn angle="90"/></on>""",
+        """<form id="sleep"><on event="touch"><turn angle="10"/></on></form>""",
+    )
+    bench.listens()
+    bench.event("touch")
+    assert bench.saying() == ["Shall I turn?", "iu"], "the wheels are the unit's"
+    bench.hears("yes")
+    assert bench.saying() == ["iu", "turn"]
+    assert bench.running().keys() >= {"ea#3"}
+
+
+# Streams that are broken ---------------------------------------------------------------
+
+GUIDE = """<form id="panel">
+  <block><speak>One.</speak><speak>Two.</speak><exit/></block>
+  <on event="suspended"><goto next="#again"/></on>
+  <on event="resumed"><log>resumed</log></on>
+</form>
+<form id="again">
+  <on event="resumed"><log>resumed again</log></on>
+  <block><speak>As I was saying,</speak><speak>two.</speak></block>
+</form>"""
+HELLO = """<form id="sleep"><on event="touch"><speak>Hello.</speak></on></form>"""
+
+
+def test_c2_an_application_hears_that_its_stream_was_suspended_and_has_resumed() -> None:
+    bench = pair(GUIDE, HELLO)
+    bench.event("touch")
+    bench.finish("One.")
+    assert bench.saying() == ["Hello."]
+    assert bench.session.deadline() == bench.now + 1, "it is told in the next instant"
+    bench.step(at=bench.now + 1)
+    assert bench.saying() == ["Hello."], "what it asks for waits with its stream"
+    bench.finish("Hello.")
+    bench.step(at=bench.now + 1)
+    bench.finish("As I was saying,")
+    bench.finish("two.")
+    assert bench.said() == ["One.", "Hello.", "As I was saying,", "two."]
+    assert bench.logs() == ["resumed again"]
+    streams = {r["tree"] for r in bench.phases("request") if r["app"] == "ea"}
+    assert streams == {"ea:1"}, "it is one topic"
+    assert not any(r.get("reactive") for r in bench.phases("request") if r["app"] == "ea")
+
+
+def test_c2_whoever_does_not_ask_is_told_nothing() -> None:
+    bench = pair('<form id="a"><block><speak>One.</speak><speak>Two.</speak></block></form>', HELLO)
+    bench.event("touch")
+    bench.finish("One.")
+    assert bench.saying() == ["Hello."]
+    assert bench.session.deadline() != bench.now + 1
+
+
+# Reactions to what the transcript names ------------------------------------------------
+
+
+def test_c5_a_reaction_to_an_end_has_a_cause_of_its_own() -> None:
+    bench = pair(
+        """<form id="a">
+          <block><speak>One.</speak></block>
+          <on event="end.speak" reactive="true"><gesture name="bow"/></on>
+        </form>"""
+    )
+    bench.step(Occurred("door"))
+    bench.finish("One.")
+    (request,) = [r for r in bench.phases("request") if r["command"] == "gesture"]
+    events = {r["serial"]: r["event"] for r in bench.phases("event")}
+    assert request["reactive"] and events[request["cause"]] == "end.speak"
+
+
+def test_e1_an_application_whose_commands_all_fail_ends_alone() -> None:
+    bench = pair(
+        """<form id="a"><block name="b"><gesture name="fly"/></block>
+        <on event="error"><clear namelist="b"/></on></form>""",
+        HELLO,
+    )
+    for _ in range(MAX_FAILURES + 1):
+        if "gesture" in bench.saying():
+            bench.fail("gesture", "arm")
+    assert bench.saying() == []
+    (over,) = [r for r in bench.phases("unload")]
+    assert over["app"] == "ea" and "ea.xml:1" in over["outcome"]
+    bench.event("touch")
+    assert bench.saying() == ["Hello."]
+
+
+def test_e3_an_application_whose_commands_are_all_refused_ends_alone() -> None:
+    bench = pair(
+        """<form id="a"><block name="b"><turn angle-expr="'left'"/></block>
+        <on event="error"><clear namelist="b"/></on></form>""",
+        HELLO,
+    )
+    assert [r["app"] for r in bench.phases("unload")] == ["ea"]
+    bench.event("touch")
+    assert bench.saying() == ["Hello."]
