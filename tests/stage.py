@@ -63,7 +63,7 @@ class Stage:
     ) -> None:
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy_named(policy), table, self.chronicle, bound)
-        for name, kind in (apps or {"fa": "fa", "ea": "ea"}).items():
+        for name, kind in ({"fa": "fa", "ea": "ea"} if apps is None else apps).items():
             self.mediator.load(name, kind)
         self.runs = 0
         self.records: list[Record] = []
@@ -144,6 +144,15 @@ class Stage:
             r["rule"] for r in self.records if r["phase"] == "decision" and r["winner"] == behavior
         ]
         return str(found[-1])
+
+    def losers(self, behavior: str) -> list[str]:
+        """Whom an AB went before when it was selected last."""
+        found = [
+            r["losers"]
+            for r in self.records
+            if r["phase"] == "decision" and r["winner"] == behavior
+        ]
+        return list(found[-1])
 
     def holds(self, behavior: str) -> list[str]:
         """The rules that have held an AB back."""

@@ -8,6 +8,7 @@ import pytest
 
 from prima.commands import TABLE_4_2
 from prima.messages import Command, Group, OpenUnit, Step
+from prima.scheduler import rules
 from tests.stage import Stage, ask, chain, command, move, say, search
 
 EVENT = 7
@@ -142,6 +143,41 @@ def test_u6_a_running_ab_is_not_interrupted_by_another_application() -> None:
     assert stage.running == {"ea#1"}
 
 
+def test_u5_a_command_that_needs_another_device_is_refused_in_a_unit() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "speech-recognition")
+    stage.request("ea", ask(), unit=1)
+    stage.request("ea", command("turn", angle=90), unit=1)
+    stage.select()
+    assert stage.told("ea") == ["error.semantic"]
+    assert "locomotion" in stage.notices[-1][1].message
+
+
+def test_u5_a_command_that_leaves_or_loops_is_refused_in_a_unit() -> None:
+    for what in (command("set-position", x=1, y=1), command("tracking-human")):
+        stage = Stage()
+        stage.open("ea", 1, "speaker", "locomotion", "localization", "human-detection")
+        stage.request("ea", what, unit=1)
+        stage.settle()
+        assert stage.told("ea") == ["error.semantic"], what
+
+
+def test_u5_what_is_inside_a_linked_unit_holds_nobody_back() -> None:
+    stage = Stage()
+    stage.request("ea", command("face-human"), move(), cause=EVENT)
+    assert stage.select() == ["ea#1"], "it has the floor, and engages the user"
+    stage.open("ea", 1, "speaker", "speech-recognition")
+    stage.request("ea", ask(), unit=1)
+    stage.request("fa", say(), cause=EVENT + 1)
+    assert stage.select() == ["fa#1"]
+    stage.request("fa", move())
+    stage.at(10).end("ea#1")
+    stage.select()
+    assert stage.mediator.memory.behaviors["ea#3"].state == "linked"
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["fa#2.1"], "all that contends in the other's stream leaves as well"
+
+
 # Orders -------------------------------------------------------------------------------
 
 
@@ -176,6 +212,29 @@ def test_o1_a_reaction_never_waits_behind_its_own_application() -> None:
     assert stage.select() == ["ea#2"]
 
 
+def test_o1_in_a_window_a_command_follows_its_own_stream_and_no_reaction() -> None:
+    stage = Stage()
+    stage.request("ea", ask())
+    stage.select()
+    stage.request("ea", command("face-human"), move(), cause=EVENT)
+    stage.request("fa", say(), cause=EVENT + 1)
+    stage.at(10).end("ea#1", then=lambda: stage.request("ea", say("Thanks.")))
+    stage.select()
+    thanks = stage.phases("request")[-1]
+    assert (thanks["tree"], thanks["parent"]) == ("ea:1", None)
+
+
+def test_o1_in_a_window_a_command_follows_the_latest_of_the_windows_stream() -> None:
+    stage = Stage()
+    steps = [Step(say("One.")), Step(command("turn", angle=90))]
+    stage.request("ea", steps=steps)
+    stage.select()
+    stage.request("ea", command("move-head", pan=1), cause=EVENT)
+    stage.at(10).end("ea#1", then=lambda: stage.request("ea", say("Two.")))
+    stage.select()
+    assert stage.phases("request")[-1]["parent"] == "ea#2"
+
+
 def test_o2_now_cancels_the_trees_that_share_a_device() -> None:
     stage = Stage()
     stage.request("ea", move(), say("There."))
@@ -204,6 +263,25 @@ def test_o2_another_applications_abs_are_left_alone() -> None:
     stage.request("fa", command("stop-moving"))
     assert stage.select() == []
     assert stage.running == {"ea#1.1"}
+
+
+def test_o2_what_is_wanted_now_waits_for_nothing_of_its_own_application() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).request("ea", command("stop-moving"))
+    assert stage.select() == ["ea#4"]
+
+
+def test_o2_of_several_streams_the_one_that_ran_goes_on() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.select()
+    stage.request("ea", command("turn", angle=10), cause=EVENT + 1)
+    stage.at(10).request("ea", command("stop-moving"), cause=EVENT + 2)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:1"]
 
 
 def test_o3_leaving_a_state_deletes_what_has_not_started_and_ends_loops() -> None:
@@ -242,6 +320,33 @@ def test_o3_what_is_requested_in_the_same_instant_continues_the_stream() -> None
     stage.request("ea", say(), state=2, cause=EVENT)
     stage.select()
     assert {r["tree"] for r in stage.phases("request")} == {"ea:1"}
+
+
+def test_o3_of_several_streams_the_one_that_ran_goes_on() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.select()
+    stage.request("ea", command("turn", angle=10), cause=EVENT + 1)
+    stage.at(10).leave("ea")
+    stage.request("ea", say(), state=2, cause=EVENT + 2)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:1"]
+
+
+def test_o3_in_a_window_its_own_stream_goes_on() -> None:
+    stage = Stage()
+    stage.request("ea", ask())
+    stage.select()
+    stage.request("ea", command("turn", angle=10), cause=EVENT)
+    stage.select()
+
+    def go() -> None:
+        stage.leave("ea")
+        stage.request("ea", ask("And?"), state=2)
+
+    stage.at(10).end("ea#1", then=go)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:1"]
 
 
 # Selection ------------------------------------------------------------------------------
@@ -293,6 +398,19 @@ def test_s2b_a_stream_that_has_not_ended_is_active_between_its_abs(goes_on: bool
     assert stage.rule(first[0]) == first[1]
 
 
+def test_s2b_a_stream_that_has_ended_is_not_active_while_another_runs() -> None:
+    stage = Stage(apps={"one": "ea", "two": "ea"})
+    stage.request("one", say("Long."))
+    stage.select()
+    stage.at(5).request("two", command("move-head", pan=1))
+    stage.select()
+    stage.at(10).end("two#1")
+    stage.select()
+    stage.at(15).request("two", command("point-by-hand", angle=0), cause=EVENT)
+    stage.request("one", command("point-by-hand", angle=9), cause=EVENT)
+    assert stage.select() == ["one#2"], "the sentence is what is active"
+
+
 def test_s2c_a_parent_that_has_just_ended_goes_before_others() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
@@ -318,6 +436,75 @@ def test_s2d_the_stream_suspended_last_goes_first() -> None:
     assert stage.select() == ["b#2"], "a stack of topics is unwound"
     stage.at(40).end("b#2")
     assert stage.select() == ["a#2"]
+
+
+def test_s2d_the_stream_suspended_last_goes_first_when_no_floor_is_left() -> None:
+    stage = Stage(apps={"a": "fa", "b": "ea", "c": "ea"})
+    stage.request("a", say("a1"), say("a2"))
+    stage.request("b", command("move-head", pan=1), say("b1"))
+    stage.select()
+    stage.request("b", say("r"), cause=1)
+    stage.at(10).end("a#1")
+    assert stage.select() == ["b#3"], "a is suspended"
+    stage.request("c", say("c1"), cause=2)
+    stage.at(20).end("b#3")
+    assert stage.select() == ["c#1"], "and now b's first stream"
+    stage.at(25).end("b#1")
+    stage.select()
+    stage.at(30).end("c#1")
+    assert stage.select() == ["b#2"]
+    assert stage.rule("b#2") == "S2d"
+
+
+def test_s2d_streams_suspended_together_rank_alike() -> None:
+    stage = Stage(apps={"a": "fa", "b": "ea", "c": "ea"})
+    stage.request("a", say("a1"), say("a2"))
+    stage.at(1).request("b", command("move-head", pan=1), say("b1"))
+    stage.select()
+    stage.request("c", say("c1"), cause=EVENT)
+    stage.at(10).end("a#1")
+    assert stage.select() == ["c#1"]
+    stage.at(15).end("b#1")
+    stage.select()
+    stage.at(20).end("c#1")
+    assert stage.select() == ["a#2"]
+    assert stage.rule("a#2") == "S2e"
+
+
+def test_s2d_a_stream_that_has_not_begun_never_goes_before_one_that_was_broken() -> None:
+    stage = Stage(apps={"fa": "fa", "one": "ea", "two": "ea"})
+    stage.request("one", ask("One?"), ask("Or two?"))
+    stage.select()
+    stage.at(1).request("two", ask("Three?"))
+    stage.request("fa", say(), cause=EVENT)
+    stage.at(10).end("one#1")
+    assert stage.select() == ["fa#1"]
+    assert [r["tree"] for r in stage.phases("suspend")] == ["one:1"]
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["one#2"]
+
+
+def test_s2f_goes_by_the_declared_order_whoever_was_loaded_first() -> None:
+    stage = Stage(apps={})
+    stage.mediator.load("late", "ea", order=1)
+    stage.mediator.load("early", "ea", order=0)
+    stage.request("late", say())
+    stage.request("early", say())
+    assert stage.select() == ["early#1"]
+    assert stage.rule("early#1") == "S2f"
+
+
+def test_s2_a_decision_names_as_losers_only_what_could_have_started() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", say(), command("face-human"), cause=EVENT)
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    assert (stage.rule("fa#1"), stage.losers("fa#1")) == ("S2b", ["ea#2"])
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["fa#2"]
+    assert (stage.rule("fa#2"), stage.losers("fa#2")) == ("S1", []), "F2 holds ea#2"
 
 
 def test_s2e_and_s2f_the_earlier_request_then_the_declared_order() -> None:
@@ -425,6 +612,7 @@ def test_f1_a_reaction_suspends_the_others_whatever_devices_they_need() -> None:
     stage.at(500).end("ea#1.1", goal=False)
     assert stage.select() == [], "nothing of the EA moves while the FA talks"
     assert stage.holds("ea#1.1") == ["F2"]
+    assert [(r["tree"], r["by"]) for r in stage.phases("suspend")] == [("ea:1", "fa:1")]
 
 
 def test_f2_a_reaction_to_another_event_may_break_in_and_one_to_the_same_may_not() -> None:
@@ -461,6 +649,75 @@ def test_f3_the_floor_falls_back_when_its_holder_ends() -> None:
     stage.at(20).end("ea#1")
     assert stage.select() == ["fa#2"]
     assert stage.floor == ["fa:1"]
+
+
+def test_f3_what_outranks_the_floor_takes_it_only_if_it_needs_its_devices() -> None:
+    for what, floor in ((command("turn", angle=10), "fa:1"), (say(), "ea:1")):
+        stage = Stage()
+        stage.request("ea", move(), cause=EVENT)
+        stage.select()
+        stage.at(5).request("fa", what)
+        stage.at(500).end("ea#1.1", goal=False)
+        stage.select()
+        assert stage.floor[-1] == floor, what
+        assert ("fa#1" in stage.running) and ("ea#1.2" in stage.running) is (floor == "ea:1")
+
+
+def test_f3_a_robot_that_guides_does_not_stop_for_every_sentence() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.select()
+    stage.at(5).request("fa", say("Once upon a time"), say("there was a robot."))
+    assert stage.select() == ["fa#1"]
+    assert stage.phases("suspend") == []
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"]
+
+
+def test_f6_a_topic_is_not_spoken_into() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert stage.holds("fa#1")[-1] == "F6"
+    stage.at(20).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(30).end("ea#3")
+    assert stage.select() == ["fa#1"]
+
+
+def test_f6_a_reaction_may_break_in() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("Ouch."), cause=EVENT)
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1", "ea#2"] or "fa#1" in stage.running
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        [command("move-head", pan=30), search(), say("forty two.")],  # it works in loops
+        [command("move-head", pan=30)],  # nothing is said behind it
+    ],
+)
+def test_f6_holds_only_between_two_utterances(between: list[Command]) -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), *between)
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert "fa#1" in stage.select()
+
+
+def test_f6_a_stream_that_has_not_spoken_is_no_topic_yet() -> None:
+    stage = Stage()
+    stage.request("ea", command("move-head", pan=30), say("Forty two."))
+    stage.at(1).request("fa", say("I like trains."))
+    assert stage.select() == ["ea#1", "fa#1"]
 
 
 def test_f4_without_a_floor_only_devices_and_the_channel_count() -> None:
@@ -525,6 +782,33 @@ def test_k1_a_stream_that_leaves_itself_engages_nobody() -> None:
     assert stage.select() == ["fa#2.1"]
     stage.request("ea", move())
     assert stage.select() == ["ea#1.1"]
+
+
+def test_k1_nobody_engages_a_user_who_has_gone() -> None:
+    stage = Stage()
+    stage.mediator.sees_user(True)
+    stage.request("ea", ask("Still there?"))
+    stage.select()
+    stage.at(1000).mediator.sees_user(False)
+    stage.request("fa", move())
+    assert stage.select() == []
+    assert stage.holds("fa#1") == ["K1"]
+    assert stage.mediator.deadline() == 21_000
+    stage.at(21_000).mediator.expire()
+    assert stage.select() == ["fa#1.1"]
+    stage.at(21_500).mediator.senses_user()
+    stage.end("fa#1.1", goal=False)
+    assert stage.select() == [], "the user is back"
+
+
+@pytest.mark.parametrize(("kind", "engages"), [("active-sensing-human", True), ("q-and-a", False)])
+def test_k1_a_stream_that_searches_engages_whom_it_looks_for(kind: str, engages: bool) -> None:
+    stage = Stage()
+    stage.request("ea", command(kind, "Hello?"))
+    stage.select()
+    memory = stage.mediator.memory
+    memory.absent = True
+    assert rules.engages(memory.streams["ea:1"], memory) is engages
 
 
 def test_k2_leaving_commands_have_low_priority() -> None:

@@ -80,12 +80,13 @@ def test_o3_in_a_window_the_conversation_keeps_its_stream_and_its_floor() -> Non
 def test_o2_what_is_wanted_now_does_not_wait_behind_speech() -> None:
     bench = pair(
         """<form id="walk">
-          <block><speak>One.</speak><speak>Two.</speak><speak>Three.</speak></block>
           <on event="door"><set-speed-and-time speed="0.2" time="20s"/></on>
+          <on event="tell"><speak>One.</speak><speak>Two.</speak><speak>Three.</speak></on>
           <on event="end.speak"><stop-moving/></on>
         </form>"""
     )
     bench.event("door")
+    bench.event("tell")
     assert bench.saying() == ["One.", "set-speed-and-time"]
     bench.finish("One.")
     assert bench.saying() == ["Two.", "stop-moving"]
@@ -200,7 +201,7 @@ def test_e1_an_application_whose_commands_all_fail_ends_alone() -> None:
         if "gesture" in bench.saying():
             bench.fail("gesture", "arm")
     assert bench.saying() == []
-    (over,) = [r for r in bench.phases("unload")]
+    (over,) = bench.phases("unload")
     assert over["app"] == "ea" and "ea.xml:1" in over["outcome"]
     bench.event("touch")
     assert bench.saying() == ["Hello."]

@@ -283,15 +283,19 @@ class Mediator(Failures):
             self._look_for_user()
             self._selector.select(self._now())
             self._set_deadlines()
-        if self._rolling is not None and "locomotion" not in self.memory.occupied:
-            ab = self._rolling
-            self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
-            self.chronicle.behavior("stop", ab, rule="F5")
-        self._rolling = None
+        if self._rolling is not None:
+            self._stop_rolling(self._rolling)
+            self._rolling = None
         if self._continuing:
             for app in self._continuing:
                 app.continuing = None
             self._continuing.clear()
+
+    def _stop_rolling(self, ab: Behavior) -> None:
+        """F5: stop a body that gets no next loop, unless something else takes the wheels."""
+        if "locomotion" not in self.memory.occupied:
+            self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
+            self.chronicle.behavior("stop", ab, rule="F5")
 
     def _close_streams(self) -> None:
         """C1, F3: streams that nothing keeps open end, and hold no floor then."""

@@ -1,0 +1,218 @@
+"""Each rule, dropped or reversed: a test that is named after it must notice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import pytest
+
+from prima.scheduler import mediator, rules
+from prima.scheduler.behavior import Behavior, Stream
+from prima.scheduler.failures import Failures
+from prima.scheduler.mediator import Mediator
+from prima.scheduler.memory import Memory
+from prima.scheduler.selection import Policy
+from prima.scheduler.selector import Selector
+from prima.session import Session
+from tests import test_extensions, test_rules, test_rules_in_documents
+
+Patch = Callable[[pytest.MonkeyPatch], None]
+MODULES = (test_rules, test_rules_in_documents, test_extensions)
+
+
+def put(where: object, name: str, what: object) -> Patch:
+    """Put something else in the place of a rule."""
+    return lambda patch: patch.setattr(where, name, what)
+
+
+def wrapped(where: Any, name: str, change: Callable[[Any], Any]) -> Patch:
+    """Change what a rule gives."""
+    whole = getattr(where, name)
+    return put(where, name, lambda *given: change(whole(*given)))
+
+
+def nothing(*_given: object) -> None:
+    """A rule that is gone."""
+
+
+def everything_begun(patch: pytest.MonkeyPatch) -> None:
+    """S2d: streams that have not begun are suspended as well."""
+    take = Selector.take_floor
+
+    def suspend_all(self: Selector, stream: Stream, rule: str) -> None:
+        for other in self.memory.streams.values():
+            other.turn = other.turn or 1
+        take(self, stream, rule)
+
+    patch.setattr(Selector, "take_floor", suspend_all)
+
+
+def one_by_one(patch: pytest.MonkeyPatch) -> None:
+    """S2d: of streams suspended together, the one that began last goes first."""
+    take = Selector.take_floor
+
+    def number(self: Selector, stream: Stream, rule: str) -> None:
+        take(self, stream, rule)
+        for other in self.memory.streams.values():
+            if other.suspended == self._suspensions:
+                other.suspended = self._suspensions * 100 + other.turn
+
+    patch.setattr(Selector, "take_floor", number)
+
+
+def loaded_order(patch: pytest.MonkeyPatch) -> None:
+    """S2f: the application loaded first goes first."""
+    load = Mediator.load
+
+    def load_next(
+        self: Mediator, name: str, kind: str, lang: str = "", order: int | None = None
+    ) -> None:
+        load(self, name, kind, lang)
+
+    patch.setattr(Mediator, "load", load_next)
+
+
+def any_loser(patch: pytest.MonkeyPatch) -> None:
+    """S2: who waits has lost, whatever keeps it."""
+    could = Selector._could_start
+    asked = []
+
+    def always(self: Selector, ab: Behavior, held: dict[str, Behavior]) -> bool:
+        asked.append(ab)
+        return True if asked.count(ab) % 2 else could(self, ab, held)
+
+    patch.setattr(Selector, "_could_start", always)
+
+
+def ended_is_active(patch: pytest.MonkeyPatch) -> None:
+    """S2b: whose AB started last is active, whether its stream has ended or not."""
+    latest: list[Stream] = []
+    start = Memory.start
+
+    def note(memory: Memory, ab: Behavior, now: int) -> None:
+        latest.append(ab.stream)
+        start(memory, ab, now)
+
+    patch.setattr(Memory, "start", note)
+    patch.setattr(Memory, "active", property(lambda memory: latest[-1].app if latest else None))
+
+
+MUTANTS: list[tuple[str, str, Patch]] = [
+    ("s1", "dropped", put(Memory, "conflict", nothing)),
+    ("s2a", "dropped", put(rules, "s2a", lambda ab: 0)),
+    ("s2a", "reversed", put(rules, "s2a", lambda ab: ab.priority)),
+    ("s2b", "dropped", put(rules, "s2b", lambda ab, memory: rules.NO_REACTION)),
+    ("s2b", "the earliest first", wrapped(rules, "s2b", lambda r: (r[0], -r[1], r[2]))),
+    ("s2b", "no matter who is active", wrapped(rules, "s2b", lambda r: (r[0], r[1], 0))),
+    ("s2b", "what has ended is active", ended_is_active),
+    ("s2c", "dropped", put(rules, "s2c", lambda ab, now: 0)),
+    ("s2c", "reversed", wrapped(rules, "s2c", lambda r: -r)),
+    ("s2d", "dropped", put(rules, "s2d", lambda ab: 0)),
+    ("s2d", "reversed", put(rules, "s2d", lambda ab: ab.stream.suspended or 99)),
+    ("s2d", "what has not begun is suspended", everything_begun),
+    ("s2d", "one by one", one_by_one),
+    ("s2e", "dropped", put(rules, "s2e", lambda ab: 0)),
+    ("s2e", "reversed", put(rules, "s2e", lambda ab: -ab.requested)),
+    ("s2f", "reversed", wrapped(rules, "s2f", lambda r: (-r[0], r[1]))),
+    ("s2f", "by loading", loaded_order),
+    ("s2", "all that wait have lost", any_loser),
+    ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab: False)),
+    ("f1", "no floor", put(Selector, "take_floor", nothing)),
+    ("f1", "nobody is suspended", put(Selector, "_suspend_others", nothing)),
+    ("f2", "dropped", put(rules, "f2", nothing)),
+    ("f2", "priority does not count", put(rules, "outranks", lambda priority, stream: False)),
+    ("f3", "never", put(rules, "f3", lambda ab, reacts, memory: False)),
+    ("f3", "always", put(rules, "f3", lambda ab, reacts, memory: True)),
+    ("f5", "dropped", put(Mediator, "_stop_rolling", nothing)),
+    ("f6", "dropped", put(rules, "f6", nothing)),
+    (
+        "f6",
+        "reactions too",
+        put(
+            rules,
+            "f6",
+            lambda ab, memory: next(
+                (("F6", one.id) for one in memory.running.values() if rules.speaks_next(one)), None
+            ),
+        ),
+    ),
+    ("f6", "silent streams too", lambda patch: patch.setattr(Stream, "spoken", True)),
+    ("f6", "whatever comes next", put(rules, "speaks_next", lambda ab: True)),
+    ("k1", "dropped", put(rules, "k1", nothing)),
+    ("k1", "for ever", put(Failures, "_look_for_user", nothing)),
+    ("k1", "who leaves engages", put(rules, "engages", lambda stream, memory: True)),
+    (
+        "k1",
+        "who searches does not",
+        put(rules, "engages", lambda stream, memory: not memory.absent),
+    ),
+    (
+        "o1",
+        "windows do not count",
+        put(
+            Mediator,
+            "_parent",
+            lambda self, app: (
+                None if app.latest is None or app.latest.state == "gone" else app.latest
+            ),
+        ),
+    ),
+    ("o1", "dropped", put(Mediator, "_parent", nothing)),
+    ("o2", "dropped", put(Mediator, "_order_now", nothing)),
+    ("o3", "dropped", put(Mediator, "leave_state", nothing)),
+    ("o3", "nothing goes on", put(Mediator, "_continue", nothing)),
+    ("c2", "nobody is told", put(Session, "_tell_turns", nothing)),
+    ("c3", "dropped", put(Mediator, "open_window", nothing)),
+    (
+        "u5",
+        "what is linked contends",
+        put(Behavior, "dormant", property(lambda ab: ab.state == "linked")),
+    ),
+    ("u5", "anything goes in a unit", put(mediator, "check_steps", nothing)),
+]
+
+
+def named_after(rule: str) -> Iterator[Callable[[], None]]:
+    """The tests of a rule, each of their cases."""
+    for module in MODULES:
+        for name, test in vars(module).items():
+            if name.startswith(f"test_{rule}_") or f"_and_{rule}_" in name:
+                yield from cases(test)
+
+
+def cases(test: Callable[..., None]) -> Iterator[Callable[[], None]]:
+    """A test as pytest calls it: once, or once for each of its parameters."""
+    marks = [mark for mark in getattr(test, "pytestmark", []) if mark.name == "parametrize"]
+    if not marks:
+        yield test
+        return
+    (mark,) = marks
+    names, values = mark.args
+    names = [one.strip() for one in names.split(",")] if isinstance(names, str) else list(names)
+    for value in values:
+        given = dict(zip(names, (value,) if len(names) == 1 else value, strict=True))
+        yield partial(test, **given)
+
+
+def fails(test: Callable[[], None]) -> bool:
+    try:
+        test()
+    except Exception:
+        return True
+    return False
+
+
+@pytest.mark.parametrize(
+    ("rule", "patch"),
+    [(rule, patch) for rule, _, patch in MUTANTS],
+    ids=[f"{rule}-{how}" for rule, how, _ in MUTANTS],
+)
+def test_a_test_named_after_the_rule_notices(
+    rule: str, patch: Patch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tests = list(named_after(rule))
+    assert tests and not any(fails(test) for test in tests)
+    patch(monkeypatch)
+    assert any(fails(test) for test in tests)
