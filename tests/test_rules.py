@@ -914,6 +914,21 @@ def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
     assert stage.select() == ["ea#1"], "what was cut is done again"
 
 
+def test_e5_only_what_returns_is_recorded_as_halted() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."))
+    stage.request("fa", command("move-head", pan=1))
+    stage.select()
+    stage.at(5).leave("ea")
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.select()
+    halted = {r["behavior"]: r["outcome"] for r in stage.phases("cancel")}
+    assert halted == {"ea#1": "running", "fa#1": "halted"}
+    assert [r["serial"] for r in stage.phases("emergency")] == [8]
+    stage.at(20).mediator.emergency(False, True, 9)
+    assert stage.select() == ["fa#1"]
+
+
 def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
