@@ -520,3 +520,57 @@ def test_a_way_is_chosen_that_the_body_fits_through() -> None:
     world = World(plan, PROFILE, (3.4, 0.0), 180.0)
     assert world.clear(world.position, (5.0, 4.0))
     assert Routes(plan).route(world, "jars") == [(5.0, 0.0), (5.0, 4.0)]
+
+
+WARD = """<world xmlns="urn:prima:world:1" version="1.0" id="ward">
+  <place id="door" x="0" y="0" heading="0"/><place id="turn" x="4" y="0"/><place id="bed" x="4" y="4"/>
+  <way from="door" to="turn"/><way from="turn" to="bed"/>
+  <wall x1="0" y1="1" x2="2.5" y2="1"/>
+  <corner id="beds" x="4" y="0" radius="0.4" event="corner.beds"/>
+</world>"""
+GOES = '<topological-move to="bed"/><speak>Here we are.</speak>'
+
+
+@pytest.mark.parametrize("policy", ["fifo", "prima", "prima+all"])
+@pytest.mark.parametrize("at", [1, 4, 6.5, 7, 7.5, 8, 9])
+def test_a_pause_of_a_move_loses_no_corner(tmp_path: Path, policy: str, at: float) -> None:
+    """From near the corner the goal is in view: a move that resumes may not cut it short."""
+    (tmp_path / "ward.xml").write_text(WARD)
+    (tmp_path / "guide.xml").write_text(
+        HEAD.format("ea", "guide", "en") + f'<form id="go"><block>{GOES}</block>'
+        '<on event="corner.beds"><speak>Mind the beds.</speak></on></form></prima>'
+    )
+    (tmp_path / "nice.xml").write_text(
+        HEAD.format("fa", "nice", "en") + '<form id="sleep"><on event="touch">'
+        "<speak>Hello, how nice of you to touch me.</speak></on></form></prima>"
+    )
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="ward.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml" until="60s"><robot at="door"/>'
+        '<application src="nice.xml"/><application src="guide.xml"/>'
+        f'<when at="{at}s"><touch sensor="head"/></when></scenario>'
+    )
+    said = [row.what for row in api.rehearse(path, policy).rows() if row.what.startswith('"')]
+    assert sorted(said) == [
+        '"Hello, how nice of you to touch me."',
+        '"Here we are."',
+        '"Mind the beds."',
+    ]
+
+
+def test_a_move_that_is_asked_for_again_where_it_was_given_up_keeps_its_way(tmp_path: Path) -> None:
+    (tmp_path / "ward.xml").write_text(WARD)
+    (tmp_path / "guide.xml").write_text(
+        HEAD.format("ea", "guide", "en") + f'<form id="go"><block>{GOES}</block>'
+        '<on event="touch"><stop-moving/><goto next="#go"/></on>'
+        '<on event="corner.beds"><speak>Mind the beds.</speak></on></form></prima>'
+    )
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="ward.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml" until="60s"><robot at="door"/>'
+        '<application src="guide.xml"/>'
+        '<when at="7s"><touch sensor="head"/></when></scenario>'
+    )
+    assert '"Mind the beds."' in told(api.rehearse(path))

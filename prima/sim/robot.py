@@ -120,6 +120,8 @@ class Robot:
         """The last mark that each application's speech has passed, and when."""
         self._plans: dict[str, Plan] = {}
         """Of Commands whose loop has ended at this instant: a later one begins afresh (U2)."""
+        self._stopped: dict[str, tuple[Point, list[Point]]] = {}
+        """By the places it was on the way to: where it stopped, and which way was left."""
         self._owners: dict[str, Task] = {}
         self._now = 0
         self._voices = 0
@@ -175,6 +177,7 @@ class Robot:
     def _abort(self, behavior: str) -> None:
         task = self.tasks.pop(behavior, None)
         if task is not None:
+            self._note_way(task)
             self._stand(task)
 
     def _stand(self, task: Task) -> None:
@@ -248,12 +251,30 @@ class Robot:
         """Find the way from where the robot is now."""
         args = task.command.args
         if task.command.type == "topological-move":
-            plan.path = self.routes.route(self.world, str(args["to"]))
+            plan.path = self._way(str(args["to"]))
             if plan.path is None:
                 task.fails = ("localization", f'there is no way to "{args["to"]}"')
         elif task.command.type.startswith("set-position"):
             plan.path = [(float(args["x"]), float(args["y"]))]
         plan.track = [self.world.position, *(plan.path or ())]
+
+    def _way(self, to: str) -> list[Point] | None:
+        """The way to a place: the one it was on, where it still stands where it stopped.
+
+        Else a pause would let it cut a corner, and nobody would hear of that corner.
+        """
+        at, left = self._stopped.get(to, (self.world.position, []))
+        if left and distance(at, self.world.position) <= ARRIVED:
+            return list(left)
+        return self.routes.route(self.world, to)
+
+    def _note_way(self, task: Task) -> None:
+        """Note where a move has stopped, if it has, and its way from there."""
+        if task.command.type == "topological-move":
+            self._stopped[str(task.command.args["to"])] = (
+                self.world.position,
+                list(task.plan.path or ()),
+            )
 
     def _start_once(self, task: Task) -> None:
         args, now = task.command.args, self._now
@@ -497,6 +518,7 @@ class Robot:
 
     def _end(self, task: Task) -> list[Inbound]:
         del self.tasks[task.id]
+        self._note_way(task)
         passed = task.passed(self._now)
         if passed is not None:
             self._marks[task.app] = (passed[1], self._now - passed[2])
@@ -527,6 +549,7 @@ class Robot:
             return self._end_sensing(task, data)
         if task.plan.path is not None and not task.goal and self._is_stuck(task.plan):
             self.world.drive = (0.0, 0.0)
+            self._stopped.clear()  # another try may find another way
             return [Failed(task.id, "locomotion", "the way is blocked")]
         return [Ended(task.id, task.goal, data)]
 
