@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections import Counter
+from math import dist
 from pathlib import Path
 
 import pytest
@@ -574,3 +575,58 @@ def test_a_move_that_is_asked_for_again_where_it_was_given_up_keeps_its_way(tmp_
         '<when at="7s"><touch sensor="head"/></when></scenario>'
     )
     assert '"Mind the beds."' in told(api.rehearse(path))
+
+
+ROUND = Map(
+    "m",
+    places={"hall": (4.0, 0.0), "crossing": (8.0, 0.0), "room": (8.0, 6.0)},
+    ways=[("hall", "crossing"), ("crossing", "room")],
+    walls=[((-1.5, 1.5), (5.2, 1.5)), ((5.2, 1.5), (5.2, 7.5))],
+)
+BESIDE_THE_END = (5.171, 1.35)
+"""Nearer to the walls' common end than the robot's radius."""
+
+
+def test_a_way_leads_out_of_where_the_body_is_too_near_to_a_wall() -> None:
+    from prima.sim.routes import Routes
+
+    world = World(ROUND, PROFILE, BESIDE_THE_END, 57.5)
+    assert world.clear(world.position, (8.0, 6.0))
+    assert Routes(ROUND).route(world, "room") == [(8.0, 0.0), (8.0, 6.0)]
+
+
+TRACKS = '<block><tracking-human distance="1"/></block>'
+
+
+def test_tracking_keeps_the_body_from_the_end_of_a_wall(tmp_path: Path) -> None:
+    """The user walks round it, so the straight line to him leads past it by less than a radius."""
+    transcript = rehearse(
+        tmp_path,
+        f'<form id="f">{TRACKS}</form>',
+        '<person x="1.5" y="0.5"/><when doing="tracking-human" after="1s">'
+        '<walk x="5.2" y="0.5"/><walk x="7" y="0.5"/><walk x="6.6" y="3.6"/></when>',
+        until="40s",
+    )
+    places = [
+        (record["data"]["x"], record["data"]["y"])
+        for record in transcript.records
+        if record["phase"] == "end" and record.get("command") == "tracking-human"
+    ]
+    assert min(dist(place, (5.2, 1.5)) for place in places) > 0.2
+    assert places[-1][1] > 2, "it has come round the corner"
+
+
+@pytest.mark.parametrize("touch", [0.5, 1.6, 2.0, 7, 13])
+@pytest.mark.parametrize("message", [0, 10.2, 11, 19])
+def test_whenever_touch_and_message_come_the_room_is_reached(
+    tmp_path: Path, touch: float, message: float
+) -> None:
+    folder = ROOT / "documents"
+    text = (folder / "scenarios" / "follow-during-navigation.xml").read_text("utf-8")
+    text = text.replace("../", f"{folder}/").replace('after="6s"', f'after="{touch}s"')
+    later = 'doing="active-sensing-human" after="{}s"'
+    text = text.replace(later.format(3), later.format(message))
+    (tmp_path / "s.xml").write_text(text, "utf-8")
+    transcript = api.rehearse(tmp_path / "s.xml")
+    assert transcript.records[-1]["outcome"] == "quiet"
+    assert '"I\'ve just reached the goal."' in told(transcript)

@@ -370,8 +370,10 @@ class Robot:
 
     def _toward(self, point: Point, near: float) -> None:
         """Drive toward a point: turn on the spot first, then go, slower when near."""
+        self._go(*self._round_person(bearing(self.world.position, point), point), near)
+
+    def _go(self, heading: float, fastest: float, near: float) -> None:
         world, profile = self.world, self.profile
-        heading, fastest = self._round_person(bearing(world.position, point), point)
         off = difference(heading, world.heading)
         turning = max(min(off * 3.0, profile.turn_speed), -profile.turn_speed)
         if abs(off) > 30.0:
@@ -434,7 +436,9 @@ class Robot:
         elif not seen and left <= PASSED:
             plan.sought = None  # he is not where he was seen last: look around
         else:
-            self._toward(plan.sought, left)
+            toward = bearing(world.position, plan.sought)
+            heading, fastest = self._round_person(toward, plan.sought)
+            self._go(world.beside_walls(heading), fastest, left)
         return False
 
     def _sense(self, task: Task) -> bool:

@@ -12,6 +12,8 @@ from prima.sim.scenario import Corner, Map, Point, Profile
 STEP_MS = 50
 """The longest step of physics."""
 WALLS = pymunk.ShapeFilter(mask=0b10)
+ROOM = 0.1
+"""How much room (m) it leaves beside its body where it may choose."""
 FAR = 3.0
 """How far (m) walls are looked for around the robot."""
 EPSILON = 1e-6
@@ -104,12 +106,32 @@ class World:
         return self._space.segment_query_first(a, b, 0.0, WALLS) is None
 
     def passable(self, a: Point, b: Point) -> bool:
-        """Whether the robot's body, and a little more, fits through in a straight line."""
-        wide = self.profile.radius + 0.1
-        return self.clear(a, b) and all(
-            min(off_line(c, a, b), off_line(d, a, b), off_line(a, c, d), off_line(b, c, d)) > wide
-            for c, d in self.map.walls
-        )
+        """Whether the robot's body, and a little more, fits through in a straight line.
+
+        Where it starts nearer to a wall than that, it has to get no nearer.
+        """
+        wide = self.profile.radius + ROOM
+        if not self.clear(a, b):
+            return False
+        for c, d in self.map.walls:
+            start = off_line(a, c, d)
+            if min(start, wide) - EPSILON > min(
+                off_line(c, a, b), off_line(d, a, b), off_line(b, c, d)
+            ):
+                return False
+        return True
+
+    def beside_walls(self, heading: float) -> float:
+        """The direction (degrees) nearest to another that leads the body into no wall."""
+        near = self._space.point_query_nearest(self.position, self.profile.radius + ROOM, WALLS)
+        if near is None:
+            return heading
+        wall = bearing(self.position, (near.point.x, near.point.y))
+        aside = difference(heading, wall)
+        if abs(aside) >= 90.0:
+            return heading
+        away = 90.0 if near.distance > self.profile.radius else 120.0
+        return wall + (away if aside >= 0 else -away)
 
     def sees_person(self) -> bool:
         """Whether the person is in the camera's field of view, near enough and not hidden.
