@@ -66,6 +66,9 @@ class Row:
     reactions: int = 0
     reaction_mean: float = 0.0
     reaction_max: float = 0.0
+    responses: int = 0
+    response_mean: float = 0.0
+    response_max: float = 0.0
     transcript: str | None = None
     messages: list[str] = field(default_factory=list)
     """What went wrong."""
@@ -77,7 +80,8 @@ class Row:
 
 KEPT = (
     "policy", "exit", "ended", "records", "seconds", "streams_broken", "collisions",
-    "reactions", "reaction_mean", "reaction_max", "messages",
+    "reactions", "reaction_mean", "reaction_max",
+    "responses", "response_mean", "response_max", "messages",
 )  # fmt: skip
 """What a ledger keeps of a row; the rest follows from the job."""
 
@@ -383,6 +387,9 @@ def _row(job: Job, loaded: Loaded, made: Transcript) -> Row:
         summary.reactions,
         summary.reaction_mean,
         summary.reaction_max,
+        summary.responses,
+        summary.response_mean,
+        summary.response_max,
         f"{job.stem}{TRANSCRIPT}" if job.stem else None,
         _few(messages),
     )
@@ -515,8 +522,16 @@ def _earlier(options: Options, job: Job) -> Row | None:
 
 def _sound(row: Row) -> bool:
     """Whether what was read of a ledger can be shown."""
-    whole = (row.exit, row.records, row.streams_broken, row.collisions, row.reactions)
-    parts = (row.seconds, row.reaction_mean, row.reaction_max)
+    whole = (
+        row.exit,
+        row.records,
+        row.streams_broken,
+        row.collisions,
+        row.reactions,
+        row.responses,
+    )
+    times = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
+    parts = (row.seconds, *times)
     words = (row.policy, row.ended, *(row.messages if isinstance(row.messages, list) else [0]))
     return (
         all(type(one) is int for one in whole)
@@ -536,6 +551,8 @@ COLUMNS = (
     ("seconds", 8),
     ("broken", 6),
     ("reactions", 9),
+    ("mean s", 6),
+    ("responses", 9),
     ("mean s", 6),
 )
 """Headings after the scenario's, and how wide the columns are at least."""
@@ -559,7 +576,8 @@ def format_row(row: Row, wide: int) -> str:
     if row.ended is None:
         return _line(cells, wide)
     cells += [str(row.records), f"{row.seconds:.2f}", str(row.streams_broken)]
-    return _line([*cells, str(row.reactions), f"{row.reaction_mean:.2f}"], wide)
+    cells += [str(row.reactions), f"{row.reaction_mean:.2f}"]
+    return _line([*cells, str(row.responses), f"{row.response_mean:.2f}"], wide)
 
 
 def _line(cells: list[str], wide: int) -> str:

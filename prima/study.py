@@ -103,8 +103,13 @@ COLUMNS = (
     ("reactions", "reactions"),
     ("mean s", "reaction_mean"),
     ("max s", "reaction_max"),
+    ("responses", "responses"),
+    ("mean s", "response_mean"),
+    ("max s", "response_max"),
 )
-"""Headings and the criteria beneath them."""
+"""Headings and the criteria beneath them; times belong to the count before them."""
+COUNTED = {"reaction_mean": "reactions", "response_mean": "responses"}
+"""How many times each mean is made of."""
 
 
 def result_data(result: Result) -> dict[str, Json]:
@@ -166,16 +171,16 @@ def _cells(result: Result) -> list[str]:
 
 
 def _sums(policy: str, results: list[Result]) -> list[str]:
-    """A policy in all situations: counts are added, the mean is that of all reactions."""
+    """A policy in all situations: counts are added, means are those of all of its runs."""
     values = []
     for _, name in COLUMNS:
         counts = [getattr(result.criteria, name) for result in results]
-        if name == "reaction_mean":
-            total = sum(r.criteria.reaction_mean * r.criteria.reactions for r in results)
-            reactions = sum(r.criteria.reactions for r in results)
-            values.append(_shown(total / reactions if reactions else 0.0))
+        if name in COUNTED:
+            weights = [getattr(result.criteria, COUNTED[name]) for result in results]
+            total = sum(mean * weight for mean, weight in zip(counts, weights, strict=True))
+            values.append(_shown(total / sum(weights) if sum(weights) else 0.0))
         else:
-            values.append(_shown(max(counts) if name == "reaction_max" else sum(counts)))
+            values.append(_shown(max(counts) if name.endswith("_max") else sum(counts)))
     known = [r for r in results if r.distance is not None]
     distance = sum(r.distance or 0 for r in known) if known else None
     missing = sum(r.missing or 0 for r in known) if known else None

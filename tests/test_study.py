@@ -12,12 +12,12 @@ import pytest
 
 from prima import api, cli
 from prima.errors import UsageError
-from prima.messages import Occurred
+from prima.messages import Command, Occurred
 from prima.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.transcript.criteria import Criteria, observe
 from prima.transcript.table import read_table
 from tests.robot import Bench, document
-from tests.stage import Stage, ask, move, say
+from tests.stage import Stage, ask, command, move, say
 
 EVENT = 7
 
@@ -80,6 +80,50 @@ def test_what_goes_on_at_the_same_time_breaks_nothing() -> None:
     stage.at(600).end("fa#1")
     stage.select()
     assert seen(stage).broken == 0
+
+
+TILT = command("move-head", pan=30)
+
+
+def spoken_into(between: Command, cause: int | None = None) -> Stage:
+    """Two sentences with something else between them, in which another application speaks."""
+    stage = Stage("fifo")
+    stage.request("ea", say("The answer is"), between, say("forty two."))
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.select()
+    stage.request("fa", say("I like trains."), cause=cause)
+    stage.at(200).select()
+    stage.at(300).end("fa#1")
+    stage.at(400).end("ea#2" if between == TILT else "ea#2.1")
+    assert stage.select() == ["ea#3"], "it goes on"
+    return stage
+
+
+@pytest.mark.parametrize(("cause", "broken"), [(None, 1), (EVENT, 0)])
+def test_a_topic_that_is_spoken_into_is_broken(cause: int | None, broken: int) -> None:
+    """Although the head turns meanwhile, so that the stream never stands still."""
+    assert seen(spoken_into(TILT, cause)).broken == broken
+
+
+def test_on_a_way_one_may_talk() -> None:
+    assert seen(spoken_into(move())).broken == 0
+
+
+def test_a_topic_that_is_spoken_into_twice_is_broken_once() -> None:
+    """The stream stands still first, then its head turns: the user heard one interruption."""
+    stage = Stage("fifo")
+    stage.request("ea", say("The answer is"), TILT, say("forty two."))
+    stage.select()
+    stage.request("fa", say("I like trains."), say("And ships."))
+    stage.at(100).end("ea#1")
+    stage.select()
+    stage.at(200).end("fa#1")
+    stage.select()
+    stage.at(300).end("fa#2")
+    stage.at(400).end("ea#2")
+    stage.select()
+    assert seen(stage).broken == 1
 
 
 ASKING = """<form id="a">
@@ -166,6 +210,51 @@ def test_reactions_and_their_delays() -> None:
     assert found.reactions == 1
     assert found.reaction_mean == found.reaction_max == 0.1
     assert [(one.event, one.app, one.seconds) for one in found.delays] == [("bell", "app", 0.1)]
+
+
+NODS = """<form id="a"><on event="touch">
+  <move-head pan="20"/><speak>You touched me.</speak><face-human/></on></form>"""
+
+
+def test_a_reaction_and_its_response_are_measured_apart() -> None:
+    """A turn of the head at once is the first Command; the first word comes 59 s later."""
+    bench = Bench(
+        NODS, document('<form id="a"><block><speak>A story.</speak></block></form>', "ea", "other")
+    )
+    bench.event("touch")
+    bench.finish("move-head")
+    bench.now += 58_800
+    bench.finish("A story.")
+    found = observe(_seconds(bench))
+    assert (found.reactions, found.reaction_mean, found.reaction_max) == (1, 0.0, 0.0)
+    assert (found.responses, found.response_mean, found.response_max) == (1, 59.0, 59.0)
+    assert [(one.seconds, one.response) for one in found.delays] == [(0.0, 59.0)]
+
+
+def test_a_question_that_only_listens_is_no_response() -> None:
+    asks = '<form id="b"><field name="q"><option>Yes.</option></field></form>'
+    bench = Bench('<form id="a"><on event="touch"><goto next="#b"/></on></form>' + asks)
+    bench.event("touch")
+    found = observe(_seconds(bench))
+    assert (found.reactions, found.responses) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("content", "responses"),
+    [
+        ("<speak>Yes?</speak>", 1),
+        ("<face-human/>", 1),
+        ('<move-head pan="20"/>', 0),
+        ('<gesture name="nod"/>', 0),
+        ('<topological-move to="lab"/>', 0),
+    ],
+)
+def test_a_response_is_a_word_or_a_movement_towards_the_user(content: str, responses: int) -> None:
+    bench = Bench(f'<form id="a"><on event="touch">{content}</on></form>')
+    bench.event("touch")
+    found = observe(_seconds(bench))
+    assert (found.reactions, found.responses) == (1, responses)
+    assert [one.response for one in found.delays] == [0.0 if responses else None]
 
 
 def test_a_printed_table_is_read_back() -> None:

@@ -210,7 +210,10 @@ def _outline(transcript: Transcript) -> str:
     broken = counted(summary.streams_broken, "stream")
     reactions = counted(summary.reactions, "reaction")
     if summary.reactions:
-        reactions += f" after {summary.reaction_mean:.2f} s"
+        reactions += f" after {summary.reaction_mean:.2f} s, "
+        reactions += counted(summary.responses, "response")
+    if summary.responses:
+        reactions += f" after {summary.response_mean:.2f} s"
     if summary.reactions > 1:
         reactions += " on average"
     return f"{records} of {summary.seconds:.1f} s, {broken} broken, {reactions}"

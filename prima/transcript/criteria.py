@@ -14,7 +14,7 @@ from prima.deferred import dataclass, field
 from prima.messages import Record
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Delay:
     """An event, and how long (s) until an application's first Command because of it started."""
 
@@ -22,6 +22,8 @@ class Delay:
     serial: int
     app: str
     seconds: float
+    response: float | None = None
+    """How long (s) until the first word or movement towards the user; None if there was none."""
 
 
 @dataclass(slots=True)
@@ -44,6 +46,10 @@ class Criteria:
     """Events that some application reacted to."""
     reaction_mean: float = 0.0
     reaction_max: float = 0.0
+    responses: int = 0
+    """Reactions in which the robot said something or turned to the user."""
+    response_mean: float = 0.0
+    response_max: float = 0.0
     delays: list[Delay] = field(default_factory=list)
     """How soon each application answered each event."""
 
@@ -61,6 +67,16 @@ class _Tree:
     running: set[str] = field(default_factory=set)
     leaving: set[str] = field(default_factory=set)
     """What of it runs and leaves the user."""
+    looping: set[str] = field(default_factory=set)
+    """What of it runs and works in a feedback loop."""
+    speaking: set[str] = field(default_factory=set)
+    """What of it runs and speaks."""
+    spoken: bool = False
+    """Whether it has spoken, and no break has been counted since."""
+    spoken_into: bool = False
+    """Whether another application has spoken, by no reaction, since it last did."""
+    owed: list[tuple[float, Delay]] = field(default_factory=list)
+    """Events that it reacts to and has not responded to, with their times."""
     begun: bool = False
     engaged: bool = False
     broken_by: str = ""
@@ -123,6 +139,8 @@ class Observer:
         self._keeps_delays = delays
         self._delayed = 0
         """The seconds of all reactions, in parts so small that the sum is exact."""
+        self._responded = 0
+        """The seconds until all responses, in such parts."""
         self._trees: dict[str, _Tree] = {}
         self._of: dict[str, _Tree] = {}
         """The streams of behaviors that have not ended."""
@@ -164,9 +182,13 @@ class Observer:
     def result(self) -> Criteria:
         """What has been counted so far."""
         found = self.found
-        mean = self._delayed / PARTS / found.reactions if found.reactions else 0.0
         unfaced = found.unfaced + sum(tree.unfaced for tree in self._trees.values())
-        return replace(found, reaction_mean=round(mean, 3), unfaced=unfaced)
+        return replace(
+            found,
+            reaction_mean=_mean(self._delayed, found.reactions),
+            response_mean=_mean(self._responded, found.responses),
+            unfaced=unfaced,
+        )
 
     def _request(self, record: Record) -> None:
         tree = self._trees.get(record["tree"])
@@ -192,48 +214,87 @@ class Observer:
             return
         request = tree.pending.get(name, record)
         if record.get("cause") in self._events:
-            self._react(record["app"], record["cause"], self._events[record["cause"]])
+            self._react(tree, record["cause"], self._events[record["cause"]])
         if record.get("reactive"):
             tree.reacting = self._now
         if record.get("text"):
-            for (app, _), wait in self._waits.items():
-                wait.talked = wait.talked or app == tree.app
-        says = record.get("text") and record["command"] != "active-sensing-human"
-        if says and tree.faced is None:
-            tree.faced = self._seen
+            self._talk(tree, record)
         again = not record.get("resumed") and record["behavior"].partition(".")[2] not in ("", "1")
         if not again:
-            self._come_in(tree)
-            if request.get("leaves"):
-                self._leave(tree, record["behavior"])
-        if tree.broken_by:
-            self.found.broken += not tree.by_reaction
-            tree.broken_by = ""
+            self._begin(tree, record, request)
+        self._go_on(tree, not again and "speaker" in request.get("devices", ()))
         tree.begun = True
         tree.running.add(name)
         if request.get("leaves"):
             tree.leaving.add(name)
+        if request.get("feedback"):
+            tree.looping.add(name)
         tree.engaged = tree.engaged or bool(request.get("engages"))
 
-    def _react(self, app: str, serial: int, event: _Event) -> None:
+    def _talk(self, tree: _Tree, record: Record) -> None:
+        """Something is said: its application is noticed while it waits; a conversation begins."""
+        for (app, _), wait in self._waits.items():
+            wait.talked = wait.talked or app == tree.app
+        if record["command"] != "active-sensing-human" and tree.faced is None:
+            tree.faced = self._seen
+
+    def _begin(self, tree: _Tree, record: Record, request: Record) -> None:
+        """A behavior begins or resumes: what does it do to the others, and is it a response?"""
+        speaks = "speaker" in request.get("devices", ())
+        self._come_in(tree, speaks)
+        if request.get("leaves"):
+            self._leave(tree, record["behavior"])
+        if speaks:
+            tree.speaking.add(record["behavior"].partition(".")[0])
+        if record.get("text") or (request.get("engages") and record["command"] != "q-and-a"):
+            self._respond(tree)
+
+    def _go_on(self, tree: _Tree, speaks: bool) -> None:
+        """A stream does something, or speaks: has another application broken it meanwhile?"""
+        spoken_into = speaks and tree.spoken_into
+        broken = spoken_into or bool(tree.broken_by and not tree.by_reaction)
+        self.found.broken += broken
+        tree.broken_by = ""
+        if speaks:
+            tree.spoken, tree.spoken_into = True, False
+        elif broken:
+            tree.spoken = False
+
+    def _react(self, tree: _Tree, serial: int, event: _Event) -> None:
         """An application starts something because of an event: the first time counts."""
-        found = self.found
+        found, app = self.found, tree.app
         if app not in event.answered:
             event.answered.add(app)
             seconds = round(self._now - event.time, 3)
             found.reactions += 1
             found.reaction_max = max(found.reaction_max, seconds)
             self._delayed += int(seconds * PARTS)
+            delay = Delay(event.name, serial, app, seconds)
+            tree.owed = [*tree.owed[-MOST_STREAMS:], (event.time, delay)]
             if self._keeps_delays:
-                found.delays.append(Delay(event.name, serial, app, seconds))
+                found.delays.append(delay)
         if event.waited == app:
             event.waited = ""
             found.broken_waiting += 1
 
-    def _come_in(self, tree: _Tree) -> None:
+    def _respond(self, tree: _Tree) -> None:
+        """The user is spoken to or turned to: all that the stream reacts to has its response."""
+        found = self.found
+        for time, delay in tree.owed:
+            delay.response = seconds = round(self._now - time, 3)
+            found.responses += 1
+            found.response_max = max(found.response_max, seconds)
+            self._responded += int(seconds * PARTS)
+        tree.owed = []
+
+    def _come_in(self, tree: _Tree, speaks: bool) -> None:
         """Something of a stream begins: what others have not finished may be broken by it."""
         for other in self._trees.values():
-            if other.app == tree.app or other.broken_by or not other.begun:
+            if other.app == tree.app or not other.begun:
+                continue
+            if speaks:
+                self._speak_into(other, tree)
+            if other.broken_by:
                 continue
             # Where only a way is left to go, no topic is broken.
             if other.topics and not other.running and not tree.running:
@@ -243,6 +304,16 @@ class Observer:
         for (app, _), wait in self._waits.items():
             broken = wait.talked and app != tree.app and tree.reacting < wait.since
             wait.broken = wait.broken or broken
+
+    @staticmethod
+    def _speak_into(other: _Tree, tree: _Tree) -> None:
+        """A stream speaks while another one that has spoken does something: is it its topic?
+
+        On a way or a search one may talk: a feedback Command takes as long as it takes.
+        """
+        if other.spoken and other.running and not other.looping and not other.speaking:
+            other.spoken_into = other.spoken_into or tree.reacting < 0
+            other.reacting = -1.0
 
     def _leave(self, tree: _Tree, behavior: str) -> None:
         """The robot goes away: is another application in the middle of a conversation?"""
@@ -262,6 +333,8 @@ class Observer:
             return
         tree.running.discard(name)
         tree.leaving.discard(name)
+        tree.looping.discard(name)
+        tree.speaking.discard(name)
         if not (again or record.get("outcome") in ("again", "halted")):
             tree.pending.pop(name, None)
             tree.topics.discard(name)
@@ -290,6 +363,11 @@ class Observer:
             return
         self._cut.add(name)
         self.found.units_cut += 1
+
+
+def _mean(parts: int, number: int) -> float:
+    """The mean of so many times, from their sum."""
+    return round(parts / PARTS / number, 3) if number else 0.0
 
 
 def observe(records: Iterable[Record]) -> Criteria:

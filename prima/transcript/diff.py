@@ -176,7 +176,7 @@ def _interleave(
 
 
 def summary_line(difference: Difference) -> str:
-    """One line: rows changed, streams broken and reaction times in both runs."""
+    """One line: rows changed, streams broken, reaction and response times in both runs."""
     counts = [f"{n} {kind}" for kind, n in difference.counts.items() if n]
     line = "rows: " + (", ".join(counts) if counts else "all the same")
     before, after = difference.before, difference.after
@@ -185,6 +185,8 @@ def summary_line(difference: Difference) -> str:
             f"; streams broken: {before.streams_broken} -> {after.streams_broken}"
             f"; reaction mean/max: {before.reaction_mean:.2f}/{before.reaction_max:.2f} s"
             f" -> {after.reaction_mean:.2f}/{after.reaction_max:.2f} s"
+            f"; response mean/max: {before.response_mean:.2f}/{before.response_max:.2f} s"
+            f" -> {after.response_mean:.2f}/{after.response_max:.2f} s"
             f"; collisions: {before.collisions} -> {after.collisions}"
         )
     return line

@@ -21,6 +21,10 @@ class Summary:
     """Events that some application reacted to with a Command that started."""
     reaction_mean: float
     reaction_max: float
+    responses: int
+    """Reactions in which the robot said something or turned to the user."""
+    response_mean: float
+    response_max: float
 
 
 class Measure:
@@ -49,6 +53,9 @@ class Measure:
             found.reactions,
             found.reaction_mean,
             found.reaction_max,
+            found.responses,
+            found.response_mean,
+            found.response_max,
         )
 
 
