@@ -27,6 +27,7 @@ from prima.messages import Record
 from prima.scheduler.selection import policy_named
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.lines import finished
+from tests.stage import Stage, command, say
 
 ROOT = Path(__file__).parent.parent
 DEMOS = sorted([*(ROOT / "documents/fa").iterdir(), *(ROOT / "documents/ea").iterdir()])
@@ -638,6 +639,23 @@ def test_as_many_streams_are_broken_as_are_measured(policy: str) -> None:
     assert len(broken) == held.summary().streams_broken
     assert all(span.end >= span.begin for span in broken)
     assert len(broken) == 2 or policy != "fifo"
+
+
+def test_a_stream_that_is_spoken_into_is_red_from_there_on() -> None:
+    stage = Stage("fifo")
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(900).end("ea#1")
+    stage.select()
+    stage.request("fa", say("I like trains."))
+    stage.at(1000).select()
+    for time, ends in ((1200, "ea#2"), (2000, "fa#1"), (3000, "ea#3")):
+        stage.at(time).end(ends)
+        stage.select()
+    records = [{**record, "time": record["time"] / 1000} for record in stage.records]
+    [stream, _] = run.streams(records).streams
+    [broken] = [span for span in stream.spans if span.kind == "broken"]
+    assert (broken.begin, broken.end, broken.by) == (1.0, 2.0, "fa:1")
 
 
 @pytest.mark.parametrize("what", ["tree", "streams"])

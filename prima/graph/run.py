@@ -252,7 +252,7 @@ class _Historian:
 
     def _break(self, stream: Stream) -> None:
         """It goes on now; another application came in since it last did something."""
-        begin = self.paused.get(stream.name, self.now)
+        begin = min(self.paused.get(stream.name, self.now), self.observer.broken_since)
         came = [
             other.name
             for other in self.streams.values()

@@ -75,6 +75,8 @@ class _Tree:
     """Whether it has spoken, and no break has been counted since."""
     spoken_into: bool = False
     """Whether another application has spoken, by no reaction, since it last did."""
+    since: float = 0.0
+    """When another application came in or spoke into it."""
     owed: list[tuple[float, Delay]] = field(default_factory=list)
     """Events that it reacts to and has not responded to, with their times."""
     begun: bool = False
@@ -144,6 +146,8 @@ class Observer:
         self._trees: dict[str, _Tree] = {}
         self._of: dict[str, _Tree] = {}
         """The streams of behaviors that have not ended."""
+        self.broken_since = 0.0
+        """When another application came into the stream that was counted as broken last."""
         self._seen = False
         self._cut: set[str] = set()
         """Behaviors that go on and have lost a device."""
@@ -253,7 +257,9 @@ class Observer:
         """A stream does something, or speaks: has another application broken it meanwhile?"""
         spoken_into = speaks and tree.spoken_into
         broken = spoken_into or bool(tree.broken_by and not tree.by_reaction)
-        self.found.broken += broken
+        if broken:
+            self.found.broken += 1
+            self.broken_since = tree.since
         tree.broken_by = ""
         if speaks:
             tree.spoken, tree.spoken_into = True, False
@@ -292,27 +298,26 @@ class Observer:
         for other in self._trees.values():
             if other.app == tree.app or not other.begun:
                 continue
-            if speaks:
+            if speaks and other.spoken and not other.spoken_into:
                 self._speak_into(other, tree)
             if other.broken_by:
                 continue
             # Where only a way is left to go, no topic is broken.
             if other.topics and not other.running and not tree.running:
-                other.broken_by = tree.app
+                other.broken_by, other.since = tree.app, self._now
                 other.by_reaction = tree.reacting >= 0
                 other.reacting = -1.0  # when it goes on, that is no reaction any more
         for (app, _), wait in self._waits.items():
             broken = wait.talked and app != tree.app and tree.reacting < wait.since
             wait.broken = wait.broken or broken
 
-    @staticmethod
-    def _speak_into(other: _Tree, tree: _Tree) -> None:
+    def _speak_into(self, other: _Tree, tree: _Tree) -> None:
         """A stream speaks while another one that has spoken does something: is it its topic?
 
         On a way or a search one may talk: a feedback Command takes as long as it takes.
         """
-        if other.spoken and other.running and not other.looping and not other.speaking:
-            other.spoken_into = other.spoken_into or tree.reacting < 0
+        if other.running and not other.looping and not other.speaking:
+            other.spoken_into, other.since = tree.reacting < 0, self._now
             other.reacting = -1.0
 
     def _leave(self, tree: _Tree, behavior: str) -> None:
