@@ -23,11 +23,11 @@ from prima.graph.layout import Link, arrange, distances
 from prima.graph.model import Edge, Graph, Node, clean
 from prima.graph.svg import SIZE, measure
 from prima.graph.words import condition, ordinal
-from prima.messages import Record
+from prima.messages import Command, Record
 from prima.scheduler.selection import policy_named
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.lines import finished
-from tests.stage import Stage, command, say
+from tests.stage import Stage, say
 
 ROOT = Path(__file__).parent.parent
 DEMOS = sorted([*(ROOT / "documents/fa").iterdir(), *(ROOT / "documents/ea").iterdir()])
@@ -643,7 +643,7 @@ def test_as_many_streams_are_broken_as_are_measured(policy: str) -> None:
 
 def test_a_stream_that_is_spoken_into_is_red_from_there_on() -> None:
     stage = Stage("fifo")
-    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.request("ea", say("The answer is"), Command("move-head", {"pan": 30}), say("forty two."))
     stage.select()
     stage.at(900).end("ea#1")
     stage.select()
