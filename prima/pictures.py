@@ -15,7 +15,9 @@ from pathlib import Path
 
 from prima import api, graph
 from prima.commands import TABLE_4_2
+from prima.graph.svg import applications as applications_style
 from prima.messages import Record
+from prima.transcript.colours import of_run
 
 ROOT = Path(__file__).resolve().parent.parent
 WIDTH, LEFT = 760, 62
@@ -29,26 +31,24 @@ LEGEND = (
 SEEN = 0.1
 """Seconds that are long enough to be drawn."""
 
-STYLE = """
-text { font: 10.5px sans-serif; fill: #1f2328 }
-.small { font-size: 9px; fill: #59636e }
-.name { font-weight: bold }
-.line { stroke: #59636e; fill: none }
-.dash { stroke: #59636e; fill: none; stroke-dasharray: 4 3 }
-.flag { fill: #59636e }
-.away { fill: #8c959f; fill-opacity: 0.22 }
-.app0 { fill: #ffe2bd; stroke: #a85a10 }
-.app1 { fill: #d3e5ff; stroke: #2a66c4 }
-.none { fill-opacity: 0 }
-.linked { fill-opacity: 0; stroke-dasharray: 4 3 }
-@media (prefers-color-scheme: dark) {
-  text { fill: #e6edf3 }
-  .small { fill: #9aa4af }
-  .line, .dash { stroke: #9aa4af }
-  .flag { fill: #9aa4af }
-  .app0 { fill: #5c3813; stroke: #f0a660 }
-  .app1 { fill: #173b6c; stroke: #74abff }
-}
+STYLE = f"""
+text {{ font: 10.5px sans-serif; fill: #1f2328 }}
+.small {{ font-size: 9px; fill: #59636e }}
+.name {{ font-weight: bold }}
+.line {{ stroke: #59636e; fill: none }}
+.dash {{ stroke: #59636e; fill: none; stroke-dasharray: 4 3 }}
+.flag {{ fill: #59636e }}
+.away {{ fill: #8c959f; fill-opacity: 0.22 }}
+{applications_style()}
+.none {{ fill-opacity: 0 }}
+.linked {{ fill-opacity: 0; stroke-dasharray: 4 3 }}
+@media (prefers-color-scheme: dark) {{
+  text {{ fill: #e6edf3 }}
+  .small {{ fill: #9aa4af }}
+  .line, .dash {{ stroke: #9aa4af }}
+  .flag {{ fill: #9aa4af }}
+{applications_style(dark=True)}
+}}
 """
 
 
@@ -195,9 +195,10 @@ def timeline(records: list[Record], title: str, told: str) -> str:
     scale = (WIDTH - LEFT - 12) / finish(records)
     parts: list[str] = []
     y = 30.0
-    for index, app in enumerate(applications(records)):
+    shades = of_run(records)
+    for app in applications(records):
         parts.append(text(4, y + 24, app, "name"))
-        drawn, rows = lane(records, app, index, y, scale)
+        drawn, rows = lane(records, app, shades[app], y, scale)
         parts += drawn
         y += rows * PITCH + 8
         drawn, rows = ropes(records, app, y, scale)
@@ -208,7 +209,7 @@ def timeline(records: list[Record], title: str, told: str) -> str:
             parts.append(text(4, y + 14, label, "name"))
         for bar in bars:
             left, wide = LEFT + bar.begin * scale, (bar.end - bar.begin) * scale
-            parts.append(box(left, y + 3, wide, 15, f"app{applications(records).index(bar.app)}"))
+            parts.append(box(left, y + 3, wide, 15, f"s{of_run(records)[bar.app]}"))
             parts.append(text(left + 4, y + 14, bar.text, "", wide - 4))
         y += 22 if bars else 0
     flags: list[str] = []
@@ -228,7 +229,7 @@ def timeline(records: list[Record], title: str, told: str) -> str:
 
 
 def lane(
-    records: list[Record], app: str, index: int, y: float, scale: float
+    records: list[Record], app: str, shade: int, y: float, scale: float
 ) -> tuple[list[str], int]:
     """An application's ABs, and when they wait; how many rows they take."""
     placed = rows_of(bar for bar in runs(records) if bar.app == app)
@@ -246,7 +247,7 @@ def lane(
             parts.append(text(left + 4, middle - 4, f"waits: {bar.text}", "small"))
     for row, bar in placed:
         left, top, wide = LEFT + bar.begin * scale, y + row * PITCH + 10, bar.end - bar.begin
-        parts.append(box(left, top, wide * scale, BAR, f"app{index}"))
+        parts.append(box(left, top, wide * scale, BAR, f"s{shade}"))
         for cut in bar.cuts:
             parts.append(line(LEFT + cut * scale, top + 14, LEFT + cut * scale, top + BAR))
         parts.append(text(left + 2, top - 2, bar.name + (", loops" if bar.cuts else ""), "small"))
@@ -323,7 +324,7 @@ def memory(records: list[Record], title: str, told: str) -> str:
         state = memory_at(records, time)
         parts.append(text(left + 4, 14, f"at {time:.2f} s", "name"))
         y = 30.0
-        for index, app in enumerate(applications(records)):
+        for app in applications(records):
             where: dict[str, tuple[float, float]] = {}
             used: dict[int, int] = {}
             for name in (name for name in state if asked[name]["app"] == app):
@@ -332,7 +333,7 @@ def memory(records: list[Record], title: str, told: str) -> str:
                 x, top = left + 4 + depth[name] * 124, y + 14 + row * 48
                 where[name] = (x, top)
                 kind = {"running": "", "waiting": "none", "linked": "linked"}[state[name]]
-                parts.append(box(x, top, 108, 34, f"app{index} {kind}"))
+                parts.append(box(x, top, 108, 34, f"s{of_run(records)[app]} {kind}"))
                 parts.append(text(x + 5, top + 14, f"{name} {state[name]}", "small"))
                 parts.append(text(x + 5, top + 27, words(asked[name]), "", 104))
                 for parent in parents(asked[name]):

@@ -6,14 +6,16 @@ from html import escape
 
 from prima.graph.run import History, Stream
 from prima.graph.svg import box, fit, line, measure, picture, text
+from prima.transcript.colours import NOBODY
 
 ROW, BAR = 26.0, 14.0
 MARGIN = 18.0
 PLOT = 860.0
 """How wide the time axis is."""
 STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 14400)
+MOST_APPS = 4
+"""Applications that the legend names."""
 LEGEND = (
-    ("s0", "active"),
     ("away", "suspended, then resumed"),
     ("broken", "broken by no reaction"),
     ("line", "open, nothing of it runs"),
@@ -40,14 +42,20 @@ def draw(history: History) -> str:
         ]
     parts.append(text(MARGIN, bottom + 16, "seconds", "small"))
     for number, stream in enumerate(history.streams):
-        shade = history.shades.get(stream.app, 0)
+        shade = history.shades.get(stream.app, NOBODY)
         parts += _row(stream, shade, left, top + ROW * number, scale)
     x, y = MARGIN, bottom + 40
-    for kind, words in LEGEND:
+    for kind, words in [*_applications(history), *LEGEND]:
         mark = line(x, y - 4, x + 22, y - 4) if kind == "line" else box(x, y - 10, 22, 12, kind, 2)
         parts += [mark, text(x + 28, y, words, "small")]
         x += 46 + measure(words, 10)
     return picture(title, told(history), width, y + MARGIN, parts)
+
+
+def _applications(history: History) -> list[tuple[str, str]]:
+    """The colours in which applications are active."""
+    apps = list(dict.fromkeys(stream.app for stream in history.streams))
+    return [(f"s{history.shades.get(app, NOBODY)}", fit(app, 90, 10)) for app in apps[:MOST_APPS]]
 
 
 def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> list[str]:

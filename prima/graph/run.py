@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from prima.graph.model import Graph, Node, clean
 from prima.messages import Record
+from prima.transcript.colours import NOBODY, of_run
 from prima.transcript.criteria import Observer
 from prima.transcript.table import describe
 
 NEVER = float("inf")
-SHADES = 5
-"""Colours of applications."""
 
 
 def base(name: str | None) -> str:
     """An AB's name without the number of its loop."""
     return (name or "").partition(".")[0]
-
-
-def shades(records: Iterable[Record]) -> dict[str, int]:
-    """Each application's colour, in the order in which they appear."""
-    found: dict[str, int] = {}
-    for record in records:
-        if app := record.get("app"):
-            found.setdefault(str(app), len(found) % SHADES)
-    return found
 
 
 # Trees of Atomic Behaviors --------------------------------------------------------------------
@@ -43,7 +33,7 @@ def trees(records: Sequence[Record], until: float = NEVER) -> Graph:
     whole = until == NEVER
     before: dict[str, list[str]] = {}
     graph = Graph("Atomic Behaviors of the run" if whole else "", across=False)
-    colour = shades(records)
+    colour = of_run(records)
     state: dict[str, str] = {}
     asked: dict[str, Record] = {}
     began: dict[str, float] = {}
@@ -63,7 +53,7 @@ def trees(records: Sequence[Record], until: float = NEVER) -> Graph:
     for name in kept:
         request = asked[name]
         node = graph.node(name, name)
-        node.shade = colour.get(request["app"], 0)
+        node.shade = colour.get(request["app"], NOBODY)
         node.group = clean(request.get("tree") or "")
         node.source = clean(request.get("source") or "")
         node.kind = _state(state, name, parents[name])
@@ -279,5 +269,5 @@ def streams(records: Sequence[Record]) -> History:
         historian.add(record)
     made = historian.history()
     made.title = "Communication Streams of the run"
-    made.shades = {clean(app): shade for app, shade in shades(records).items()}
+    made.shades = {clean(app): shade for app, shade in of_run(records).items()}
     return made

@@ -6,6 +6,7 @@ import unicodedata
 from html import escape
 
 from prima.graph.model import clean
+from prima.transcript import colours
 
 SIZE = 11.5
 """The letters' size, in pixels."""
@@ -31,11 +32,7 @@ text { font: 11.5px Verdana, "DejaVu Sans", sans-serif; fill: #1f2328 }
 .guess-head { fill: #9a6700 }
 .lost { opacity: 0.45 }
 .state:hover > .edge { stroke: #cf222e; stroke-width: 2.5 }
-.s0 { fill: #fff1e5; stroke: #bc4c00 }
-.s1 { fill: #ddf4ff; stroke: #0969da }
-.s2 { fill: #dafbe1; stroke: #1a7f37 }
-.s3 { fill: #fbefff; stroke: #8250df }
-.s4 { fill: #fff8c5; stroke: #9a6700 }
+/* applications */
 .waiting { fill-opacity: 0 }
 .linked, .cancelled, .failed { fill-opacity: 0; stroke-dasharray: 5 3 }
 .away { fill: #8c959f; fill-opacity: 0.3 }
@@ -57,14 +54,22 @@ text { font: 11.5px Verdana, "DejaVu Sans", sans-serif; fill: #1f2328 }
   .head { fill: #9aa4af }
   .call-head, .back-head { fill: #bc8cff }
   .guess-head { fill: #d29922 }
-  .s0 { fill: #4d2405; stroke: #f0883e }
-  .s1 { fill: #0c2d55; stroke: #58a6ff }
-  .s2 { fill: #0f3d1d; stroke: #3fb950 }
-  .s3 { fill: #33205a; stroke: #bc8cff }
-  .s4 { fill: #42330a; stroke: #d29922 }
+  /* applications in the dark */
   .waiting, .linked, .cancelled, .failed { fill-opacity: 0 }
 }
 """
+
+
+def applications(dark: bool = False) -> str:
+    """The colours of applications, each a class."""
+    return "\n".join(
+        f".s{index} {{ fill: {colours.fill(index, dark)}; stroke: {colours.stroke(index, dark)} }}"
+        for index in range(len(colours.PALETTE))
+    )
+
+
+STYLE = STYLE.replace("/* applications */", applications())
+STYLE = STYLE.replace("/* applications in the dark */", applications(dark=True))
 
 
 def measure(text: str, size: float = SIZE, bold: bool = False) -> float:

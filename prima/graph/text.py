@@ -7,13 +7,13 @@ import re
 
 from prima.graph.model import INWARD, Edge, Graph, Node
 from prima.graph.run import History
+from prima.transcript import colours
+from prima.transcript.colours import NOBODY
 
 MEANS = re.compile(r"[^\w ,?!'/=]|_")
 """What may mean something in Mermaid, and is written by its number."""
 DATES = "YYYY-MM-DD HH:mm:ss.SSS"
 DASHED = ("call", "back", "guess", "stay")
-FILLS = ("#fff1e5", "#ddf4ff", "#dafbe1", "#fbefff", "#fff8c5")
-STROKES = ("#bc4c00", "#0969da", "#1a7f37", "#8250df", "#9a6700")
 
 
 def lines(node: Node) -> list[str]:
@@ -97,7 +97,7 @@ def _attributes(node: Node) -> str:
         style.append("dashed")
     if node.kind in ("running", "done"):
         style.append("filled")
-        more = f', fillcolor="{FILLS[node.shade]}"'
+        more = f', fillcolor="{colours.fill(node.shade)}"'
     if not node.reached:
         more += ', color="gray60", fontcolor="gray60"'
     if node.start:
@@ -118,10 +118,10 @@ def dot_streams(history: History) -> str:
         '  node [shape=box, style="filled", fontname="sans-serif", fontsize=11];',
     ]
     for index, stream in enumerate(history.streams, 1):
-        shade = history.shades.get(stream.app, 0)
+        shade = history.shades.get(stream.app, NOBODY)
         made += [f"  subgraph cluster_{index} {{", f"    label={quote(f'stream {stream.name}')};"]
         for number, span in enumerate(stream.spans, 1):
-            fill = {"runs": FILLS[shade], "away": "gray85", "broken": "#ffcecb"}[span.kind]
+            fill = {"runs": colours.fill(shade), "away": "gray85", "broken": "#ffcecb"}[span.kind]
             label = quote(f"{span.words}\n{span.begin:.2f} to {span.end:.2f} s")
             made.append(f'    s{index}_{number} [label={label}, fillcolor="{fill}"];')
         chain = " -> ".join(f"s{index}_{number}" for number in range(1, len(stream.spans) + 1))
@@ -183,7 +183,7 @@ def _classes(graph: Graph, number: dict[str, str]) -> list[str]:
         if node.kind in ("any", "linked", "cancelled", "failed"):
             held.setdefault("dashed stroke-dasharray:5 3", []).append(number[key])
         if node.kind in ("running", "done"):
-            fill, stroke = FILLS[node.shade], STROKES[node.shade]
+            fill, stroke = colours.fill(node.shade), colours.stroke(node.shade)
             style = f"s{node.shade} fill:{fill},stroke:{stroke},color:#1f2328"
             held.setdefault(style, []).append(number[key])
     made = []
