@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from prima import api
+from prima.graph import streams
 from prima.messages import Record
 from prima.report import make
+from prima.transcript.colours import of_run
 from tests.generated_report import long_run
 
 ROOT = Path(__file__).parent.parent
@@ -152,7 +154,7 @@ def test_the_keyboard_goes_everywhere(browser: Browser, pages: dict[str, Path]) 
         page = opened.page
         focused = "document.activeElement.id || document.activeElement.closest('tr')?.id || document.activeElement.tagName"
         seen = []
-        for _ in range(13):
+        for _ in range(22):
             page.keyboard.press("Tab")
             seen.append(page.evaluate(focused))
             outline = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
@@ -187,6 +189,187 @@ def test_the_keyboard_goes_everywhere(browser: Browser, pages: dict[str, Path]) 
         assert "s: " in (page.get_attribute("#moment", "aria-valuetext") or "")
         page.keyboard.press("Home")
         assert opened.clock() == 0
+
+
+SMALL_DESK = (1280, 800)
+
+
+@pytest.mark.parametrize("name", ["one", "two"])
+@pytest.mark.parametrize("size", [SMALL_DESK, PHONE], ids=["desk", "phone"])
+def test_tiles_are_on_one_line_and_maps_in_view(
+    browser: Browser, pages: dict[str, Path], name: str, size: tuple[int, int]
+) -> None:
+    with Opened(browser, pages[name], size) as opened:
+        heads = opened.page.locator(".measures")
+        for index in range(heads.count()):
+            tops = (
+                heads.nth(index)
+                .locator("div")
+                .evaluate_all("all => all.map((one) => one.getBoundingClientRect().top)")
+            )
+            assert len(tops) == 9 and len(set(tops)) == 1
+        box = opened.page.locator(".map svg").first.bounding_box()
+        assert box and box["y"] + box["height"] <= size[1]
+        if size == SMALL_DESK:
+            strips = "[...document.querySelectorAll('.strip')].every((one) => one.scrollWidth <= one.clientWidth)"
+            assert opened.page.evaluate(strips)
+
+
+def test_a_bar_can_be_read_under_the_pointer_and_by_keyboard(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    with Opened(browser, pages["one"], SMALL_DESK) as opened:
+        page = opened.page
+        told = page.locator("#pointed.shown")
+        page.hover("rect.bar[data-row='10'] >> nth=0")
+        whole = '"What\'s the matter with you?", 11.30 to 15.48 s'
+        assert whole in told.inner_text()
+        page.mouse.move(2, 2)
+        assert told.count() == 0
+        page.focus("#timeline-0")
+        page.keyboard.press("ArrowDown")
+        assert "Prof. Kidode's room." in told.inner_text()
+        page.keyboard.press("ArrowRight")
+        assert "goes along with the robot" in told.inner_text()
+        page.keyboard.press("ArrowDown")
+        assert "navigate" in told.inner_text() or "follow" in told.inner_text()
+        seen = told.inner_text()
+        page.keyboard.press("ArrowRight")
+        assert told.inner_text() != seen
+        page.keyboard.press("Escape")
+        assert page.evaluate("document.activeElement.id") == "timeline-0" and told.count() == 0
+
+
+def test_a_mark_is_opened_by_enter(browser: Browser, pages: dict[str, Path]) -> None:
+    with Opened(browser, pages["one"], SMALL_DESK) as opened:
+        page = opened.page
+        page.focus("rect.bar[data-row='10'] >> nth=0")
+        page.keyboard.press("Enter")
+        assert "Why row 10" in page.inner_text("#why-10")
+        assert page.evaluate("document.activeElement.closest('tr').id") == "row-10"
+
+
+KINDS = ("rect.bar", "path.flag", "rect.away", "line.near", "path.near", "text.said")
+
+
+def test_a_click_on_anything_opens_the_row_that_it_marks(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    with Opened(browser, pages["one"], SMALL_DESK) as opened:
+        page = opened.page
+        lanes = page.locator("[data-lane]").evaluate_all(
+            "all => all.filter((one) => !one.dataset.row).map((one) => one.outerHTML)"
+        )
+        assert lanes == [], "each mark has its row"
+        for kind in KINDS:
+            mark = page.locator(f".timeline {kind}").first
+            row = mark.get_attribute("data-row")
+            box = mark.bounding_box()
+            assert box
+            page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+            assert page.get_attribute(f"#row-{row} button", "aria-expanded") == "true", kind
+            page.wait_for_timeout(50)
+        page.click("#now-0 a >> nth=0")
+        assert page.locator("tr.why").count() >= 1
+
+
+def test_a_click_on_the_map_goes_to_the_moment_there(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    with Opened(browser, pages["one"], SMALL_DESK) as opened:
+        page = opened.page
+        ends = page.locator(".trail:not(.person)").evaluate(
+            "one => { const point = one.getPointAtLength(one.getTotalLength() * .97), m = one.getScreenCTM();"
+            " return [point.x * m.a + m.e, point.y * m.d + m.f]; }"
+        )
+        page.mouse.click(*ends)
+        assert opened.clock() > 70
+        assert page.locator("tr.why").count() == 1
+
+
+def test_rows_are_filtered_by_application_who_and_text(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    with Opened(browser, pages["one"], SMALL_DESK) as opened:
+        page = opened.page
+        every = page.locator("tr.row").count()
+        page.click("#row-10 .what")
+        page.select_option("#by-app", "navigate")
+        apps = page.locator("tr.row:visible td.app").all_inner_texts()
+        assert apps and set(apps) == {"navigate"} and not page.is_visible("#why-10")
+        assert page.inner_text("#found") == f"{len(apps)} of {every} rows"
+        page.fill("#by-text", "MESSAGE")
+        rows = page.locator("tr.row:visible .what").all_inner_texts()
+        assert rows and all("message" in row.lower() for row in rows)
+        page.fill("#by-text", "no such thing")
+        assert page.inner_text("#found") == f"0 of {every} rows"
+        page.click("rect.bar[data-row='10'] >> nth=0")
+        assert page.is_visible("#why-10") and page.inner_text("#found") == ""
+        page.select_option("#by-who", "U")
+        assert set(page.locator("tr.row:visible td:nth-child(3)").all_inner_texts()) == {"user"}
+        page.focus("tr.row:visible button >> nth=0")
+        page.keyboard.press("ArrowDown")
+        assert page.evaluate("document.activeElement.closest('tr').classList.contains('who-U')")
+
+
+def test_differences_are_filtered_as_well(browser: Browser, pages: dict[str, Path]) -> None:
+    with Opened(browser, pages["two"], SMALL_DESK) as opened:
+        page = opened.page
+        page.check("#only")
+        some = page.locator("tr.row:visible").count()
+        page.select_option("#by-app", "follow")
+        both = page.locator("tr.row:visible").count()
+        assert 0 < both < some
+        assert page.inner_text("#found").startswith(f"{both} of ")
+
+
+def test_an_application_has_its_colour_in_all_pictures(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    made = api.rehearse(SCENARIO)
+    shades = of_run(made.records)
+    drawn = streams(made)
+    with Opened(browser, pages["two"], SMALL_DESK) as opened:
+        page = opened.page
+        for app, shade in shades.items():
+            cell = page.locator("td.app", has_text=app).first
+            assert f"app{shade}" in (cell.get_attribute("class") or "")
+            lane = page.locator(f"rect.bar[data-lane^='app'][data-text^='{app}#']")
+            for index in (0, lane.count() - 1):
+                assert f"fill{shade}" in (lane.nth(index).get_attribute("class") or "")
+            fill = page.evaluate(
+                "name => getComputedStyle(document.documentElement).getPropertyValue(name).trim()",
+                f"--fill{shade}",
+            )
+            assert f".s{shade} {{ fill: {fill};" in drawn
+        shade = shades["navigate"]
+        assert page.locator(f".map .area.line{shade}").count() == 2
+
+
+def test_a_touch_screen_needs_no_pointer_that_hovers(
+    browser: Browser, pages: dict[str, Path]
+) -> None:
+    with Opened(browser, pages["one"], PHONE, has_touch=True, is_mobile=True) as opened:
+        page = opened.page
+        assert page.locator("[title]").count() == page.locator("svg title").count() == 0
+        small = page.locator(
+            "button:visible, select:visible, summary:visible, input:visible"
+        ).evaluate_all(
+            "all => all.filter((one) => { const box = one.getBoundingClientRect();"
+            " return box.height < 43.9 || box.width < 43.9; }).map((one) => one.outerHTML)"
+        )
+        assert small == []
+        short = page.locator(".timeline rect.bar").evaluate_all(
+            "all => all.filter((one) => one.getBoundingClientRect().height < 24).length"
+        )
+        assert short == 0
+        page.locator(".help summary >> nth=0").tap()
+        assert "tap on any mark opens its row" in page.inner_text(".help >> nth=0")
+        page.locator("rect.bar[data-row='10'] >> nth=0").tap()
+        assert page.is_visible("#why-10")
+        page.wait_for_timeout(100)
+        box = page.locator("#row-10").bounding_box()
+        assert box and 0 <= box["y"] < PHONE[1], "it has come into view"
 
 
 def test_the_skip_link_leads_to_the_transcript(browser: Browser, pages: dict[str, Path]) -> None:
@@ -305,10 +488,10 @@ CONTRAST = """() => {
   const colour = (name) => light(root.getPropertyValue(name).trim());
   const ratio = (a, b) => (Math.max(colour(a), colour(b)) + .05) / (Math.min(colour(a), colour(b)) + .05);
   const text = [];
-  for (const ground of ['--paper', '--soft', '--fill0', '--fill1', '--fill2', '--fill3', '--fill4', '--fill5']) text.push(['--ink', ground]);
+  for (const ground of ['--paper', '--soft', '--fill0', '--fill1', '--fill2', '--fill3', '--fill4', '--fill5', '--fill6']) text.push(['--ink', ground]);
   for (const ground of ['--paper', '--soft']) for (const ink of ['--quiet', '--strong']) text.push([ink, ground]);
   text.push(['--on-strong', '--strong']);
-  const marks = [0, 1, 2, 3, 4, 5].map((n) => ['--line' + n, '--paper']);
+  const marks = [0, 1, 2, 3, 4, 5, 6].map((n) => ['--line' + n, '--paper']);
   marks.push(['--focus', '--paper'], ['--focus', '--soft'], ['--hatch', '--paper']);
   return [...text.map(([a, b]) => [a, b, ratio(a, b), 4.5]), ...marks.map(([a, b]) => [a, b, ratio(a, b), 3])];
 }"""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from prima.messages import Record
+from prima.transcript.colours import apps_of
 from prima.transcript.table import Row, describe
 
 MOST_APPS = 24
@@ -30,6 +32,8 @@ class Bar:
     devices: tuple[str, ...] = ()
     cuts: list[float] = field(default_factory=list)
     """Where one loop ends and the next begins, or where a window opens or closes."""
+    by: str = ""
+    """The stream or AB because of which a stream is suspended."""
 
 
 @dataclass(slots=True)
@@ -37,6 +41,8 @@ class Lanes:
     """All that a timeline shows of one run."""
 
     seconds: float
+    every: list[str]
+    """All applications; the first of them have lanes."""
     apps: list[str]
     devices: list[str]
     behaviors: list[Bar]
@@ -51,12 +57,12 @@ class Lanes:
 def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
     """The lanes of a run with its table's rows."""
     seconds = float(max((record["time"] for record in records), default=0.0))
-    apps = list(dict.fromkeys(r["app"] for r in records if r["phase"] == "load"))
-    apps = list(dict.fromkeys([*apps, *(row.app for row in rows if row.app)]))
+    apps = apps_of(records)
     behaviors = _behaviors(records, rows)
     devices = sorted({device for bar in behaviors for device in bar.devices})
     lanes = Lanes(
         seconds,
+        apps,
         apps[:MOST_APPS],
         devices[:MOST_DEVICES],
         behaviors,
@@ -68,7 +74,33 @@ def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
     for bars in (lanes.behaviors, lanes.away, lanes.held, lanes.floor, lanes.streams):
         for bar in bars:
             bar.end = bar.end if bar.end >= 0 else seconds
+    marks = _Marks(records, rows)
+    untold = [bar for bar in behaviors if bar.row < 0]
+    for bar in (*untold, *lanes.away, *lanes.held, *lanes.floor, *lanes.streams):
+        bar.row = marks.row(bar.by or bar.name, bar.begin)
     return lanes
+
+
+class _Marks:
+    """Which row of the table tells of a stream or an AB from a moment on."""
+
+    def __init__(self, records: Iterable[Record], rows: Iterable[Row]) -> None:
+        tree_of = {r["behavior"]: r.get("tree") for r in records if r["phase"] == "request"}
+        self._rows: dict[str, list[tuple[float, int]]] = {}
+        self._all = [(row.time, row.number) for row in rows]
+        for row in rows:
+            name = _base(row.behavior)
+            for key in {name, tree_of.get(name) or ""} - {""}:
+                self._rows.setdefault(key, []).append((row.time, row.number))
+
+    def row(self, name: str, begin: float) -> int:
+        """The first row of a stream or AB from then on; else its last, or the last of all."""
+        own = self._rows.get(_base(name), [])
+        place = bisect_left(own, (begin, -1))
+        if own:
+            return own[min(place, len(own) - 1)][1]
+        place = bisect_left(self._all, (begin, len(self._all)))
+        return self._all[max(place - 1, 0)][1] if self._all else -1
 
 
 def _base(behavior: str) -> str:
@@ -116,8 +148,10 @@ def _between(records: Iterable[Record], key: str, begin: set[str], end: set[str]
             continue
         if record["phase"] in begin and name not in under_way:
             app = record.get("app") or name.partition(":")[0].partition("#")[0]
-            why = f"{record.get('by') or 'another'} ({record.get('rule') or 'no rule'})"
-            under_way[name] = Bar(record["time"], -1.0, name, app, why)
+            by = record.get("by") or ""
+            why = f"{by or 'another'} ({record.get('rule') or 'no rule'})"
+            cause = by if record["phase"] == "suspend" else name
+            under_way[name] = Bar(record["time"], -1.0, name, app, why, by=cause)
             made.append(under_way[name])
         elif record["phase"] in end and name in under_way:
             under_way.pop(name).end = record["time"]

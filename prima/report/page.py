@@ -16,12 +16,15 @@ from prima.errors import counted
 from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
 from prima.report.view import View
+from prima.transcript import colours
+from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
 from prima.transcript.rules import RULES
 from prima.transcript.table import Row, printable
 
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"
+LONGEST_NAME = 200
 PART = 50
 """Rows of a table's part."""
 KINDS = {
@@ -38,7 +41,8 @@ KINDS = {
 def page(views: Sequence[View]) -> str:
     """The page of one run, or of two with what differs."""
     difference = compare(views[0].rows, views[1].rows) if len(views) == 2 else None
-    style, script = _part("report.css"), _part("report.js")
+    shades = colours.colours(app for view in views for app in view.lanes.every)
+    style, script = _style(), _part("report.js")
     title = " and ".join(view.title for view in views)
     body = {
         "title": text(title),
@@ -53,8 +57,11 @@ def page(views: Sequence[View]) -> str:
         "heads": "".join(_head(view, index, len(views)) for index, view in enumerate(views)),
         "figures": "".join(_figure(index, len(views)) for index in range(len(views))),
         "maps": "".join(_map(view, index, len(views)) for index, view in enumerate(views)),
-        "table": _differences(views, difference) if difference else _table(views[0]),
-        "data": json_text(_data(views, difference)),
+        "filter": _filter(views),
+        "table": (
+            _differences(views, difference, shades) if difference else _table(views[0], shades)
+        ),
+        "data": json_text(_data(views, difference, shades)),
     }
     return Template(_part("template.html")).substitute(body)
 
@@ -76,6 +83,23 @@ def _part(name: str) -> str:
     return (files("prima.report") / name).read_text(encoding="utf-8")
 
 
+def _style() -> str:
+    """The style, with the colours of applications put in."""
+    style = _part("report.css")
+    for name, dark in (("light", False), ("dark", True)):
+        made = "".join(
+            f"--fill{index}: {colours.fill(index, dark)}; --line{index}: {colours.stroke(index, dark)}; "
+            for index in range(len(colours.PALETTE))
+        )
+        style = style.replace(f"/* applications: {name} */", made.strip())
+    classes = "".join(
+        f".fill{n} {{ fill: var(--fill{n}); stroke: var(--line{n}); }} .line{n} {{ stroke: var(--line{n}); }}"
+        f" .app.app{n} {{ border-color: var(--line{n}); }}\n"
+        for n in range(len(colours.PALETTE))
+    )
+    return style.replace("/* applications */", classes.strip())
+
+
 def _hash(content: str) -> str:
     """A source of the page's own, as a content security policy names it."""
     return "sha256-" + base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
@@ -91,8 +115,8 @@ def _named(index: int, runs: int) -> str:
 def _head(view: View, index: int, runs: int) -> str:
     facts = "".join(f"<div><dt>{text(a)}</dt><dd>{text(b)}</dd></div>" for a, b in view.facts)
     measures = "".join(
-        f'<div title="{text(meaning)}"><dt>{text(name)}</dt><dd>{text(value)}</dd></div>'
-        for name, value, meaning in view.measures
+        f"<div><dt>{text(name)}</dt><dd>{text(value)}</dd></div>"
+        for name, value, _ in view.measures
     )
     meanings = "".join(f"<li>{text(a)}: {text(c)}</li>" for a, _, c in view.measures)
     listed = "".join(
@@ -101,13 +125,16 @@ def _head(view: View, index: int, runs: int) -> str:
     held = f"<p>Files, with the beginning of their digests:</p><ul>{listed}</ul>" if listed else ""
     cut = f'<p class="cut">The transcript is not whole: {text(view.cut)}</p>' if view.cut else ""
     name = _named(index, runs)
+    lower = name.lower() if runs == 1 else name
     title = f'{text(name)}: <span class="run-title">{text(view.title)}</span>' if runs > 1 else name
     return (
         f'<section class="run-head" aria-labelledby="head-{index}">'
         f'<h2 id="head-{index}">{title}</h2>{cut}'
-        f'<dl class="facts">{facts}</dl><dl class="measures">{measures}</dl>'
-        f"<details><summary>About {text(name.lower() if runs == 1 else name)}</summary>"
-        f"<p>Made from {text(view.name)}. What is counted:</p><ul>{meanings}</ul>{held}</details>"
+        f'<div class="strip" role="group" tabindex="0" aria-label="Measures of {text(lower)}">'
+        f'<dl class="measures">{measures}</dl></div>'
+        f'<details class="about"><summary>About {text(lower)}, and what is counted</summary>'
+        f'<dl class="facts">{facts}</dl><ul>{meanings}</ul>'
+        f"<p>Made from {text(view.name)}.</p>{held}</details>"
         "</section>\n"
     )
 
@@ -149,6 +176,23 @@ def _map(view: View, index: int, runs: int) -> str:
     )
 
 
+def _filter(views: Sequence[View]) -> str:
+    """What chooses rows of the table: application, who, and text."""
+    apps = dict.fromkeys(app for view in views for app in view.lanes.every)
+    named = "".join(
+        f'<option value="{text(app[:LONGEST_NAME])}">{text(app[:LONGEST_NAME])}</option>'
+        for app in apps
+    )
+    whos = "".join(f'<option value="{key}">{who}</option>' for key, who in WHO.items())
+    return (
+        '<form class="filter" role="search" aria-label="Filter of rows" hidden>'
+        f'<label>Application <select id="by-app"><option value="">all</option>{named}</select></label>'
+        f'<label>Who <select id="by-who"><option value="">all</option>{whos}</select></label>'
+        '<label>Text <input type="search" id="by-text" autocomplete="off" spellcheck="false"></label>'
+        '<output id="found" aria-live="polite"></output></form>'
+    )
+
+
 # Tables --------------------------------------------------------------------------------------
 
 
@@ -168,21 +212,20 @@ def _marks(row: Row) -> str:
     """What stands before the number in the printed table, in words."""
     made = []
     if row.star:
-        made.append('<abbr title="works in loops until it is interrupted">loops</abbr>')
+        made.append("<span>loops</span>")
     if row.bracket:
-        made.append('<abbr title="part of an Information Unit">unit</abbr>')
+        made.append("<span>unit</span>")
     if row.event:
-        made.append('<abbr title="an event, and no behaviour">event</abbr>')
+        made.append("<span>event</span>")
     return f' <span class="marks">{" ".join(made)}</span>' if made else ""
 
 
-def _who(view: View, row: Row) -> str:
+def _who(view: View, row: Row, shades: dict[str, int]) -> str:
     """The two cells of who does it: whose doing, and the application."""
     who = WHO.get(row.actor, "")
     if not row.app:  # a narrow page has only the second
         return f'<td role="cell">{who}</td><td role="cell"><span class="narrow">{who}</span></td>'
-    apps = view.lanes.apps
-    number = apps.index(row.app) % 6 if row.app in apps else 5
+    number = shades.get(row.app, NOBODY)
     return f'<td role="cell">{who}</td><td role="cell" class="app app{number}">{text(row.app)}</td>'
 
 
@@ -210,14 +253,14 @@ def _whole_table(kind: str, caption: str, heads: Sequence[tuple[str, str]], rows
     )
 
 
-def _table(view: View) -> str:
+def _table(view: View, shades: dict[str, int]) -> str:
     """The transcript's table, whole: it can be read, searched and printed without any script."""
     lines = [
         _row(
             row.number,
             f"who-{row.actor}",
             str(row.number),
-            f'<td role="cell" class="time">{row.time:.2f}</td>{_who(view, row)}'
+            f'<td role="cell" class="time">{row.time:.2f}</td>{_who(view, row, shades)}'
             f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}</td>'
             f'<td role="cell">{text(row.rule)}</td>',
         )
@@ -235,9 +278,11 @@ def _table(view: View) -> str:
     return _whole_table("", caption, heads, lines)
 
 
-def _differences(views: Sequence[View], difference: Difference) -> str:
+def _differences(views: Sequence[View], difference: Difference, shades: dict[str, int]) -> str:
     """Both transcripts side by side, in the order of the second."""
-    lines = [_change(views, index, change) for index, change in enumerate(difference.changes)]
+    lines = [
+        _change(views, shades, index, change) for index, change in enumerate(difference.changes)
+    ]
     counts = difference.counts
     listed = "".join(
         f"<li>{_badge(kind)} {counts[kind]}: {meaning}</li>"
@@ -266,7 +311,7 @@ def _badge(kind: str) -> str:
     return f'<span class="kind {kind}"><span aria-hidden="true">{text(mark)}</span> {kind}</span>'
 
 
-def _change(views: Sequence[View], index: int, change: Change) -> str:
+def _change(views: Sequence[View], shades: dict[str, int], index: int, change: Change) -> str:
     row, view = change.after or change.before, views[1 if change.after else 0]
     assert row is not None
     told = remark(change)
@@ -276,7 +321,7 @@ def _change(views: Sequence[View], index: int, change: Change) -> str:
         index,
         f"kind-{change.kind}",
         f'{label}<span class="hidden">, row {index}</span>',
-        f"{_time(change.before)}{_time(change.after)}{_who(view, row)}"
+        f"{_time(change.before)}{_time(change.after)}{_who(view, row, shades)}"
         f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}{said}</td>',
     )
 
@@ -291,11 +336,14 @@ def _time(row: Row | None) -> str:
 # Data ----------------------------------------------------------------------------------------
 
 
-def _data(views: Sequence[View], difference: Difference | None) -> dict[str, Any]:
+def _data(
+    views: Sequence[View], difference: Difference | None, shades: dict[str, int]
+) -> dict[str, Any]:
     used = {row.rule for view in views for row in view.rows}
     used |= {told[2] for view in views for why in view.whys for told in why.get("told", [])}
     data: dict[str, Any] = {
-        "runs": [_run(view) for view in views],
+        "runs": [_run(view, shades) for view in views],
+        "nobody": NOBODY,
         "rules": {rule: RULES[rule] for rule in sorted(used) if rule in RULES},
     }
     if difference is not None:
@@ -311,12 +359,13 @@ def _data(views: Sequence[View], difference: Difference | None) -> dict[str, Any
     return data
 
 
-def _run(view: View) -> dict[str, Any]:
+def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
     lanes = view.lanes
     return {
         "title": printable(view.title),
         "seconds": lanes.seconds,
-        "apps": [printable(app)[:200] for app in lanes.apps],
+        "apps": [printable(app[:LONGEST_NAME]) for app in lanes.apps],
+        "colours": [shades[app] for app in lanes.apps],
         "devices": [printable(device)[:200] for device in lanes.devices],
         "rows": [_row_data(view, row) for row in view.rows],
         "whys": view.whys,
@@ -332,7 +381,7 @@ def _run(view: View) -> dict[str, Any]:
 
 def _row_data(view: View, row: Row) -> list[Any]:
     """Time, who, application, what, whether an event; of what is said its language and place."""
-    made = [row.time, row.actor, printable(row.app)[:200], row.what, int(row.event)]
+    made = [row.time, row.actor, printable(row.app[:LONGEST_NAME]), row.what, int(row.event)]
     words, lang = view.spoken.get(row.number, ("", ""))
     place = row.what.find(words) if words else -1
     return [*made, lang, _units(row.what[:place]), _units(words)] if place >= 0 else made

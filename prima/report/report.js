@@ -8,7 +8,10 @@
   const wide = matchMedia("(min-width: 72rem)");
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   const SVG = "http://www.w3.org/2000/svg";
-  const HEIGHT = 20, PITCH = 23, MOST_ROWS = 4;
+  const coarse = matchMedia("(pointer: coarse)").matches; // a finger needs more room than a mouse
+  const HEIGHT = coarse ? 32 : 20, PITCH = HEIGHT + 3, MOST_ROWS = 4;
+  const FLOOR = coarse ? 32 : 16, DEVICE = coarse ? 24 : 9, ROPE = coarse ? 24 : 8, TIER = coarse ? 24 : 15;
+  const NEAR = coarse ? 12 : 4; // pixels beside a mark that still hit it
   const READABLE = 7, LEAST_SHOWN = 30; // pixels for a second, and seconds, when the page opens
 
   // A bar, as Python writes it: begin, end, name, application, text, row, devices, cuts.
@@ -55,7 +58,7 @@
   }
 
   const widthOf = (text) => [...text].reduce((sum, one) => sum + (isWide(one) ? 11.5 : 6), 0);
-  const colour = (app) => (app < 0 ? 5 : app % 6);
+  const colour = (index, app) => (app < 0 ? data.nobody : runs[index].colours[app]);
 
   /** The index of the last element whose time is not after a moment, or -1. */
   function lastBefore(list, time, of) {
@@ -129,16 +132,24 @@
     let serial = paper ? `paper-${index}-${from}` : `${index}`;
     serial = `hatch-${serial.replace(/[^\w-]/g, "-")}`;
     const name = (text, y, kind = "name") => parts.push(draw("text", { x: 6, y, class: kind }, fit(text, left - 12)));
+    /** Let an element mark a row: a pointer or a key opens it, and its whole text can be read. */
+    const mark = (element, lane, begin, row, text) => {
+      if (paper) return element;
+      Object.assign(element.dataset, { lane, begin, text });
+      if (row < 0) return element;
+      element.dataset.row = row;
+      for (const [key, value] of [["role", "button"], ["tabindex", -1], ["aria-label", text]]) element.setAttribute(key, value);
+      return element;
+    };
+    const during = (bar) => `${bar[BEGIN].toFixed(2)} to ${seconds(bar[END])}`;
 
-    const box = (bar, y, height, kind, last, label) => {
+    const box = (bar, lane, y, height, kind, last, label) => {
       if (bar[END] < from || bar[BEGIN] > to) return last;
       const x0 = Math.max(at(bar[BEGIN]), left), x1 = Math.min(at(bar[END]), right);
       if (x1 - x0 < 2 && x0 - last < 1.5) return last;
       const mine = bar[ROW] >= 0 && state.chosen[index] === bar[ROW];
       const rect = draw("rect", { x: x0, y, width: Math.max(x1 - x0, 1.5), height, rx: 3, class: `${kind}${mine && !paper ? " chosen" : ""}` });
-      if (bar[ROW] >= 0) rect.dataset.row = bar[ROW];
-      rect.append(draw("title", {}, `${bar[NAME]}: ${bar[TEXT]}, ${bar[BEGIN].toFixed(2)} to ${seconds(bar[END])}`));
-      parts.push(rect);
+      parts.push(mark(rect, lane, bar[BEGIN], bar[ROW], `${bar[NAME]}: ${bar[TEXT]}, ${during(bar)}`));
       const cuts = bar[CUTS];
       if (label && cuts.length && (x1 - x0) / cuts.length > 4) {
         for (const cut of cuts) {
@@ -147,13 +158,9 @@
       }
       if (label) {
         const kindHere = bar[ROW] >= 0 ? kindOf[index][bar[ROW]] : "same";
-        const mark = kindHere === "same" ? "" : `${data.marks[kindHere]} `;
-        const text = fit(mark + bar[TEXT], x1 - x0 - 4);
-        if (text) {
-          const words = draw("text", { x: x0 + 4, y: y + height / 2 + 4, ...tongue(index, bar[ROW]) }, text);
-          if (bar[ROW] >= 0) words.dataset.row = bar[ROW];
-          parts.push(words);
-        }
+        const change = kindHere === "same" ? "" : `${data.marks[kindHere]} `;
+        const text = fit(change + bar[TEXT], x1 - x0 - 4);
+        if (text) parts.push(draw("text", { x: x0 + 4, y: y + height / 2 + 4, ...tongue(index, bar[ROW]) }, text));
       }
       return x1;
     };
@@ -170,20 +177,21 @@
       const tier = tiers.findIndex((end) => end <= x);
       if (tier < 0 && x - lastFlag < 5) continue;
       lastFlag = tier < 0 ? x : lastFlag;
-      const top = y + (tier < 0 ? tiers.length : tier) * 15;
+      const top = y + (tier < 0 ? tiers.length : tier) * TIER;
       flagged.push([x, top]);
       const mine = state.chosen[index] === number && !paper;
       const shape = who === "U" ? `M${x} ${top + 12}V${top}H${x + 7}L${x + 4} ${top + 3.5}L${x + 7} ${top + 7}H${x}` : `M${x} ${top + 12}V${top}L${x + 8} ${top + 4}L${x} ${top + 8}`;
-      const flag = draw("path", { d: shape, class: `flag ${who === "U" ? "user" : ""}${mine ? " chosen" : ""}`, "data-row": number });
-      flag.append(draw("title", {}, `${seconds(time)}: ${text}`));
-      parts.push(flag);
+      const flag = draw("path", { d: shape, class: `flag ${who === "U" ? "user" : ""}${mine ? " chosen" : ""}` });
+      parts.push(mark(flag, "events", time, number, `${seconds(time)}: ${text}`));
       if (tier >= 0) {
         const words = fit(text, Math.min(right - x - 10, 190));
-        if (words) parts.push(draw("text", { x: x + 10, y: top + 9, "data-row": number, class: "halo", ...tongue(index, number) }, words));
+        const spoken = draw("text", { x: x + 10, y: top + 9, class: "halo said", ...tongue(index, number) }, words);
+        if (!paper) Object.assign(spoken.dataset, { row: number, text: `${seconds(time)}: ${text}` });
+        if (words) parts.push(spoken);
         tiers[tier] = x + 18 + widthOf(words);
       }
     }
-    y += 65;
+    y += TIER * (tiers.length + 1) + 5;
 
     for (const lane of plan.lanes) {
       const top = y, height = lane.count * PITCH + 4;
@@ -193,8 +201,7 @@
         if (bar[END] < from || bar[BEGIN] > to) continue;
         const x0 = Math.max(at(bar[BEGIN]), left), x1 = Math.min(at(bar[END]), right);
         const rect = draw("rect", { x: x0, y: top, width: Math.max(x1 - x0, 1), height, fill: `url(#${serial})`, class: "away" });
-        rect.append(draw("title", {}, `${bar[NAME]} is suspended by ${bar[TEXT]}, ${bar[BEGIN].toFixed(2)} to ${seconds(bar[END])}`));
-        parts.push(rect);
+        parts.push(mark(rect, `app ${lane.app}`, bar[BEGIN], bar[ROW], `${bar[NAME]} is suspended by ${bar[TEXT]}, ${during(bar)}`));
       }
       let lastHeld = -9;
       for (const bar of lane.held) {
@@ -203,58 +210,58 @@
         if (x1 - lastHeld < 1.5) continue;
         lastHeld = x1;
         const dash = draw("line", { x1: x0, x2: x1, y1: top + height - 2, y2: top + height - 2, class: "held" });
-        dash.append(draw("title", {}, `${bar[NAME]} is held back by ${bar[TEXT]}, ${bar[BEGIN].toFixed(2)} to ${seconds(bar[END])}`));
-        parts.push(dash);
+        const near = draw("line", { x1: x0, x2: Math.max(x1, x0 + 1), y1: top + height - 2, y2: top + height - 2, class: "near" });
+        parts.push(dash, mark(near, `app ${lane.app}`, bar[BEGIN], bar[ROW], `${bar[NAME]} is held back by ${bar[TEXT]}, ${during(bar)}`));
       }
       const last = new Array(lane.count).fill(-9);
       for (const bar of lane.bars) {
         const row = lane.rows.get(bar);
-        last[row] = box(bar, top + 2 + row * PITCH, HEIGHT, `bar fill${colour(lane.app)}`, last[row], true);
+        last[row] = box(bar, `app ${lane.app}`, top + 2 + row * PITCH, HEIGHT, `bar fill${colour(index, lane.app)}`, last[row], true);
       }
       y += height + 4;
       const ends = new Array(lane.lines).fill(-9);
       for (const bar of lane.streams) {
         if (bar[END] < from || bar[BEGIN] > to) continue;
-        const row = lane.ropes.get(bar), low = y + row * 8 + 3;
+        const row = lane.ropes.get(bar), low = y + row * ROPE + (coarse ? 10 : 3);
         const x0 = Math.max(at(bar[BEGIN]), left), x1 = Math.min(at(bar[END]), right);
         if (x1 - ends[row] < 1.5) continue;
         ends[row] = x1;
-        const rope = draw("path", { d: `M${x0.toFixed(1)} ${low}H${x1.toFixed(1)}M${x1.toFixed(1)} ${low - 3}v6`, class: `stream line${colour(lane.app)}` });
-        rope.append(draw("title", {}, `${bar[TEXT]}, ${bar[BEGIN].toFixed(2)} to ${seconds(bar[END])}`));
-        parts.push(rope);
+        const rope = draw("path", { d: `M${x0.toFixed(1)} ${low}H${x1.toFixed(1)}M${x1.toFixed(1)} ${low - 3}v6`, class: `stream line${colour(index, lane.app)}` });
+        const near = draw("path", { d: `M${x0.toFixed(1)} ${low}H${Math.max(x1, x0 + 1).toFixed(1)}`, class: "near" });
+        parts.push(rope, mark(near, `stream ${lane.app}`, bar[BEGIN], bar[ROW], `${bar[TEXT]}, ${during(bar)}`));
         let before = -9;
         for (const cut of bar[CUTS]) {
           if (cut < from || cut > to || at(cut) - before < 7) continue;
           before = at(cut);
-          parts.push(draw("circle", { cx: before, cy: low, r: 2.5, class: `window line${colour(lane.app)}` }));
+          parts.push(draw("circle", { cx: before, cy: low, r: 2.5, class: `window line${colour(index, lane.app)}` }));
         }
       }
-      y += lane.lines * 8 + 6;
+      y += lane.lines * ROPE + 6;
     }
     parts.push(draw("line", { x1: 0, x2: width, y1: y - 3, y2: y - 3, class: "lane-line" }));
     if (run.floor.length) {
       name("floor", y + 12);
       let last = -9;
-      for (const bar of run.floor) last = box(bar, y, 16, `bar fill${colour(bar[APP])}`, last, true);
-      y += 22;
+      for (const bar of run.floor) last = box(bar, "floor", y, FLOOR, `bar fill${colour(index, bar[APP])}`, last, true);
+      y += FLOOR + 6;
     }
     if (state.devices || paper) {
       run.devices.forEach((device, number) => {
         name(device, y + 10, "quiet");
         let last = -9;
-        for (const bar of plan.uses[number]) last = box(bar, y + 2, 9, `bar fill${colour(bar[APP])}`, last, false);
-        y += 14;
+        for (const bar of plan.uses[number]) last = box(bar, `device ${number}`, y + 2, DEVICE, `bar fill${colour(index, bar[APP])}`, last, false);
+        y += DEVICE + 5;
       });
     }
     const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21600].find((one) => one * scale > 56) || 86400;
     for (let time = Math.ceil(from / step - 1e-9) * step; time <= to + 1e-9; time += step) {
       const label = step < 1 ? time.toFixed(1) : `${Math.round(time)}`;
-      behind.push(draw("line", { x1: at(time), x2: at(time), y1: 66, y2: y + 3, class: "grid" }));
+      behind.push(draw("line", { x1: at(time), x2: at(time), y1: TIER * 4 + 6, y2: y + 3, class: "grid" }));
       if (at(time) < right - 6) parts.push(draw("text", { x: at(time), y: y + 15, "text-anchor": "middle", class: "quiet" }, label));
     }
     parts.push(draw("text", { x: 6, y: y + 15, class: "quiet" }, "seconds"));
     for (const [x, top] of flagged) behind.push(draw("line", { x1: x, x2: x, y1: top + 10, y2: y, class: "pole" }));
-    const svg = draw("svg", { viewBox: `0 0 ${Math.round(width)} ${Math.round(y + 22)}`, role: "img", "aria-label": `${run.title}, from ${from.toFixed(1)} to ${to.toFixed(1)} seconds. The transcript tells the same in words.` });
+    const svg = draw("svg", { viewBox: `0 0 ${Math.round(width)} ${Math.round(y + 22)}`, role: "group", "aria-label": `${run.title}, from ${from.toFixed(1)} to ${to.toFixed(1)} seconds. The transcript tells the same in words.` });
     const hatch = draw("pattern", { id: serial, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
     hatch.append(draw("line", { x1: 0, x2: 0, y1: 0, y2: 7, class: "hatch-line" }));
     const definitions = draw("defs");
@@ -263,19 +270,57 @@
     return { svg, at, left, right, bottom: y };
   }
 
+  // The whole text of a mark, beside it: under a pointer, and where the keyboard is.
+  const pointed = find("pointed");
+  function point(mark) {
+    pointed.textContent = mark.dataset.text;
+    pointed.classList.add("shown");
+    const place = mark.getBoundingClientRect(), size = pointed.getBoundingClientRect();
+    const above = place.bottom + 6 + size.height > innerHeight;
+    pointed.style.left = `${Math.max(4, Math.min(Math.max(place.left, 4), innerWidth - size.width - 4))}px`;
+    pointed.style.top = `${above ? place.top - size.height - 6 : place.bottom + 6}px`;
+  }
+  function unpoint() {
+    pointed.classList.remove("shown");
+  }
+  addEventListener("scroll", unpoint, { passive: true, capture: true });
+
   const timelines = runs.map((run, index) => {
     const host = find(`timeline-${index}`);
-    let shown = null, cursor = null;
+    let shown = null, cursor = null, stop = null;
+    const key = (mark) => [mark.dataset.lane, mark.dataset.begin, mark.dataset.row].join("|");
+    const marks = () => [...host.querySelectorAll("[role=button]")];
+    /** Let one mark be the one that Tab comes to. */
+    const rest = (mark) => {
+      if (stop) stop.tabIndex = -1;
+      stop = mark || null;
+      if (stop) stop.tabIndex = 0;
+    };
+    const step = (from, key) => {
+      const all = marks(), at = (mark) => Number(mark.dataset.begin), lane = from.dataset.lane;
+      const along = key === "ArrowLeft" || key === "ArrowRight", back = key === "ArrowLeft" || key === "ArrowUp";
+      const lanes = [...new Set(all.map((mark) => mark.dataset.lane))];
+      const wanted = along ? lane : lanes[lanes.indexOf(lane) + (back ? -1 : 1)];
+      const own = all.filter((mark) => mark.dataset.lane === wanted).sort((a, b) => at(a) - at(b));
+      if (along) return own[own.indexOf(from) + (back ? -1 : 1)];
+      return own.reduce((best, mark) => (!best || Math.abs(at(mark) - at(from)) < Math.abs(at(best) - at(from)) ? mark : best), null);
+    };
     const moment = (event) => {
       const x = (event.clientX - host.getBoundingClientRect().left - 1);
       return state.from + ((x - shown.left) / (shown.right - shown.left)) * (state.to - state.from);
     };
     const line = {
       redraw() {
+        const focused = host.contains(document.activeElement) && document.activeElement !== host ? key(document.activeElement) : "";
+        unpoint();
         shown = picture(index, state.from, state.to, Math.max(host.clientWidth, 240), false);
         cursor = draw("line", { y1: 2, y2: shown.bottom + 4, class: "cursor" });
         shown.svg.append(cursor);
         host.replaceChildren(shown.svg);
+        const again = focused && marks().find((mark) => key(mark) === focused);
+        stop = null;
+        rest(again || marks()[0]);
+        if (focused) (again || host).focus({ preventScroll: true });
         line.point();
       },
       /** Pixels that time has. */
@@ -289,6 +334,28 @@
         cursor.setAttribute("x2", x);
       },
     };
+    /** The mark under a pointer, or a little beside it. */
+    const hitBy = ({ clientX, clientY }) => {
+      for (const reach of [0, NEAR]) {
+        for (const [x, y] of [[0, 0], [0, -reach], [0, reach], [-reach, 0], [reach, 0]]) {
+          const hit = document.elementFromPoint(clientX + x, clientY + y)?.closest("[data-row]");
+          if (hit && host.contains(hit)) return hit;
+        }
+      }
+      return null;
+    };
+    host.addEventListener("pointerover", (event) => {
+      const mark = event.target.closest("[data-text]");
+      if (mark) point(mark);
+      else unpoint();
+    });
+    host.addEventListener("pointerleave", unpoint);
+    host.addEventListener("focusin", (event) => {
+      if (event.target === host) return;
+      rest(event.target);
+      if (event.target.matches(":focus-visible")) point(event.target);
+    });
+    host.addEventListener("focusout", unpoint);
     let grip = null;
     host.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
@@ -303,17 +370,20 @@
       const scale = (grip.to - grip.from) / (shown.right - shown.left);
       view(grip.from - way * scale, grip.to - way * scale);
     });
-    const release = (event) => {
-      if (grip && !grip.moved && event.type === "pointerup") {
-        const hit = document.elementFromPoint(event.clientX, event.clientY);
-        const mark = hit && hit.closest("[data-row]");
-        if (mark && host.contains(mark)) choose(rowOf[index][Number(mark.dataset.row)], { scroll: true, time: index });
-        else go(moment(event));
-      }
+    let dragged = false;
+    const release = () => {
+      dragged = Boolean(grip && grip.moved);
       grip = null;
     };
     host.addEventListener("pointerup", release);
     host.addEventListener("pointercancel", release);
+    // Only at the click, when the finger is gone: else it would click what comes into view.
+    host.addEventListener("click", (event) => {
+      if (dragged) return;
+      const mark = event.detail ? hitBy(event) : event.target.closest("[data-row]");
+      if (mark) show(index, Number(mark.dataset.row));
+      else if (event.detail) go(moment(event));
+    });
     host.addEventListener("wheel", (event) => {
       if (event.ctrlKey || event.metaKey) zoom(event.deltaY > 0 ? 1.25 : 0.8, moment(event));
       else if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) pan((event.deltaX || event.deltaY) / 600);
@@ -325,7 +395,22 @@
         ArrowLeft: () => pan(-0.1), ArrowRight: () => pan(0.1), "+": () => zoom(0.7), "=": () => zoom(0.7), "-": () => zoom(1.4),
         Home: () => view(0, state.to - state.from), End: () => view(longest - (state.to - state.from), longest), 0: () => view(0, longest), " ": () => play(),
       };
-      if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const mark = event.target.closest("[role=button]");
+      if (mark && event.key.startsWith("Arrow")) {
+        event.preventDefault();
+        return step(mark, event.key)?.focus();
+      }
+      if (mark && (event.key === "Enter" || event.key === " ")) {
+        event.preventDefault();
+        return show(index, Number(mark.dataset.row), true);
+      }
+      if (mark && event.key === "Escape") return host.focus();
+      if (!mark && event.key === "ArrowDown") {
+        event.preventDefault();
+        return (stop || marks()[0])?.focus();
+      }
+      if (!keys[event.key]) return;
       event.preventDefault();
       keys[event.key]();
     });
@@ -419,7 +504,10 @@
       svg.append(draw("text", { x: middle, y: Y(y) + 14, class: kind, "text-anchor": "middle" }, words));
     };
     if (plan) {
-      for (const [, x1, y1, x2, y2] of plan.areas) svg.append(draw("rect", { x: X(x1), y: Y(y2), width: (x2 - x1) * scale, height: (y2 - y1) * scale, class: "area" }));
+      for (const [, x1, y1, x2, y2, app] of plan.areas) {
+        const shade = run.apps.includes(app) ? `line${colour(index, run.apps.indexOf(app))}` : "";
+        svg.append(draw("rect", { x: X(x1), y: Y(y2), width: (x2 - x1) * scale, height: (y2 - y1) * scale, class: `area ${shade}` }));
+      }
       for (const [x1, y1, x2, y2] of plan.ways) svg.append(draw("line", { x1: X(x1), y1: Y(y1), x2: X(x2), y2: Y(y2), class: "way" }));
       for (const [, x, y, r] of plan.corners) svg.append(draw("circle", { cx: X(x), cy: Y(y), r: r * scale, class: "corner" }));
       for (const [x1, y1, x2, y2] of plan.walls) svg.append(draw("line", { x1: X(x1), y1: Y(y1), x2: X(x2), y2: Y(y2), class: "wall" }));
@@ -444,6 +532,19 @@
     if (robot.length) svg.append(cone, figure, nose, names[0]);
     if (person.length) svg.append(other, names[1]);
     host.append(svg);
+    /** A click goes to the moment at which somebody was there, and opens the row of that moment. */
+    svg.addEventListener("click", (event) => {
+      const frame = svg.getBoundingClientRect(), share = width / frame.width;
+      const [x, y] = [(event.clientX - frame.left) * share, (event.clientY - frame.top) * share];
+      const off = ([, px, py]) => Math.hypot(X(px) - x, Y(py) - y);
+      const here = [poseAt(robot, state.now), poseAt(person, state.now)].filter(Boolean).map((pose) => [state.now, ...pose]);
+      const nearest = (poses) => poses.reduce((best, pose) => (best && off(best) <= off(pose) ? best : pose), null);
+      const found = [nearest(here), nearest([...robot, ...person])].find((pose) => pose && off(pose) < size + 14);
+      if (!found) return;
+      const number = lastBefore(run.rows, found[0], (row) => row[0]);
+      if (number >= 0) show(index, number);
+      go(found[0]);
+    });
     return {
       point() {
         const time = Math.min(state.now, run.seconds);
@@ -487,12 +588,12 @@
     const items = [];
     for (const bar of run.bars) if (during(bar)) items.push([bar[APP], run.apps[bar[APP]] || "", bar[TEXT], bar[ROW]]);
     const floor = run.floor.find(during);
-    if (floor) items.push([floor[APP], "floor", floor[TEXT]]);
-    for (const bar of run.away) if (during(bar)) items.push([bar[APP], "suspended", `${bar[NAME]}, by ${bar[TEXT]}`]);
+    if (floor) items.push([floor[APP], "floor", floor[TEXT], floor[ROW]]);
+    for (const bar of run.away) if (during(bar)) items.push([bar[APP], "suspended", `${bar[NAME]}, by ${bar[TEXT]}`, bar[ROW]]);
     const number = lastBefore(run.rows, now, (one) => one[0]);
-    const list = items.slice(0, 12).map(([app, name, text, number]) => make("li", {}, make("span", { class: `app app${colour(app)}` }, `${name}: `), said(index, number ?? -1, text)));
+    const list = items.slice(0, 12).map(([app, name, text, number]) => make("li", {}, make("span", { class: `app app${colour(index, app)}` }, `${name}: `), linkTo(index, number, said(index, number, text))));
     if (!items.length) list.push(make("li", { class: "dim" }, now >= run.seconds ? "The run is over." : "The robot does nothing."));
-    if (number >= 0) list.push(make("li", { class: "dim" }, `Last, at ${seconds(run.rows[number][0])}: `, spoken(index, number)));
+    if (number >= 0) list.push(make("li", { class: "dim" }, `Last, at ${seconds(run.rows[number][0])}: `, linkTo(index, number, spoken(index, number))));
     const text = list.map((one) => one.textContent).join("\n");
     if (text === told[index]) return;
     told[index] = text;
@@ -649,7 +750,16 @@
     if (moment < state.from || moment > state.to) view(moment - (state.to - state.from) / 4, moment + ((state.to - state.from) * 3) / 4);
     go(moment);
     later();
-    if (scroll && wide.matches) row.scrollIntoView({ block: "nearest" });
+    if (scroll) row.scrollIntoView({ block: wide.matches ? "nearest" : "center" });
+  }
+
+  /** Open the row of a run's row, wherever it is; with a key, go there. */
+  function show(run, number, withKey = false) {
+    const index = rowOf[run][number];
+    reveal(index);
+    open(index, true);
+    choose(index, { scroll: true, time: run });
+    if (withKey) buttonOf(line(index)).focus({ preventScroll: true });
   }
 
   table.addEventListener("click", (event) => {
@@ -667,7 +777,7 @@
     const target = { ArrowDown: [here + 1, 1], ArrowUp: [here - 1, -1], Home: [0, 1], End: [last, -1] }[event.key];
     if (!target) return;
     let [index, way] = target;
-    while (line(index) && table.classList.contains("only") && changes[index][0] === "same") index += way;
+    while (line(index) && isOut(index)) index += way;
     const row = line(index);
     event.preventDefault();
     if (!row) return;
@@ -679,16 +789,60 @@
     const found = /^#row-(\d+)$/.exec(location.hash);
     const row = found && line(Number(found[1]));
     if (!row) return;
-    if (table.classList.contains("only")) {
-      find("only").checked = false;
-      only();
-    }
+    reveal(Number(found[1]));
     choose(Number(found[1]), { scroll: true });
     open(Number(found[1]), true);
     buttonOf(row).focus({ preventScroll: wide.matches });
   }
 
-  const only = () => table.classList.toggle("only", find("only").checked);
+  // Which rows are shown -------------------------------------------------------------------------------
+
+  const isOut = (index) => line(index).hidden || (table.classList.contains("only") && changes[index][0] === "same");
+
+  const only = () => {
+    table.classList.toggle("only", find("only").checked);
+    settle();
+  };
+
+  /** Show the rows of an application, of who did them, and that contain a text. */
+  function filter() {
+    const app = find("by-app").value, who = find("by-who").value, text = find("by-text").value.trim().toLowerCase();
+    const some = Boolean(app || who || text);
+    const fits = (number, run) => {
+      if (number < 0) return false;
+      const [, by, name, what] = runs[run].rows[number];
+      return (!app || name === app) && (!who || by === who) && (!text || what.toLowerCase().includes(text));
+    };
+    for (let index = 0; index < rowCount; index += 1) {
+      const row = line(index);
+      row.hidden = some && !numbersOf(index).some(fits);
+      if (isOpen(row)) row.nextElementSibling.hidden = row.hidden;
+    }
+    table.classList.toggle("some", some);
+    settle();
+  }
+
+  /** Say how many rows are shown, and let Tab come to one of them. */
+  function settle() {
+    const shown = [...Array(rowCount).keys()].filter((index) => !isOut(index));
+    find("found").textContent = shown.length < rowCount ? `${shown.length} of ${rowCount} rows` : "";
+    if (shown.length && stop && isOut(Number(stop.closest("tr").id.slice(4)))) rove(buttonOf(line(shown[0])));
+  }
+
+  /** Show a row, though it was chosen not to show such rows. */
+  function reveal(index) {
+    if (!isOut(index)) return;
+    for (const id of ["by-app", "by-who"]) find(id).addEventListener("change", filter);
+  find("by-text").addEventListener("input", filter);
+  document.querySelector(".filter").addEventListener("submit", (event) => event.preventDefault());
+  document.addEventListener("click", (event) => {
+    if (event.target.closest("a")?.hash === location.hash && location.hash) fromAddress();
+  });
+  if (find("only")) find("only").checked = false;
+    for (const id of ["by-app", "by-who", "by-text"]) find(id).value = "";
+    table.classList.remove("only");
+    filter();
+  }
 
   // Paper -----------------------------------------------------------------------------------------------
 
@@ -710,7 +864,7 @@
 
   // Beginning -----------------------------------------------------------------------------------------------
 
-  for (const hidden of document.querySelectorAll("#controls, .pictures, .keys")) hidden.hidden = false;
+  for (const hidden of document.querySelectorAll("#controls, .pictures, .keys, .filter")) hidden.hidden = false;
   if (rowCount) rove(buttonOf(line(0)));
   slider.max = longest;
   slider.addEventListener("input", () => {
@@ -728,6 +882,12 @@
     state.devices = !state.devices;
     find("devices").setAttribute("aria-pressed", String(state.devices));
     later();
+  });
+  for (const id of ["by-app", "by-who"]) find(id).addEventListener("change", filter);
+  find("by-text").addEventListener("input", filter);
+  document.querySelector(".filter").addEventListener("submit", (event) => event.preventDefault());
+  document.addEventListener("click", (event) => {
+    if (event.target.closest("a")?.hash === location.hash && location.hash) fromAddress();
   });
   if (find("only")) find("only").addEventListener("change", only);
   for (const kind of ["wheel", "touchmove"]) addEventListener(kind, () => { state.follow = false; }, { passive: true });

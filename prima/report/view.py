@@ -138,7 +138,8 @@ def _facts(records: Sequence[Record], head: dict[str, Json]) -> list[tuple[str, 
 def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
     """The measures of docs/measures.md."""
     found = observe(records)
-    mean, most = f"{found.reaction_mean:.2f} s", f"{found.reaction_max:.2f} s"
+    reaction = f"{found.reaction_mean:.2f} / {found.reaction_max:.2f} s"
+    response = f"{found.response_mean:.2f} / {found.response_max:.2f} s"
     return [
         ("Units cut", str(found.units_cut), "behaviours that lost a device while they ran"),
         ("Restarts", str(found.restarts), "behaviours that gave way to a reaction (X2)"),
@@ -147,8 +148,12 @@ def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
         ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
         ("Left", str(found.left), "conversations that the robot left"),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
-        ("Mean reaction", mean, "from the event to the Command"),
-        ("Longest reaction", most, "from the event to the Command"),
+        ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
+        (
+            "Response time",
+            response,
+            "mean and longest, from the event to the first word or movement towards the user",
+        ),
     ]
 
 

@@ -7,7 +7,7 @@ same records come out of it, since else it was another run.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -79,7 +79,7 @@ def walk_of(transcript: Transcript, loaded: Loaded | None) -> Walk:
     check_files(transcript, loaded)
     profile = loaded.cast.robot
     walk = _again(transcript, loaded) or Walk(reported(transcript.records))
-    walk.plan = plan_of(loaded.cast.world)
+    walk.plan = plan_of(loaded.cast.world, {area.id: app for area, app in loaded.cast.offers})
     walk.camera = (profile.camera_angle, profile.camera_range)
     walk.radius = profile.radius
     return walk
@@ -178,13 +178,15 @@ def _differs(a: Pose, b: Pose) -> bool:
     return way > MOVED or turn > TURNED
 
 
-def plan_of(world: Map) -> dict[str, Json]:
-    """A world as plain data, in metres."""
+def plan_of(world: Map, offers: Mapping[str, str]) -> dict[str, Json]:
+    """A world as plain data, in metres; ``offers`` are the applications of its areas."""
     return {
         "walls": [[*a, *b] for a, b in world.walls],
         "ways": [[*world.places[a], *world.places[b]] for a, b in world.ways],
         "places": [[name, *at] for name, at in world.places.items()],
         "things": [[name, *at] for name, at in world.things.items()],
         "corners": [[corner.id, *corner.at, corner.radius] for corner in world.corners],
-        "areas": [[area.title, *area.low, *area.high] for area in world.areas],
+        "areas": [
+            [area.title, *area.low, *area.high, offers.get(area.id, "")] for area in world.areas
+        ],
     }

@@ -39,12 +39,16 @@ def colours(apps: Iterable[str]) -> dict[str, int]:
     return found
 
 
+def apps_of(records: Iterable[Record]) -> list[str]:
+    """A run's applications, as they were loaded."""
+    told = [(record["phase"], str(record["app"])) for record in records if record.get("app")]
+    loaded = (app for phase, app in told if phase == "load")
+    return list(dict.fromkeys(chain(loaded, (app for _, app in told))))
+
+
 def of_run(records: Iterable[Record]) -> dict[str, int]:
     """The places in the palette of a run's applications."""
-    told = [
-        (record["phase"] == "load", str(record["app"])) for record in records if record.get("app")
-    ]
-    return colours(chain((app for load, app in told if load), (app for _, app in told)))
+    return colours(apps_of(records))
 
 
 def fill(index: int, dark: bool = False) -> str:
