@@ -394,6 +394,7 @@ PICTURES: dict[str, tuple[str, Draw, str, str]] = {
 
 GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
     "graph-museum": ("ea/museum.xml", graph.picture),
+    "graph-office": ("worlds/office.xml", graph.picture),
     "graph-memory": (
         "scenarios/touched-on-the-way.xml",
         lambda path: graph.tree(api.rehearse(path), 5),

@@ -94,6 +94,7 @@ INSIDE = {
         {"layout", "model"},
         {"run", "svg", "words"},
         {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
+        {"worldmap"},
         {"__init__"},
     ],
     "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],

@@ -22,8 +22,9 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 @click.option("--to", type=Choice(FORMATS), help="By default what OUTPUT's suffix tells, or svg.")
 @click.option(
     "--what",
-    type=Choice(["states", "tree", "streams"]),
-    help="An application's states; a transcript's tree of Atomic Behaviors, or its streams.",
+    type=Choice(["states", "tree", "streams", "map"]),
+    help="An application's states; a transcript's tree of Atomic Behaviors, or its streams;"
+    " a world's map.",
 )
 @click.option("--row", type=int, help="The tree as it was at this row of the transcript's table.")
 @click.option(
@@ -34,9 +35,9 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
     help="The file to write; else to stdout.",
 )
 def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
-    """Draw the states of an application, or the trees and streams of a run.
+    """Draw the states of an application, the trees and streams of a run, or a world's map.
 
-    FILE is an application or a transcript; its content tells which. Nothing else
+    FILE is an application, a transcript or a world; its content tells which. Nothing else
     is needed to draw SVG; DOT and Mermaid are for other programs.
 
     \b
@@ -44,6 +45,7 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     prima graph documents/fa/follow.xml --to mermaid
     prima graph mediated.jsonl --row 13 -o memory.svg
     prima graph mediated.jsonl --what streams -o streams.svg
+    prima graph documents/worlds/office.xml -o office.svg
     """
     from prima.graph import SUFFIXES, picture
 

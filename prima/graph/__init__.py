@@ -1,4 +1,4 @@
-"""Pictures: an application as a finite state machine, a run as trees and as streams.
+"""Pictures: an application as a finite state machine, a run as trees and streams, a world as a map.
 
 print(picture("follow.xml", "svg"))
 print(picture("mediated.jsonl", "mermaid", what="streams"))
@@ -20,7 +20,7 @@ FORMATS = ("svg", "dot", "mermaid", "json")
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
 SUFFIXES |= {".json": "json"}
 """What a file's suffix says about its format."""
-WHATS = ("states", "tree", "streams")
+WHATS = ("states", "tree", "streams", "map")
 MOST_BOXES = 300
 """Boxes of a picture in SVG; the other formats take any number."""
 
@@ -32,13 +32,13 @@ def picture(
     row: int | None = None,
     read: list[Transcript] | None = None,
 ) -> str:
-    """Draw an application or a transcript; which of them it is its content tells.
+    """Draw an application, a transcript or a world; which of them it is its content tells.
 
     Args:
-        path: an application in PRIMA's language or VoiceXML, or a transcript.
+        path: an application in PRIMA's language or VoiceXML, a transcript, or a world.
         to: ``svg``, ``dot``, ``mermaid`` or ``json``.
-        what: ``states`` of an application; ``tree`` or ``streams`` of a transcript. By
-            default the states, or the tree.
+        what: ``states`` of an application; ``tree`` or ``streams`` of a transcript;
+            ``map`` of a world. By default the states, the tree, or the map.
         row: of a tree, the row of the transcript's table at whose time it is shown; by
             default all of the run.
         read: is given the transcript that was read; one that was cut off is drawn as far
@@ -46,15 +46,16 @@ def picture(
 
     Raises:
         UsageError: the file cannot be read or has nothing of that kind, or no such format.
-        DocumentError: the application is wrong.
+        DocumentError: the application or the world is wrong.
     """
     for name, word, known in (("to", to, FORMATS), ("what", what or "states", WHATS)):
         if word not in known:
             hint = did_you_mean(word, known) or f"Write {one_of(known)}."
             raise UsageError(f'There is no {name} "{word}". {hint}')
     if _transcript(path):
-        if what == "states":
-            message = "this is a transcript, which has no states. Write --what tree or streams."
+        if what in ("states", "map"):
+            lacks = "states" if what == "states" else "map"
+            message = f"this is a transcript, which has no {lacks}. Write --what tree or streams."
             raise UsageError(f"{path}: {message}")
         if what == "streams" and row is not None:
             raise UsageError("--row goes with --what tree.")
@@ -68,7 +69,42 @@ def picture(
         asked = f"--what {what}" if what in ("tree", "streams") else "--row"
         remedy = "prima run SCENARIO -o FILE.jsonl makes one."
         raise UsageError(f"{path}: {asked} needs a transcript; {remedy}")
+    if _root(path) == "world":
+        if what == "states":
+            raise UsageError(f"{path}: this is a world, which has no states. Write --what map.")
+        return world_map(path, to)
+    if what == "map":
+        raise UsageError(f"{path}: --what map needs a world.")
     return _shown(states(path), to, path)
+
+
+def _root(path: str | Path) -> str:
+    """The tag with which a document begins; empty where it is none of PRIMA's."""
+    from prima.loading import is_grammar, is_voicexml, read_file
+    from prima.markup.reader import parse
+
+    data = read_file(path)
+    return "" if is_voicexml(data) or is_grammar(data) else parse(str(path), data).tag
+
+
+def world_map(path: str | Path, to: str = "svg") -> str:
+    """Draw the map of a world; in DOT and Mermaid only its places and ways.
+
+    Raises:
+        UsageError: the file cannot be read, or it is too much.
+        DocumentError: the world is wrong.
+    """
+    from prima.graph import worldmap
+    from prima.loading import read_file
+    from prima.sim.scenario import read_world
+
+    world = read_world(str(path), read_file(path))
+    marks = len(world.places) + len(world.things) + len(world.corners)
+    if to == "svg" and marks > MOST_BOXES:
+        message = f"{marks} places, things and corners are too many: one map holds {MOST_BOXES}."
+        raise UsageError(f"{path}: {message} Write --to dot or json.")
+    made = {"dot": worldmap.dot, "mermaid": worldmap.mermaid, "json": worldmap.data}
+    return made.get(to, worldmap.draw)(world)
 
 
 def states(path: str | Path) -> Graph:
@@ -109,14 +145,16 @@ def _refuse_others(path: str | Path, data: bytes) -> None:
         return
     if is_grammar(data):
         raise UsageError(
-            f"{path}: this is a grammar; a graph is of an application or a transcript."
+            f"{path}: this is a grammar; a graph is of an application, a transcript or a world."
         )
     root = parse(str(path), data)
     if root.tag == "scenario":
         message = "this is a scenario. Draw its applications, or run it and draw the transcript:"
         raise UsageError(f"{path}: {message} prima run {path} -o FILE.jsonl")
-    if root.tag in ("world", "robot"):
-        message = f"this is a {root.tag}; a graph is of an application or a transcript."
+    if root.tag == "world":
+        raise UsageError(f"{path}: this is a world, which has no states. Write --what map.")
+    if root.tag == "robot":
+        message = "this is a robot; a graph is of an application, a transcript or a world."
         raise UsageError(f"{path}: {message}")
 
 
@@ -220,4 +258,4 @@ def _streams_shown(history: History, to: str, path: str | Path) -> str:
     return made.get(to, gantt.draw)(history)
 
 
-__all__ = ["FORMATS", "WHATS", "Graph", "picture", "states", "streams", "tree"]
+__all__ = ["FORMATS", "WHATS", "Graph", "picture", "states", "streams", "tree", "world_map"]

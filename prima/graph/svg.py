@@ -39,6 +39,12 @@ text { font: 11.5px Verdana, "DejaVu Sans", sans-serif; fill: #1f2328 }
 .broken { fill: #cf222e; fill-opacity: 0.25; stroke: #cf222e }
 .line { stroke: #59636e; fill: none }
 .grid { stroke: #d1d9e0 }
+.area { fill-opacity: 0.35; stroke-dasharray: 6 4 }
+.way { stroke: #6e7781; stroke-width: 2; stroke-dasharray: 7 5 }
+.wall { stroke: #1f2328; stroke-width: 3.5; stroke-linecap: round }
+.corner { fill: none; stroke: #9a6700; stroke-dasharray: 3 3 }
+.place { fill: #1f2328 }
+.thing { fill: #ffffff; stroke: #1f2328; stroke-width: 1.5 }
 @media (prefers-color-scheme: dark) {
   svg { background: #0d1117 }
   text { fill: #e6edf3 }
@@ -54,6 +60,11 @@ text { font: 11.5px Verdana, "DejaVu Sans", sans-serif; fill: #1f2328 }
   .head { fill: #9aa4af }
   .call-head, .back-head { fill: #bc8cff }
   .guess-head { fill: #d29922 }
+  .way { stroke: #9aa4af }
+  .wall { stroke: #e6edf3 }
+  .corner { stroke: #d29922 }
+  .place { fill: #e6edf3 }
+  .thing { fill: #0d1117; stroke: #e6edf3 }
   /* applications in the dark */
   .waiting, .linked, .cancelled, .failed { fill-opacity: 0 }
 }
