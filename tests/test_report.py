@@ -113,7 +113,7 @@ def test_the_head_tells_scenario_policy_version_and_measures() -> None:
         assert word in page
     assert "<dt>Broken</dt><dd>2</dd>" in page
     assert "<dt>Reaction time</dt><dd>32.56 / 97.68 s</dd>" in page
-    assert "<dt>Response time</dt><dd>70.83 / 114.83 s</dd>" in page
+    assert "<dt>Response time</dt><dd>48.84 / 97.68 s</dd>" in page
 
 
 def test_reasons_are_those_of_prima_explain() -> None:
