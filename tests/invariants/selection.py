@@ -1,0 +1,230 @@
+"""Selection: who goes first (S2), who is held back (S3), and who need not wait (S1)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.invariants.model import AB, RUNNING, WAITING, Record, base
+from tests.invariants.streams import Streams
+
+LETTERS = "abcdef"
+MANY = 8
+"""Of more that wait, not all need to be looked at."""
+
+
+class Selection(Streams):
+    """S1 to S3, by the numbers that S2 compares."""
+
+    def active_app(self) -> str | None:
+        """S2b: whose stream is active: the floor's, else the one that started last if it is open."""
+        active = self.holder or self.last_started
+        return active.app if active is not None and active.open else None
+
+    def key(self, ab: AB) -> tuple[Any, ...]:
+        """S2a to S2f, and the order of requests for what is equal in all of them."""
+        reaction: tuple[int, int, bool] = (1, 0, False)
+        if ab.cause is not None:
+            reaction = (0, -ab.cause, ab.app != self.active_app())
+        return (
+            not ab.high,
+            reaction,
+            ab.followed_at != self.now,
+            -ab.tree.rank,
+            ab.requested,
+            self.apps.get(ab.app, 0),
+            ab.place,
+        )
+
+    def rule_between(self, ab: AB, other: AB) -> str:
+        """The part of S2 in which two differ first."""
+        pairs = zip(self.key(ab), self.key(other), strict=True)
+        index = next(index for index, (one, two) in enumerate(pairs) if one != two)
+        return f"S2{LETTERS[index]}" if index < len(LETTERS) else "S2e"
+
+    def outranks(self, ab: AB, other: AB) -> bool:
+        """S2: whether the first goes before the second."""
+        return self.key(ab) < self.key(other)
+
+    def competing(self, ab: AB) -> list[AB]:
+        """All others that wait, outside units; the first by S2 first."""
+        others = [one for one in self.waiting.values() if one is not ab and one.unit is None]
+        return sorted(others, key=self.key)
+
+    def free_to_go(self, ab: AB) -> bool:
+        """Whether F2, F6 and K1 are certain to let a waiting AB start."""
+        kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
+        return kept is None and not self.restoring(ab)
+
+    def held_back(self, ab: AB) -> bool:
+        """S3: whether a reaction that outranks it wants one of its devices, and may start."""
+        return any(
+            other.cause is not None
+            and other.devices & ab.devices
+            and self.outranks(other, ab)
+            and self.refused_by_floor(other, surely=True) is None
+            and self.refused_by_channel(other) is None
+            for other in self.competing(ab)
+        )
+
+    def could_start(self, ab: AB) -> bool:
+        """S1: whether nothing keeps a waiting AB from starting at once."""
+        return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab)
+
+    def busy(self, ab: AB) -> bool:
+        """Whether a running AB occupies one of the devices, and keeps it (S1, U5, X2)."""
+        return any(
+            ab.devices & other.devices
+            and other is not ab
+            and not ab.inside(other)
+            and not self.composes(ab, other)
+            and not self.gives_way(other, ab)
+            for other in self.running.values()
+        )
+
+    # At a start ---------------------------------------------------------------------
+
+    def allowed(self, ab: AB, shown: str) -> None:
+        """Invariants 5, 6, 7 and 12: nobody that could start in its place goes before it."""
+        holder = self.refused_by_floor(ab, surely=True)
+        if holder is not None:
+            number = 7 if ab.leaves else 5
+            self.report(number, "F2", f"{shown} starts while {holder.name} holds the floor")
+        topic = self.refused_by_topic(ab)
+        if topic is not None:
+            self.report(5, "F6", f"{shown} speaks into the topic of {topic.name}")
+        if ab.leaves:
+            self.channel_kept(ab, shown)
+        for other in self.competing(ab):
+            if not self.outranks(other, ab) or not self.free_to_go(other):
+                continue
+            self._passed_over(other, ab, shown)
+
+    def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
+        """S2, S3: what outranks the AB that starts must be unable to start in its place."""
+        rule = self.rule_between(other, ab)
+        if other.cause is not None and other.devices & ab.devices:
+            # S3: whether or not its other devices are free, it holds this one back.
+            number = 5 if other.leaves else 6
+            self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
+        elif self.could_start(other):
+            number = 5 if rule in ("S2a", "S2b") and other.devices & ab.devices else 12
+            self.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
+
+    def decided_rightly(self, ab: AB, shown: str) -> None:
+        """The ``decision`` before a start: its losers, and the rule that decided."""
+        told, self.decision = self.decision, None
+        if told is None or told["winner"] != shown:
+            self.report(13, "S2", f"{shown} starts, but nobody has decided so")
+            return
+        others = self.competing(ab)
+        names = {other.shown for other in others}
+        if not set(told["losers"]) <= names or told["losers_count"] != len(names):
+            text = f"{shown} is said to start before {told['losers']}, not {sorted(names)}"
+            self.report(13, "S2", text)
+        elif len(told["losers"]) != min(len(names), MANY):
+            self.report(13, "S2", f"{shown} starts before {len(names)}, not all of them named")
+        self._rule_told_rightly(ab, shown, told["rule"], others)
+
+    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, others: list[AB]) -> None:
+        """S2: what decided between the winner and the first that could have started, if any."""
+        rivals = [other for other in others if self.could_start(other)]
+        if rivals:
+            expected = self.rule_between(ab, rivals[0])
+            if rule != expected:
+                text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
+                self.report(13, "S2", text)
+        elif rule not in self._reasons(ab, others):
+            self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
+
+    def _reasons(self, ab: AB, others: list[AB]) -> set[str]:
+        """Why an AB starts that nobody competes with: what keeps the others from it."""
+        reasons = {"S1"} | ({"S4"} if self.running else set())
+        holder = self.holder
+        if holder is not None and holder.app != ab.app:
+            reasons |= {"F2", "F3"}
+        for other in others:
+            if self.refused_by_floor(other, surely=True):
+                reasons.add("F2")
+            if self.refused_by_topic(other):
+                reasons.add("F6")
+            if self.refused_by_channel(other):
+                reasons.add("K1")
+            if self.held_back(other):
+                reasons.add("S3")
+        return reasons
+
+    # At the end of an instant -------------------------------------------------------
+
+    def waits_rightly(self, ab: AB) -> None:
+        """Invariant 5: no waiting AB waits while it may start."""
+        if ab.unit is not None:
+            if ab.unit.phase == RUNNING and (self.policy == "none" or self.occupant(ab) is None):
+                self.report(5, "U5", f"{ab.shown} waits in {ab.unit.shown} on free devices")
+        elif self.policy == "none":
+            self.report(5, "none", f"{ab.shown} waits, though nothing mediates")
+        elif self.prima:
+            self._waits_for_a_reason(ab)
+        elif not self.busy(ab) and not any(self._ahead(one, ab) for one in self.waiting.values()):
+            self.report(5, self.policy, f"{ab.shown} waits while its devices are free")
+
+    def _waits_for_a_reason(self, ab: AB) -> None:
+        if self.free_to_go(ab) and not self.held_back(ab) and not self.busy(ab):
+            if self.occupant(ab) is None:
+                self.report(5, "S1", f"{ab.shown} waits while its devices are free")
+            if ab.cause is not None and not ab.leaves:
+                self.report(6, "S1", f"the reaction {ab.shown} is late")
+        if len(self.waiting) <= MANY:
+            self._reason_told(ab)
+
+    def _reason_told(self, ab: AB) -> None:
+        """Why an AB waits is told by its latest ``hold``, and is still so."""
+        if ab.said is None:
+            self.report(13, "S1", f"nothing says why {ab.shown} waits")
+        elif not self._held_by(ab, *ab.said):
+            rule, by = ab.said
+            self.report(13, rule, f"{ab.shown} is said to wait by {rule} for {by}")
+
+    def _held_by(self, ab: AB, rule: str, by: str) -> bool:
+        """Whether a reason to wait is true."""
+        other = self.abs.get(base(by))
+        if rule == "S1":
+            busy = other is not None and other.phase == RUNNING
+            return busy and other is not None and bool(other.devices & ab.devices)
+        if rule == "S3":
+            waits = other is not None and other.phase == WAITING and other.cause is not None
+            return waits and other is not None and bool(other.devices & ab.devices)
+        kept = {
+            "F2": self.refused_by_floor(ab, surely=False),
+            "F6": self.refused_by_topic(ab),
+            "K1": self.refused_by_channel(ab),
+        }.get(rule)
+        if rule.startswith("X"):
+            return True
+        return kept is not None and (by == kept.name or self._as_well(ab, rule, by))
+
+    def _as_well(self, ab: AB, rule: str, by: str) -> bool:
+        """K1, F6: another stream than the first that keeps it may be named, or an AB of it."""
+        other = self.abs.get(base(by))
+        tree = self.trees.get(by) or (other.tree if other is not None else None)
+        if tree is None or tree.app == ab.app or rule == "F2":
+            return False
+        return tree.engages(self.sensed) if rule == "K1" else tree.spoken
+
+    def _ahead(self, other: AB, ab: AB) -> bool:
+        """Baselines: whether another waiting AB may rank first and hold a device back."""
+        if other is ab or other.unit is not None or not other.devices & ab.devices:
+            return False
+        if self.policy == "fair":
+            return True  # whose turn it is depends on more than these two
+        if self.policy == "fixed":
+            top = self.first or min(self.apps, key=self.apps.__getitem__)
+            if (other.app == top) != (ab.app == top):
+                return other.app == top
+        return other.requested <= ab.requested
+
+    def note_hold(self, record: Record) -> None:
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None or ab.phase != WAITING:
+            self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")
+        else:
+            ab.said = (record["rule"], record.get("by") or "")
