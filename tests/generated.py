@@ -596,7 +596,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "set-position-and-direction": {"x": 1.0, "y": 2.0, "heading": 3.0},
 }
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
-GROUPED = tuple(name for name in PIECES if name != "q-and-a")
+GROUPED = tuple(name for name in PIECES if name not in ("q-and-a", "stop-moving"))
 ALL = (*TABLE_4_2, *DANCES)
 
 
@@ -663,6 +663,8 @@ class Requester:
         """The steps that may be asked for where the requester is: in its unit, or not."""
         steps: list[Step] = []
         for what, after in zip(asked.whats, asked.after, strict=True):
+            if what == "stop-moving" and steps:
+                what = "turn"  # what is wanted now begins a request
             names = (what,) if isinstance(what, str) else what
             if self.unit is not None and not all(
                 name in PIECES and TABLE[name].occupied(command(name).text) <= self.devices

@@ -144,7 +144,12 @@ class Floor(Channel):
     # Stops --------------------------------------------------------------------------
 
     def stopped_rightly(self) -> None:
-        """F5: who moved and is not moved on is stopped, and nobody else."""
+        """F5: who moved and is not moved on is stopped, and nobody else.
+
+        In an emergency every device goes to its safe state anyway (E5).
+        """
+        if self.halted:
+            return
         driven = self.driven or any("locomotion" in ab.devices for ab in self.running.values())
         due = set() if driven else set(self.halting)
         for name in self.ordered(due - self.stops):

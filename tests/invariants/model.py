@@ -68,8 +68,8 @@ class AB:
     listening: bool = False
     silent: bool = False
     """Whether O2 may have made the mediator deaf for it while it runs."""
-    said: tuple[str, str] | None = None
-    """Why it waits, and because of whom, as its latest ``hold`` says."""
+    said: tuple[str, str, float] | None = None
+    """Why it waits, because of whom, and since when, as its latest ``hold`` says."""
 
     def inside(self, other: AB) -> bool:
         """Whether this is a part of the unit ``other``, at any depth."""

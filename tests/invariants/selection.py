@@ -55,10 +55,14 @@ class Selection(Streams):
         kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
         return kept is None and not self.restoring(ab)
 
-    def held_back(self, ab: AB) -> bool:
-        """S3: whether a reaction that outranks it wants one of its devices, and may start."""
+    def held_back(self, ab: AB, winner: AB | None = None) -> bool:
+        """S3: whether a reaction that outranks it wants one of its devices, and may start.
+
+        Where it is asked who could start in the place of a winner, that holds nothing back.
+        """
         return any(
-            other.cause is not None
+            other is not winner
+            and other.cause is not None
             and other.devices & ab.devices
             and self.outranks(other, ab)
             and self.refused_by_floor(other, surely=True) is None
@@ -66,9 +70,9 @@ class Selection(Streams):
             for other in self.competing(ab)
         )
 
-    def could_start(self, ab: AB) -> bool:
-        """S1: whether nothing keeps a waiting AB from starting at once."""
-        return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab)
+    def could_start(self, ab: AB, winner: AB) -> bool:
+        """S1: whether nothing keeps a waiting AB from starting in the place of another."""
+        return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab, winner)
 
     def busy(self, ab: AB) -> bool:
         """Whether a running AB occupies one of the devices, and keeps it (S1, U5, X2)."""
@@ -106,7 +110,7 @@ class Selection(Streams):
             # S3: whether or not its other devices are free, it holds this one back.
             number = 5 if other.leaves else 6
             self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
-        elif self.could_start(other):
+        elif self.could_start(other, ab):
             number = 5 if rule in ("S2a", "S2b") and other.devices & ab.devices else 12
             self.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
 
@@ -117,24 +121,30 @@ class Selection(Streams):
             self.report(13, "S2", f"{shown} starts, but nobody has decided so")
             return
         others = self.competing(ab)
-        names = {other.shown for other in others}
-        if not set(told["losers"]) <= names or told["losers_count"] != len(names):
-            text = f"{shown} is said to start before {told['losers']}, not {sorted(names)}"
-            self.report(13, "S2", text)
-        elif len(told["losers"]) != min(len(names), MANY):
-            self.report(13, "S2", f"{shown} starts before {len(names)}, not all of them named")
-        self._rule_told_rightly(ab, shown, told["rule"], others)
+        losers = set(told["losers"])
+        strangers = losers - {other.shown for other in others}
+        missing = {other.shown for other in others if other.devices & ab.devices} - losers
+        count = told["losers_count"]
+        if strangers or (missing and count <= MANY):
+            text = f"{shown} is said to start before {told['losers']}"
+            self.report(13, "S2", f"{text}, not {sorted(other.shown for other in others)}")
+        elif not len(missing | losers) <= count <= len(others) or len(losers) != min(count, MANY):
+            self.report(13, "S2", f"{shown} is said to start before {count} others")
+        rivals = [one for one in others if one.shown in losers | missing]
+        self._rule_told_rightly(ab, shown, told["rule"], rivals)
 
     def _rule_told_rightly(self, ab: AB, shown: str, rule: str, others: list[AB]) -> None:
         """S2: what decided between the winner and the first that could have started, if any."""
-        rivals = [other for other in others if self.could_start(other)]
-        if rivals:
-            expected = self.rule_between(ab, rivals[0])
-            if rule != expected:
-                text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
-                self.report(13, "S2", text)
-        elif rule not in self._reasons(ab, others):
-            self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
+        rivals = [other for other in others if self.could_start(other, ab)]
+        if not rivals:
+            if rule not in self._reasons(ab, others):
+                self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
+            return
+        expected = self.rule_between(ab, rivals[0])
+        alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
+        if rule != expected and not {rule, expected} <= set(alike):
+            text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
+            self.report(13, "S2", text)
 
     def _reasons(self, ab: AB, others: list[AB]) -> set[str]:
         """Why an AB starts that nobody competes with: what keeps the others from it."""
@@ -177,12 +187,26 @@ class Selection(Streams):
             self._reason_told(ab)
 
     def _reason_told(self, ab: AB) -> None:
-        """Why an AB waits is told by its latest ``hold``, and is still so."""
+        """Why an AB waits is told by its latest ``hold``: true when told, and the rule still so."""
         if ab.said is None:
             self.report(13, "S1", f"nothing says why {ab.shown} waits")
-        elif not self._held_by(ab, *ab.said):
-            rule, by = ab.said
+            return
+        rule, by, when = ab.said
+        if when == self.now and not self._held_by(ab, rule, by):
             self.report(13, rule, f"{ab.shown} is said to wait by {rule} for {by}")
+        elif when != self.now and not self._held_still(ab, rule):
+            self.report(13, rule, f"{ab.shown} is still said to wait by {rule} for {by}")
+
+    def _held_still(self, ab: AB, rule: str) -> bool:
+        """Whether a rule keeps an AB waiting, whosesoever the turn is by now."""
+        kept = {
+            "S1": self.occupant(ab),
+            "S3": self.held_back(ab) or None,
+            "F2": self.refused_by_floor(ab),
+            "F6": self.refused_by_topic(ab),
+            "K1": self.refused_by_channel(ab),
+        }
+        return kept.get(rule) is not None or rule not in kept
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
         """Whether a reason to wait is true."""
@@ -227,4 +251,4 @@ class Selection(Streams):
         if ab is None or ab.phase != WAITING:
             self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")
         else:
-            ab.said = (record["rule"], record.get("by") or "")
+            ab.said = (record["rule"], record.get("by") or "", self.now)

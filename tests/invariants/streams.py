@@ -120,6 +120,8 @@ class Streams(Extensions):
     def _follows_rightly(self, ab: AB, new: bool) -> None:
         """O1: it follows the latest Command of its application that is still there."""
         latest = self.latest.get(ab.app)
+        if latest is not None and latest.command == "iu" and latest.phase != GONE:
+            return  # the latest Command may be one inside, which has ended
         if latest is None or latest.phase == GONE:
             if not (new or self._continues(ab)):
                 self.report(
