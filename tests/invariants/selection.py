@@ -120,24 +120,25 @@ class Selection(Streams):
         if told is None or told["winner"] != shown:
             self.report(13, "S2", f"{shown} starts, but nobody has decided so")
             return
-        others = self.competing(ab)
-        losers = set(told["losers"])
-        strangers = losers - {other.shown for other in others}
-        missing = {other.shown for other in others if other.devices & ab.devices} - losers
-        count = told["losers_count"]
-        if strangers or (missing and count <= MANY):
+        rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
+        losers, count = set(told["losers"]), told["losers_count"]
+        strangers = losers - {other.shown for other in rivals}
+        needed = {other.shown for other in rivals if other.devices & ab.devices}
+        if strangers:
+            text = f"{shown} is said to start before {self.ordered(strangers)}"
+            self.report(13, "S2", f"{text}, which could not have started")
+        elif count <= MANY and (needed - losers or len(losers) != count):
             text = f"{shown} is said to start before {told['losers']}"
-            self.report(13, "S2", f"{text}, not {sorted(other.shown for other in others)}")
-        elif not len(missing | losers) <= count <= len(others) or len(losers) != min(count, MANY):
-            self.report(13, "S2", f"{shown} is said to start before {count} others")
-        rivals = [one for one in others if one.shown in losers | missing]
+            self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
+        elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(rivals)):
+            self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
+        rivals = [other for other in rivals if other.shown in losers | needed]
         self._rule_told_rightly(ab, shown, told["rule"], rivals)
 
-    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, others: list[AB]) -> None:
+    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
         """S2: what decided between the winner and the first that could have started, if any."""
-        rivals = [other for other in others if self.could_start(other, ab)]
         if not rivals:
-            if rule not in self._reasons(ab, others):
+            if rule.startswith("S2") or rule == "S3":
                 self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
             return
         expected = self.rule_between(ab, rivals[0])
@@ -145,23 +146,6 @@ class Selection(Streams):
         if rule != expected and not {rule, expected} <= set(alike):
             text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
             self.report(13, "S2", text)
-
-    def _reasons(self, ab: AB, others: list[AB]) -> set[str]:
-        """Why an AB starts that nobody competes with: what keeps the others from it."""
-        reasons = {"S1"} | ({"S4"} if self.running else set())
-        holder = self.holder
-        if holder is not None and holder.app != ab.app:
-            reasons |= {"F2", "F3"}
-        for other in others:
-            if self.refused_by_floor(other, surely=True):
-                reasons.add("F2")
-            if self.refused_by_topic(other):
-                reasons.add("F6")
-            if self.refused_by_channel(other):
-                reasons.add("K1")
-            if self.held_back(other):
-                reasons.add("S3")
-        return reasons
 
     # At the end of an instant -------------------------------------------------------
 
