@@ -209,7 +209,6 @@ class Checker(Endings):
         composed = self.carries_floor(ab)
         self._run(ab)
         self.resume(ab)
-        self.last_started = ab.tree
         if not self.prima:
             ab.tree.suspended = False
             return
@@ -237,7 +236,7 @@ class Checker(Endings):
         ab.listening = False
         self.running[ab.name] = ab
         self.driven = self.driven or "locomotion" in ab.devices
-        ab.tree.begun = True
+        ab.tree.started = self.place
         ab.tree.spoken = ab.tree.spoken or ("speaker" in ab.devices and ab.command != "iu")
         ab.tree.engaged = ab.tree.engaged or ab.engages
 

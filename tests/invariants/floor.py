@@ -91,7 +91,7 @@ class Floor(Channel):
             self.floor.remove(tree)
         self.floor.append(tree)
         for other in self.trees.values():
-            if other.app != tree.app and other.begun and not other.suspended:
+            if other.app != tree.app and other.started >= 0 and not other.suspended:
                 other.suspended, other.rank = True, self.place + 1
                 self._was_told_suspended(other, tree)
 

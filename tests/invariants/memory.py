@@ -43,7 +43,6 @@ class Memory:
         self.running: dict[str, AB] = {}
         self.trees: dict[str, Tree] = {}
         self.floor: list[Tree] = []
-        self.last_started: Tree | None = None
         self.windows: list[Tree] = []
         """Open windows, the latest last."""
         self.latest: dict[str, AB] = {}

@@ -106,8 +106,8 @@ class Tree:
     app: str
     members: dict[str, AB] = field(default_factory=dict)
     windows: int = 0
-    begun: bool = False
-    """Whether something of it has started: only then can it be suspended (S2d)."""
+    started: int = -1
+    """The index of its latest start: a stream that has not begun is not suspended (S2d)."""
     spoken: bool = False
     engaged: bool = False
     cause: int | None = None

@@ -16,9 +16,11 @@ class Selection(Streams):
     """S1 to S3, by the numbers that S2 compares."""
 
     def active_app(self) -> str | None:
-        """S2b: whose stream is active: the floor's, else the one that started last if it is open."""
-        active = self.holder or self.last_started
-        return active.app if active is not None and active.open else None
+        """S2b: whose stream is active: the floor's, else the open one that started last."""
+        if self.holder is not None:
+            return self.holder.app
+        begun = [tree for tree in self.trees.values() if tree.open and tree.started >= 0]
+        return max(begun, key=lambda tree: tree.started).app if begun else None
 
     def key(self, ab: AB) -> tuple[Any, ...]:
         """S2a to S2f, and the order of requests for what is equal in all of them."""
@@ -74,6 +76,10 @@ class Selection(Streams):
         """S1: whether nothing keeps a waiting AB from starting in the place of another."""
         return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab, winner)
 
+    def kept_by_s3(self, ab: AB) -> bool:
+        """Whether nothing but S3 can keep a waiting AB from starting."""
+        return self.occupant(ab) is None and self.free_to_go(ab)
+
     def busy(self, ab: AB) -> bool:
         """Whether a running AB occupies one of the devices, and keeps it (S1, U5, X2)."""
         return any(
@@ -122,7 +128,7 @@ class Selection(Streams):
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
         losers, count = set(told["losers"]), told["losers_count"]
-        strangers = losers - {other.shown for other in rivals}
+        strangers = losers - {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
         needed = {other.shown for other in rivals if other.devices & ab.devices}
         if strangers:
             text = f"{shown} is said to start before {self.ordered(strangers)}"
