@@ -755,7 +755,9 @@ def drive(script: Script, policy: str = "prima") -> Run:
                     mediator.sees_user(value.name == "human.found")
                 case Occurred():
                     serial = value.data["serial"]
-                    chronicle.add("event", "user", event="touch", serial=serial, inbound=True)
+                    chronicle.add(
+                        "event", "environment", event="message", serial=serial, inbound=True
+                    )
                     for app, deeds in zip(apps.values(), events[serial][1], strict=False):
                         app.act(mediator, deeds, serial)
             settle()

@@ -62,11 +62,16 @@ class Streams(Extensions):
         elif ab.cause is not None:
             self._reaction_placed(ab, new)
         elif (window := self.window_of(ab.app)) is not None:
-            if ab.tree is not window:
+            if ab.tree is not window and not self._goes_on_here(ab):
                 text = f"{ab.name} is of {ab.tree.name}, but asked for in a window of {window.name}"
                 self.report(15, "C3", text)
         else:
             self._follows_rightly(ab, new)
+
+    def _goes_on_here(self, ab: AB) -> bool:
+        """U3, O2: whether it follows, in its own request or after one wanted now, in that tree."""
+        follows = any(self.abs[name].requested == self.now for name in ab.parents)
+        return follows or any(one.tree is ab.tree for one, _ in self.urgent)
 
     def _urgent_placed(self, ab: AB) -> None:
         """O2: it is never linked, and continues what it cancels, before all what ran."""
