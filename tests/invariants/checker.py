@@ -119,7 +119,7 @@ class Checker(Endings):
 
     def _asked_rightly(self, ab: AB, record: Record, new: bool) -> None:
         """What a request may say: its type's row, its stream, its cause, its unit's devices."""
-        for text in contradictions(record):
+        for text in [] if ab.inserted else contradictions(record):
             self.report(15, "K2", f"{ab.name} is {ab.command}, but {text}")
         if ab.unit is not None and not ab.devices <= ab.unit.devices:
             more = ", ".join(sorted(ab.devices - ab.unit.devices))

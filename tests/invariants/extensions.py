@@ -39,6 +39,9 @@ class Extensions(Floor):
         if ab.cause != (before.cause if first else None):
             self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
         before.cause = None
+        # It takes the other's place in the order of S2.
+        ab.requested, ab.place = before.requested, before.place
+        ab.followed_at = before.followed_at
         if rule == "X1":
             self._restores(ab, record)
         else:

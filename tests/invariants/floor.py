@@ -93,12 +93,7 @@ class Floor(Channel):
         for other in self.trees.values():
             if other.app != tree.app and other.started >= 0 and not other.suspended:
                 other.suspended, other.rank = True, self.place + 1
-                self._was_told_suspended(other, tree)
-
-    def _was_told_suspended(self, tree: Tree, by: Tree) -> None:
-        told = self.suspensions.pop(tree.name, None)
-        if told != by.name:
-            self.report(13, "C2", f"{by.name} suspends {tree.name}; the records name {told}")
+                self.suspended_by[other.name] = tree.name
 
     def resume(self, ab: AB) -> None:
         """C2: a suspended stream goes on. It keeps its place until the instant is over (S2d)."""
@@ -135,11 +130,15 @@ class Floor(Channel):
         if names != self.told_floor:
             self.report(13, "F3", f"the floor is {names}; the records say {self.told_floor}")
             self.told_floor = names
+        for tree, by in self.suspended_by.items():
+            told = self.suspensions.pop(tree, None)
+            if told != by:
+                self.report(13, "C2", f"{by} suspends {tree}; the records name {told}")
         for tree, by in self.suspensions.items():
             self.report(13, "C2", f"{tree} is not suspended by {by}, as a record says")
-        for tree in self.resumptions:
+        for tree in self.ordered(self.resumptions):
             self.report(13, "C2", f"{tree} does not resume, as a record says")
-        self.suspensions, self.resumptions = {}, set()
+        self.suspensions, self.suspended_by, self.resumptions = {}, {}, set()
 
     # Stops --------------------------------------------------------------------------
 

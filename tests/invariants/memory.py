@@ -110,6 +110,8 @@ class Memory:
         """X2: what was interrupted, for which reaction, and where the record is."""
         self.suspensions: dict[str, str] = {}
         """What ``suspend`` records have said since the latest start: streams, and by whom."""
+        self.suspended_by: dict[str, str] = {}
+        """The same as recomputed."""
         self.resumptions: set[str] = set()
         self.decision: Record | None = None
         """The latest decision, until its winner starts."""

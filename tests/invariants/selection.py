@@ -129,7 +129,11 @@ class Selection(Streams):
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
         losers, count = set(told["losers"]), told["losers_count"]
         strangers = losers - {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
-        needed = {other.shown for other in rivals if other.devices & ab.devices}
+        needed = {
+            other.shown
+            for other in rivals
+            if other.devices & ab.devices and not self.composes(ab, other)
+        }
         if strangers:
             text = f"{shown} is said to start before {self.ordered(strangers)}"
             self.report(13, "S2", f"{text}, which could not have started")
