@@ -46,6 +46,7 @@ class Extensions(Floor):
             self._restores(ab, record)
         else:
             self._connects(ab, before, record)
+        before.put_behind = True
         before.parents.add(ab.name)
         before.phase = LINKED
         self.waiting.pop(before.name, None)
@@ -139,6 +140,8 @@ class Extensions(Floor):
         tree.requested = self.place
         if ab.parents or ab.unit is not None or ab.inserted:
             return
+        if any(one.app == ab.app for one in self.windows):
+            return  # C3 and X3 both claim it
         held = [other for other in self.trees.values() if other.app == ab.app and other.until]
         if held and not any(tree is other for other in held) and not self.joined_now(tree):
             self.report(10, "X3", f"{ab.name} does not join {held[0].name}, which is held for it")

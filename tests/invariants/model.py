@@ -45,6 +45,8 @@ class AB:
     inserted: str = ""
     put_before: str = ""
     """What it was put in before."""
+    put_behind: bool = False
+    """Whether something was put in before it (X1, X4)."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0

@@ -47,9 +47,19 @@ class Selection(Streams):
         """S2: whether the first goes before the second."""
         return self.key(ab) < self.key(other)
 
+    def rank_is_open(self, ab: AB, other: AB) -> bool:
+        """X1, X4: whether S2c, e or f would decide of what was put in, or waited for that."""
+        put_in = any(one.inserted or one.put_behind for one in (ab, other))
+        return put_in and self.rule_between(ab, other) in ("S2c", "S2e", "S2f")
+
     def competing(self, ab: AB) -> list[AB]:
-        """All others that wait, outside units; the first by S2 first."""
-        others = [one for one in self.waiting.values() if one is not ab and one.unit is None]
+        """All others that wait, outside units, and not because of it (X2); by S2."""
+        aside = [one for one, by, _ in self.gave_way if by is ab]
+        others = [
+            one
+            for one in self.waiting.values()
+            if one is not ab and one.unit is None and one not in aside
+        ]
         return sorted(others, key=self.key)
 
     def free_to_go(self, ab: AB) -> bool:
@@ -105,9 +115,9 @@ class Selection(Streams):
         if ab.leaves:
             self.channel_kept(ab, shown)
         for other in self.competing(ab):
-            if not self.outranks(other, ab) or not self.free_to_go(other):
-                continue
-            self._passed_over(other, ab, shown)
+            if self.outranks(other, ab) and self.free_to_go(other):
+                if not self.rank_is_open(ab, other):
+                    self._passed_over(other, ab, shown)
 
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
         """S2, S3: what outranks the AB that starts must be unable to start in its place."""
@@ -153,6 +163,8 @@ class Selection(Streams):
             return
         expected = self.rule_between(ab, rivals[0])
         alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
+        if self.rank_is_open(ab, rivals[0]):
+            return
         if rule != expected and not {rule, expected} <= set(alike):
             text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
             self.report(13, "S2", text)
@@ -183,7 +195,8 @@ class Selection(Streams):
     def _reason_told(self, ab: AB) -> None:
         """Why an AB waits is told by its latest ``hold``: true when told, and the rule still so."""
         if ab.said is None:
-            self.report(13, "S1", f"nothing says why {ab.shown} waits")
+            if not ab.interrupted:  # the record of that says it
+                self.report(13, "S1", f"nothing says why {ab.shown} waits")
             return
         rule, by, when = ab.said
         if when == self.now and not self._held_by(ab, rule, by):
@@ -200,7 +213,7 @@ class Selection(Streams):
             "F6": self.refused_by_topic(ab),
             "K1": self.refused_by_channel(ab),
         }
-        return kept.get(rule) is not None or rule not in kept
+        return kept.get(rule) is not None or rule not in kept or self.restoring(ab)
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
         """Whether a reason to wait is true."""

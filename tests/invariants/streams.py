@@ -69,9 +69,10 @@ class Streams(Extensions):
             self._follows_rightly(ab, new)
 
     def _goes_on_here(self, ab: AB) -> bool:
-        """U3, O2: whether it follows, in its own request or after one wanted now, in that tree."""
+        """Whether it follows in that tree: in its own request, one wanted now, or a hold (X3)."""
         follows = any(self.abs[name].requested == self.now for name in ab.parents)
-        return follows or any(one.tree is ab.tree for one, _ in self.urgent)
+        urgent = any(one.tree is ab.tree for one, _ in self.urgent)
+        return follows or urgent or self.joined_now(ab.tree)
 
     def _urgent_placed(self, ab: AB) -> None:
         """O2: it is never linked, and continues what it cancels, before all what ran."""
