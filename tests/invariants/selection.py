@@ -115,9 +115,9 @@ class Selection(Streams):
         if ab.leaves:
             self.channel_kept(ab, shown)
         for other in self.competing(ab):
-            if self.outranks(other, ab) and self.free_to_go(other):
-                if not self.rank_is_open(ab, other):
-                    self._passed_over(other, ab, shown)
+            before = self.outranks(other, ab) and not self.rank_is_open(ab, other)
+            if before and self.free_to_go(other):
+                self._passed_over(other, ab, shown)
 
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
         """S2, S3: what outranks the AB that starts must be unable to start in its place."""
