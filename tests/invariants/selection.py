@@ -138,7 +138,8 @@ class Selection(Streams):
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
         losers, count = set(told["losers"]), told["losers_count"]
-        strangers = losers - {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
+        allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
+        strangers = losers - allowed
         needed = {
             other.shown
             for other in rivals
@@ -150,7 +151,7 @@ class Selection(Streams):
         elif count <= MANY and (needed - losers or len(losers) != count):
             text = f"{shown} is said to start before {told['losers']}"
             self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
-        elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(rivals)):
+        elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
         rivals = [other for other in rivals if other.shown in losers | needed]
         self._rule_told_rightly(ab, shown, told["rule"], rivals)

@@ -119,7 +119,7 @@ class Streams(Extensions):
 
     def _continues(self, ab: AB) -> bool:
         """O3, X3: whether a state was left whose stream this may go on with, or one was held."""
-        cut = any(one.ab.tree is ab.tree for one in self.cuts)
+        cut = any(one.ab.tree is ab.tree or one.rule == "O3" for one in self.cuts)
         left = any(other.state != ab.state for other in ab.tree.members.values() if other is not ab)
         return cut or left or self.joined_now(ab.tree)
 
