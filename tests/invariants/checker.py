@@ -56,7 +56,7 @@ class Checker(Endings):
             self.now = lapse
             for ab in self.waiting.values():
                 if ab.leaves and self.prima:
-                    self.waits_rightly(ab)
+                    self.late(ab)
         self.now = time
         self._new_instant()
 

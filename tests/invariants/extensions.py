@@ -164,6 +164,7 @@ class Extensions(Floor):
             self.report(10, "X3", f"{name} was to be held until {tree.until:g}")
         elif outcome == "left":
             self.left.setdefault((tree.app, tree.hold_state), name)
+            tree.left_at = self.now
         tree.until = tree.hold = None
         if outcome == "joined":
             tree.joined = self.place

@@ -121,6 +121,8 @@ class Tree:
     """Until when (s) it is held."""
     joined: int = -1
     """The index of the record by which a request joined it, being held."""
+    left_at: float = -1
+    """When the state was left for which it was held."""
     requested: int = -1
     """The index of the latest request."""
     suspended: bool = False

@@ -185,13 +185,17 @@ class Selection(Streams):
             self.report(5, self.policy, f"{ab.shown} waits while its devices are free")
 
     def _waits_for_a_reason(self, ab: AB) -> None:
+        self.late(ab)
+        if len(self.waiting) <= MANY and not self.restoring(ab):
+            self._reason_told(ab)
+
+    def late(self, ab: AB) -> None:
+        """Invariants 5 and 6: an AB that could start by now does not wait."""
         if self.free_to_go(ab) and not self.held_back(ab) and not self.busy(ab):
             if self.occupant(ab) is None:
                 self.report(5, "S1", f"{ab.shown} waits while its devices are free")
             if ab.cause is not None and not ab.leaves:
                 self.report(6, "S1", f"the reaction {ab.shown} is late")
-        if len(self.waiting) <= MANY:
-            self._reason_told(ab)
 
     def _reason_told(self, ab: AB) -> None:
         """Why an AB waits is told by its latest ``hold``: true when told, and the rule still so."""

@@ -121,7 +121,8 @@ class Streams(Extensions):
         """O3, X3: whether a state was left whose stream this may go on with, or one was held."""
         cut = any(one.ab.tree is ab.tree or one.rule == "O3" for one in self.cuts)
         left = any(other.state != ab.state for other in ab.tree.members.values() if other is not ab)
-        return cut or left or self.joined_now(ab.tree)
+        held = self.joined_now(ab.tree) or ab.tree.left_at == self.now
+        return cut or left or held
 
     def _follows_rightly(self, ab: AB, new: bool) -> None:
         """O1: it follows the latest Command of its application that is still there."""
