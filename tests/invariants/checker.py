@@ -71,7 +71,7 @@ class Checker(Endings):
             self.unloaded.add(record["app"])
 
     def _decision(self, record: Record) -> None:
-        if self.decision is not None:
+        if self.decision is not None and self.prima:
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
         self.decision = record
 
