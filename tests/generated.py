@@ -318,6 +318,7 @@ LOOPS = (
     "<tracking-human/>",
 )
 HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}</on></speak>'
+THROWN = "thrown.here"
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
 
 
@@ -372,7 +373,18 @@ class Author:
             for _ in range(self.some(0, 2))
         )
         hints = self.hold(4) + self.connect(4)
-        return f'<form id="{self.forms[index]}"{hints}>{items}{handlers}</form>'
+        watch = self.watch(index) if self.chance(8) else ""
+        return f'<form id="{self.forms[index]}"{hints}>{watch}{items}{handlers}</form>'
+
+    def watch(self, index: int) -> str:
+        """A condition that is true on entry; what it raises may leave the state at once."""
+        ahead = self.forms[index + 1 :]
+        leaving = [f'<goto next="#{form}"/>' for form in ahead]
+        if not self.lively:
+            leaving.append("<exit/>")
+        content = self.command(False) if self.chance(2) else ""
+        content += self.one(leaving) if leaving and self.chance(2) else ""
+        return f'<watch name="w" when="true"/><on event="w">{content}</on>'
 
     def hold(self, of: int) -> str:
         """X3: now and then the hint that the stream be kept open."""
@@ -389,7 +401,14 @@ class Author:
         return re.sub(r"^<[\w-]+", r'\g<0> restartable="true"', text)
 
     def item(self, index: int) -> str:
-        kind = self.some(0, 5)
+        kind = self.some(0, 7)
+        if kind == 6:
+            # A unit behind speech: it is linked until that has ended.
+            return f"<block><speak>First.</speak></block>{self.unit(index)}"
+        if kind == 7:
+            # What is wanted now, behind speech of one's own.
+            said = "".join(f"<speak>{word}.</speak>" for word in ("One", "Two")[: self.some(1, 2)])
+            return f"<block>{said}{self.one(NOW)}{self.command(False)}</block>"
         if kind < 3:
             return f"<block{self.hold(6)}>{self.content(index, sends=True)}</block>"
         if kind < 5:
@@ -406,9 +425,19 @@ class Author:
             parts.append(f"<filled>{self.content(index, unit=unit)}</filled>")
         if self.chance(4):
             parts.append(self.handler(index, self.one(EVENTS), unit))
+        if self.chance(8):
+            parts.append(self.leaving(index))
         hints = self.hold(6) + self.connect(6)
         name = f'name="q{next(self.fields)}" type="boolean"'
         return f"<field {name}{hints}>{''.join(parts)}</field>"
+
+    def leaving(self, index: int) -> str:
+        """A handler that leaves the state while a question may be asked."""
+        leave = f'<goto next="#{self.one(self.forms)}"/>'
+        if self.chance(4) and not self.lively:
+            leave = "<exit/>"
+        said = "<speak>Bye.</speak>" if self.chance(3) else ""
+        return f'<on event="{self.one(EVENTS)}">{said}{leave}</on>'
 
     def unit(self, index: int) -> str:
         parts = []
@@ -419,6 +448,11 @@ class Author:
                 parts.append(f"<block>{self.content(index, unit=True)}</block>")
         if self.chance(4):
             parts.append(self.handler(index, self.one(EVENTS), True))
+        if self.chance(6):
+            # A handler inside that is reached by throw alone.
+            thrown = f'<throw event="{THROWN}"/>'
+            parts.append(f"<block>{thrown}</block>")
+            parts.append(f'<on event="{THROWN}">{self.content(index, unit=True)}</on>')
         longest = f' longest="{self.some(1, 6000)}ms"' if self.chance(3) else ""
         return f"<iu{longest}>{''.join(parts)}</iu>"
 
@@ -491,6 +525,10 @@ class Author:
         return self.restart(f"<iu{longest}>{''.join(inside)}</iu>")
 
 
+def _when(event: tuple[int, Inbound]) -> int:
+    return event[0]
+
+
 @st.composite
 def plays(draw: Any, lively: bool = False) -> Play:
     """Two or three applications; ``lively``: every user answers and every device ends."""
@@ -508,7 +546,14 @@ def plays(draw: Any, lively: bool = False) -> Play:
         events.append((time + draw(st.integers(1, 3000)), Emergency(False, draw(st.booleans()))))
     if not lively and draw(st.integers(1, 4)) == 4:
         events.append((draw(st.integers(1, 8000)), Unloaded(draw(st.sampled_from(names)))))
-    events.sort(key=lambda event: event[0])
+    events.sort(key=_when)
+    if len(names) == 3 and draw(st.booleans()):
+        # All three may react to one event.
+        both = '<on event="touch"><speak>Yes.</speak><face-human/></on></prima>'
+        documents = tuple(text.replace("</prima>", both) for text in documents)
+        events = sorted(
+            [*events, (draw(st.integers(1, 9000)), Occurred("touch", "user"))], key=_when
+        )
     seed = draw(st.integers(0, 10_000))
     world = World(seed, lacks=draw(st.integers(1, 5)) == 5)
     if not lively:
@@ -596,7 +641,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "set-position-and-direction": {"x": 1.0, "y": 2.0, "heading": 3.0},
 }
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
-GROUPED = tuple(name for name in PIECES if name != "q-and-a")
+GROUPED = tuple(name for name in PIECES if name not in ("q-and-a", "stop-moving"))
 ALL = (*TABLE_4_2, *DANCES)
 
 
@@ -663,6 +708,8 @@ class Requester:
         """The steps that may be asked for where the requester is: in its unit, or not."""
         steps: list[Step] = []
         for what, after in zip(asked.whats, asked.after, strict=True):
+            if what == "stop-moving" and steps:
+                what = "turn"  # what is wanted now begins a request
             names = (what,) if isinstance(what, str) else what
             if self.unit is not None and not all(
                 name in PIECES and TABLE[name].occupied(command(name).text) <= self.devices
@@ -753,6 +800,9 @@ def drive(script: Script, policy: str = "prima") -> Run:
                     mediator.sees_user(value.name == "human.found")
                 case Occurred():
                     serial = value.data["serial"]
+                    chronicle.add(
+                        "event", "environment", event="message", serial=serial, inbound=True
+                    )
                     for app, deeds in zip(apps.values(), events[serial][1], strict=False):
                         app.act(mediator, deeds, serial)
             settle()

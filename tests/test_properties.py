@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from prima.messages import Record
 from prima.session import Session
 from tests.generated import (
+    APPS,
     Play,
     Run,
     Script,
@@ -49,7 +50,7 @@ def examples(percent: int) -> settings:
 
 def violations(run: Run, policy: str = "prima") -> list[str]:
     """What a run violates."""
-    return check(run.records, policy) + run.problems
+    return check(run.records, policy, APPS) + run.problems
 
 
 @given(plays())

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from prima.interpreter.reader import read_document
 from prima.messages import (
     Command,
@@ -456,3 +458,41 @@ def test_of_those_who_have_waited_too_long_the_first_by_rank_starts_first() -> N
         stage.select()
     started = [record["behavior"] for record in stage.records if record["phase"] == "start"]
     assert started.index("c#2") == len(started) - 1
+
+
+# What the records tell, against the rules -----------------------------------------------
+
+IN_ORDER = ("fa", "ea", "xa")
+SEARCH = "<block><active-sensing-human>Where are you?</active-sensing-human></block>"
+
+
+@pytest.mark.xfail(strict=True, reason="F5: a loop that O2 cuts is not stopped")
+def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> None:
+    # The search turns the robot. What is wanted now says something, and moves nothing.
+    body = f'<form id="f1">{SEARCH}<on event="touch"><speak order="now">Wait.</speak></on></form>'
+    run = perform(play(body, (10, Occurred("touch", "user"))))
+    assert check(run.records, declared=IN_ORDER) == []
+
+
+@pytest.mark.xfail(strict=True, reason="S3 keeps the loser back; S2b did not decide")
+def test_a_decision_names_no_loser_that_s3_keeps_back() -> None:
+    # Had the turn not started, "Hm." would still hold the speaker back from the search.
+    reaction = '<par><turn angle="5"/><speak>Hm.</speak></par>'
+    body = f'<form id="f1">{SEARCH}<on event="touch">{reaction}</on></form>'
+    run = perform(play(body, (10, Occurred("touch", "user"))))
+    assert check(run.records, declared=IN_ORDER) == []
+
+
+@pytest.mark.xfail(strict=True, reason="S2c without a parent that has ended, and no window")
+def test_s2c_what_cancels_a_tree_follows_nothing_that_has_ended() -> None:
+    # fa has waited for the wheels since 5 ms. What ea wants now cancels its own turn (O2):
+    # its parent has not ended, so the earlier request goes first (S2e).
+    waits = '<form id="f1"><on event="corner" reactive="false"><turn angle="5"/></on></form>'
+    urgent = (
+        '<form id="f1"><block><set-direction heading="5"/></block>'
+        '<on event="touch" reactive="false"><turn angle="5" order="now"/></on></form>'
+    )
+    documents = (HEAD.format("fa", waits), HEAD.format("ea", urgent))
+    events = ((5, Occurred("corner")), (10, Occurred("touch", "user")))
+    run = perform(Play(documents, (0, 0), events, World()))
+    assert check(run.records, declared=IN_ORDER) == []

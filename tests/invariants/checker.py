@@ -1,0 +1,306 @@
+"""The checker: it goes through the records of one run, and asks every family of rules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tests.invariants.endings import Endings
+from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
+from tests.invariants.table import contradictions
+
+
+class Checker(Endings):
+    """Goes through the records of one run, in order."""
+
+    def run(self) -> list[str]:
+        """All violations, in the order in which they show."""
+        takes: dict[str, Callable[[Record], None]] = {
+            "load": self._load,
+            "unload": self._unload,
+            "request": self._request,
+            "window": self.note_window,
+            "listening": self._listening,
+            "stream-end": self.note_stream_end,
+            "emergency": self.note_emergency,
+            "decision": self._decision,
+            "start": self._start,
+            "end": self.note_end,
+            "fail": self.note_fail,
+            "cancel": self.note_cancel,
+            "event": self.note_event,
+            "transferred": self.note_serial,
+            "interrupt": self.note_interrupt,
+            "held": self.note_held,
+            "substitute": self.note_substitute,
+            "hold": self.note_hold,
+            "floor": self.note_floor,
+            "suspend": self.note_suspend,
+            "resume": self.note_resume,
+            "stop": self.note_stop,
+        }
+        for place, record in enumerate(self.records):
+            if record["time"] != self.now:
+                self._instant_over()
+                self._until(record["time"])
+            self.place = place
+            take = takes.get(record["phase"])
+            if take is not None:
+                take(record)
+        self._instant_over()
+        return self.found
+
+    def _until(self, time: float) -> None:
+        """Go on to the next instant that is recorded, past the moment in which K1 may lapse."""
+        lapse = self.lapses_at
+        if self.now < lapse < time and not self.in_view and not self.halted:
+            self.now = lapse
+            for ab in self.waiting.values():
+                if ab.leaves and self.prima:
+                    self.late(ab)
+        self.now = time
+        self._new_instant()
+
+    def _load(self, record: Record) -> None:
+        if record["actor"] == "mediator":
+            self.apps.setdefault(record["app"], len(self.apps))
+            self.gone_apps.discard(record["app"])
+
+    def _unload(self, record: Record) -> None:
+        if record["actor"] == "mediator":
+            self.gone_apps.add(record["app"])
+            self.unloaded.add(record["app"])
+
+    def _decision(self, record: Record) -> None:
+        if self.decision is not None and self.prima:
+            self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
+        self.decision = record
+
+    def _listening(self, record: Record) -> None:
+        ab = self.running.get(base(record["behavior"]))
+        if ab is not None:
+            ab.listening = True
+
+    # Requests -----------------------------------------------------------------------
+
+    def _request(self, record: Record) -> None:
+        name, app = record["behavior"], record["app"]
+        if name in self.abs:
+            self.report(3, "U1", f"{name} is requested twice")
+            return
+        self._may_ask(record)
+        new = record["tree"] not in self.trees
+        tree = self.trees.setdefault(record["tree"], Tree(record["tree"], app))
+        ab = self.abs[name] = self._made(record, tree)
+        before = self.abs.get(ab.put_before) if ab.inserted else None
+        tree.members[name] = ab
+        self.wants_hold(tree, ab, record)
+        if ab.unit is not None:
+            ab.unit.content.append(record)
+        if ab.inserted:
+            self.put_in(ab, before, record)
+        if ab.parents:
+            ab.phase = LINKED
+        else:
+            self._waits_from_now(ab)
+        if record.get("order") == "now":
+            self.urgent.append((ab, self.place))
+        self._asked_rightly(ab, record, new)
+        if record.get("order") == "now":
+            self.maybe_silence(ab)
+        if ab.unit is None and not ab.inserted:
+            self.latest[app] = ab
+
+    def _waits_from_now(self, ab: AB) -> None:
+        """C3: what is asked for in a window counts as following what has just ended (S2c)."""
+        window = self.window_of(ab.app)
+        self.wait(ab)
+        if window is not None and not ab.inserted:
+            ab.followed_at = self.now
+
+    def _asked_rightly(self, ab: AB, record: Record, new: bool) -> None:
+        """What a request may say: its type's row, its stream, its cause, its unit's devices."""
+        for text in [] if ab.inserted else contradictions(record):
+            self.report(15, "K2", f"{ab.name} is {ab.command}, but {text}")
+        if ab.unit is not None and not ab.devices <= ab.unit.devices:
+            more = ", ".join(sorted(ab.devices - ab.unit.devices))
+            self.report(15, "U5", f"{ab.name} needs {more}, which {ab.unit.name} does not own")
+        if ab.unit is not None and (ab.leaves or ab.feedback):
+            self.report(15, "U4", f"{ab.name} is {ab.command} in {ab.unit.name}")
+        if not ab.inserted and self.prima:
+            self.caused_rightly(ab, record)
+        if self.prima:
+            self.placed_rightly(ab, new)
+
+    def _may_ask(self, record: Record) -> None:
+        """O3, E2, X6: nothing of a state that was left, or of an application that has ended."""
+        name, app = record["behavior"], record["app"]
+        if (app, record.get("state")) in self.left and record.get("unit") not in self.nested:
+            other = self.left[app, record.get("state")]
+            self.report(3, "O3", f"{other} was given up, but {name} is of the same state")
+        if app in self.gone_apps and not record.get("unit"):
+            self.report(3, "E2", f"{name} is requested, but {app} has ended")
+        if record["command"] in self.lacking:
+            self.report(3, "X6", f"{name} is requested, but the robot lacks {record['command']}")
+
+    def _made(self, record: Record, tree: Tree) -> AB:
+        """The AB that a request asks for."""
+        name = record["behavior"]
+        parents = record.get("parents") or ([record["parent"]] if record.get("parent") else [])
+        names = {base(parent) for parent in parents}
+        unknown = [parent for parent in names if parent not in self.abs]
+        if unknown:
+            self.report(4, "U3", f"{name} follows {unknown[0]}, which was never requested")
+        unit = self.abs.get(base(record["unit"])) if record.get("unit") else None
+        if record.get("inserted"):
+            names.discard(base(record["before"]))  # the loop of it that has ended
+        cause = record.get("cause") if record.get("reactive") else None
+        return AB(
+            name=name,
+            command=record["command"],
+            app=record["app"],
+            tree=tree,
+            devices=frozenset(record["devices"]),
+            high=record["priority"] == "high",
+            leaves=bool(record.get("leaves")),
+            engages=bool(record.get("engages")),
+            feedback=bool(record.get("feedback")),
+            question=record["command"] == "q-and-a",
+            state=record.get("state"),
+            unit=unit,
+            cause=cause,
+            reacted_to=cause,
+            parents={one for one in names if one in self.abs and self.abs[one].phase != GONE},
+            requested=self.now,
+            place=self.place,
+            restartable=bool(record.get("restartable")),
+            motion=record.get("motion") or "" if unit is None else "",
+            connect=bool(record.get("connect")),
+            inserted=record.get("inserted") or "",
+            put_before=base(record.get("before") or ""),
+        )
+
+    # Starts -------------------------------------------------------------------------
+
+    def _start(self, record: Record) -> None:
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None:
+            self.report(3, "U1", f"{record['behavior']} starts and was never requested")
+            return
+        self.close_trees()
+        self._may_run(ab, record)
+        if self.halted:
+            self.report(2, "E5", f"{record['behavior']} starts during the emergency stop")
+        self._devices_free(ab, record["behavior"])
+        if ab.interrupted:
+            self.starts_again(ab, record)
+        if ab.unit is None:
+            self._start_outside(ab, record)
+        else:
+            self._start_inside(ab, record)
+
+    def _start_outside(self, ab: AB, record: Record) -> None:
+        shown = record["behavior"]
+        if self.prima and ab.phase == WAITING:
+            self.allowed(ab, shown)
+            self.decided_rightly(ab, shown)
+        self.channel_connected(ab)
+        self.stands_right(ab)
+        reaction = self._reaction_of(ab, record)
+        composed = self.carries_floor(ab)
+        self._run(ab)
+        self.resume(ab)
+        if not self.prima:
+            ab.tree.suspended = False
+            return
+        if reaction is not None or not composed:
+            self.take_floor(ab, reaction)
+        self.floor_told_rightly()
+
+    def _start_inside(self, ab: AB, record: Record) -> None:
+        unit = ab.unit
+        assert unit is not None
+        self.started_inside.append(ab)
+        if unit.phase != RUNNING:
+            self.report(4, "U5", f"{ab.shown} starts, but its unit {unit.shown} does not run")
+        if self.prima and ab.leaves:
+            self.channel_kept(ab, record["behavior"])
+        self._run(ab)
+
+    def _run(self, ab: AB) -> None:
+        self.waiting.pop(ab.name, None)
+        ab.phase = RUNNING
+        ab.starts += 1
+        ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
+        ab.loop += 1 if ab.feedback else 0
+        ab.cause = None
+        ab.listening = False
+        self.running[ab.name] = ab
+        self.driven = self.driven or "locomotion" in ab.devices
+        ab.tree.started = self.place
+        ab.tree.spoken = ab.tree.spoken or ("speaker" in ab.devices and ab.command != "iu")
+        ab.tree.engaged = ab.tree.engaged or ab.engages
+
+    def _may_run(self, ab: AB, record: Record) -> None:
+        """Invariants 3 and 4: asked for, not over, not running, and its parents have ended."""
+        shown = record["behavior"]
+        if ab.phase == GONE:
+            self.report(3, "U1", f"{shown} starts again: it was over")
+        elif ab.phase == RUNNING:
+            self.report(3, "U1", f"{shown} starts and runs already")
+        if ab.parents:
+            self.report(4, "U3", f"{shown} starts before {', '.join(sorted(ab.parents))} has ended")
+        expected = f"{ab.name}.{ab.loop + 1}" if ab.feedback else ab.name
+        if shown != expected:
+            self.report(3, "U2", f"{shown} starts where {expected} was due")
+        if frozenset(record["devices"]) != ab.devices or record["tree"] != ab.tree.name:
+            self.report(3, "U1", f"{shown} starts as something else than was requested")
+        if ab.app in self.gone_apps and ab.unit is None:
+            self.report(3, "E2", f"{shown} starts, but {ab.app} has ended")
+
+    def _devices_free(self, ab: AB, shown: str) -> None:
+        """Invariant 1; a unit's own Commands run on its devices."""
+        for other in self.running.values():
+            both = ab.devices & other.devices
+            if both and self.composes(ab, other):
+                continue
+            if both and other is not ab and not ab.inside(other) and not other.inside(ab):
+                what = ", ".join(sorted(both))
+                self.report(1, "S1", f"{shown} starts while {other.shown} runs on {what}")
+
+    def _reaction_of(self, ab: AB, record: Record) -> int | None:
+        """The event that a starting AB reacts to. E4's bound makes a reaction of what starved."""
+        if ab.cause is None and record.get("reactive"):
+            self.extra_reactions -= 1
+            return self.extra_reactions
+        return ab.cause
+
+    # The end of an instant ----------------------------------------------------------
+
+    def _instant_over(self) -> None:
+        self.close_trees()
+        self.holds_rightly()
+        self.interruptions()
+        for cut in self.cuts:
+            self.justified(cut)
+        self.channel_kept_inside()
+        if self.prima:
+            self._told_rightly()
+        for tree in self.resumed:
+            tree.rank = tree.rank if tree.suspended else 0
+        if self.halted:
+            for ab in self.running.values():
+                self.report(2, "E5", f"{ab.shown} runs during the emergency stop")
+            return
+        for ab in self.waiting.values():
+            self.waits_rightly(ab)
+            if self.in_view:
+                self.seen.add(ab.name)
+
+    def _told_rightly(self) -> None:
+        """What the mediator says of an instant that is over."""
+        if self.decision is not None:
+            self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
+        self.floor_told_rightly()
+        self.stopped_rightly()
+        self.ends_told_rightly()
+        self.left_waiting()

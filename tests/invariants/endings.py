@@ -1,0 +1,135 @@
+"""Ends: who may end what (invariants 2 and 3), by O2, O3, U5 and E1 to E5."""
+
+from __future__ import annotations
+
+from tests.invariants.model import AB, GONE, RUNNING, Cut, Record, base
+from tests.invariants.selection import Selection
+
+
+class Endings(Selection):
+    """What becomes of ABs that run, and why others are taken out."""
+
+    def maybe_silence(self, urgent: AB) -> None:
+        """O2: what runs on other devices finishes unheard, and nothing is recorded of that."""
+        for tree in self.trees.values():
+            devices = self.tree_devices.get(tree.name, frozenset()).union(
+                *(ab.devices for ab in tree.members.values() if ab is not urgent)
+            )
+            if tree.app == urgent.app and devices & urgent.devices:
+                for ab in tree.members.values():
+                    ab.silent = ab.silent or ab.phase == RUNNING
+
+    def note_end(self, record: Record) -> None:
+        ab = self.running_one(record, "ends")
+        if ab is None:
+            return
+        self.moved(ab, record)
+        inner = [other for other in self.running.values() if other.inside(ab)]
+        if inner:
+            self.report(2, "U5", f"{ab.shown} ends while {inner[0].shown} runs in it")
+        if ab.feedback and not record["goal"]:
+            self._loop_over(ab)
+            if record["outcome"] == "again":
+                self.wait(ab)
+                ab.followed_at = self.now
+                return
+            if not ab.silent and ab.app not in self.gone_apps:
+                # Given up before its goal: only O3 is left as a reason, so its state is over.
+                self._say_left(ab)
+        self.remove(ab)
+
+    def _say_left(self, ab: AB) -> None:
+        """O3 has no record of its own; no later request may then be of that state."""
+        self.left.setdefault((ab.app, ab.state), ab.shown)
+
+    def note_fail(self, record: Record) -> None:
+        if not record.get("behavior"):
+            return  # E3: refused before it entered working memory
+        ab = self.abs.get(base(record["behavior"]))
+        # A unit fails with the Command in it (U4); it is running then as well.
+        ab = self.running_one(record, "fails") if ab is not None else None
+        if ab is None:
+            return
+        if record["rule"] == "U5":
+            for inner in self.running.values():
+                inner.silent = inner.silent or inner is ab or inner.inside(ab)
+            return  # a unit out of time ends when the Command of it that runs has
+        self._loop_over(ab)
+        if not ab.inserted:  # what it was put in for goes on without it
+            self.failed.append(ab)
+        self.remove(ab)
+
+    def _loop_over(self, ab: AB) -> None:
+        """F5: a loop is over, and nothing moves the robot on unless something starts now."""
+        if ab.moves and ab.unit is None:
+            self.halting[ab.name] = ab
+
+    def note_cancel(self, record: Record) -> None:
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None or ab.phase == GONE:
+            self.report(3, "O2", f"{record['behavior']} is cancelled, but it is not there")
+            return
+        was, rule = ab.phase, record["rule"]
+        if record["outcome"] == "halted":
+            if was != RUNNING:
+                self.report(3, "E5", f"{ab.shown} is halted, but it is {was}")
+            if not self.halted:
+                self.report(2, "E5", f"{ab.shown} is halted without an emergency stop")
+            if was == RUNNING:
+                self._loop_over(ab)
+            self.wait(ab)
+            return
+        # What the tree wanted when the first of it was taken out, and what it was asked since.
+        devices = self.tree_devices.get(ab.tree.name, frozenset()).union(
+            *(one.devices for one in ab.tree.members.values())
+        )
+        self.tree_devices[ab.tree.name] = devices
+        self.cuts.append(Cut(ab, was, rule, self.place, devices))
+        if was == RUNNING:
+            self._loop_over(ab)
+        self.remove(ab, ended=False)
+
+    def justified(self, cut: Cut) -> None:
+        """Invariants 2 and 3: why an AB was taken out of working memory."""
+        ab, number = cut.ab, 2 if cut.was == RUNNING else 3
+        shown = f"{ab.shown} ({cut.was}) is cancelled"
+        whole = [other.ab for other in self.cuts if ab.inside(other.ab)]
+        """Units that are cancelled with it: what is in them goes with them."""
+        match cut.rule:
+            case "O2":
+                wanted = [
+                    one.devices
+                    for one, place in self.urgent
+                    if one.app == ab.app and place > cut.place
+                ]
+                devices = ab.devices.union(*(unit.devices for unit in whole))
+                if cut.was != RUNNING:
+                    devices = cut.tree_devices
+                if not any(one & devices for one in wanted):
+                    self.report(number, "O2", f"{shown} without a Command wanted now")
+            case "O3" | "E2":
+                if cut.was == RUNNING and not ab.listening and not whole:
+                    self.report(2, "O3", f"{shown}: it does not listen")
+                if cut.rule == "O3":
+                    self._say_left(ab)
+                    if self.last_state[ab.app, ab.state] > cut.place:
+                        self.report(number, "O3", f"{shown}, but its state goes on")
+                elif ab.app not in self.unloaded:
+                    self.report(number, "E2", f"{shown}, but {ab.app} goes on")
+            case "U5":
+                if cut.was == RUNNING and not ab.listening:
+                    self.report(2, "U5", f"{shown}: it does not listen")
+            case "E1":
+                near = [one for one in self.failed if one.tree is ab.tree]
+                if not near:
+                    self.report(number, "E1", f"{shown}, but nothing of its tree has failed")
+                if cut.was == RUNNING and not any(ab.inside(one.unit) for one in near if one.unit):
+                    self.report(2, "E1", f"{shown}, but nothing of its unit has failed")
+            case "X2":
+                if not any(ab.inside(unit) for unit, _, _ in self.gave_way):
+                    self.report(number, "X2", f"{shown}, but no unit around it is interrupted")
+            case "E5":
+                if not (self.released or self.halted):
+                    self.report(number, "E5", f"{shown} without an emergency")
+            case rule:
+                self.report(number, str(rule), f"{shown} by a rule that cancels nothing")

@@ -1,0 +1,246 @@
+"""What the extensions X1 to X6 may do, and no more."""
+
+from __future__ import annotations
+
+import math
+
+from tests.invariants.floor import Floor
+from tests.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
+
+RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
+"""What X1 may put in, and the head's Command."""
+GOING = (
+    "set-position",
+    "set-position-and-direction",
+    "topological-move",
+    "set-speed-and-time",
+    "tracking-human",
+)
+"""What changes where the robot stands, so that it relies on no place itself."""
+FAR = 0.5
+"""Metres from its place at which a stream is not where it was (X1)."""
+A_MOMENT = 1e-6
+
+
+class Extensions(Floor):
+    """Each extension is held to what it relaxes; its records are claims to be justified."""
+
+    def put_in(self, ab: AB, before: AB | None, record: Record) -> None:
+        """X1, X4: the mediator itself puts an AB in before another."""
+        rule, shown = ab.inserted, f"{ab.name} is put in"
+        if rule not in ("X1", "X4") or rule.lower() not in self.extensions:
+            self.report(11, rule, f"{shown} by a rule that is not on")
+        if before is None or before.tree is not ab.tree or before.inserted or before.unit:
+            self.report(11, rule, f"{shown} before something that it cannot stand before")
+            return
+        first = before.phase == WAITING
+        if not first and not before.parents & ab.parents:
+            self.report(11, rule, f"{shown}, but {before.shown} is {before.phase}")
+        if ab.cause != (before.cause if first else None):
+            self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
+        before.cause = None
+        # It takes the other's place in the order of S2.
+        ab.requested, ab.place = before.requested, before.place
+        ab.followed_at = before.followed_at
+        if rule == "X1":
+            self._restores(ab, record)
+        else:
+            self._connects(ab, before, record)
+        before.put_behind = True
+        before.parents.add(ab.name)
+        before.phase = LINKED
+        self.waiting.pop(before.name, None)
+
+    def _restores(self, ab: AB, record: Record) -> None:
+        """X1: only what a suspended stream relies on is restored."""
+        if not ab.tree.suspended:
+            self.report(11, "X1", f"{ab.name} is put in, but {ab.tree.name} was not suspended")
+        if record["command"] not in (*RESTORING, "move-head"):
+            self.report(11, "X1", f"{ab.name} restores nothing: it is {record['command']}")
+        for other in ab.tree.members.values():
+            if other is not ab and other.inserted == "X1" and other.command == ab.command:
+                self.report(11, "X1", f"{ab.name} restores what {other.shown} restores already")
+
+    def stands_right(self, ab: AB) -> None:
+        """X1: a suspended stream goes on where the robot stood for it."""
+        place, robot = ab.tree.place, self.robot
+        if (
+            not ab.tree.suspended
+            or ab.inserted
+            or ab.command in GOING
+            or "x1" not in self.extensions
+        ):
+            return
+        if place is not None and robot is not None and math.dist(place, robot) > FAR:
+            self.report(11, "X1", f"{ab.shown} resumes at {robot}, but its stream was at {place}")
+
+    def moved(self, ab: AB, record: Record) -> None:
+        """Take in where a Command's end, or a loop's, has brought the robot."""
+        data = record.get("data") or {}
+        if not {"x", "y", "heading"} <= data.keys():
+            return
+        self.robot = (data["x"], data["y"])
+        if ab.command == "tracking-human":
+            ab.tree.place = None
+        elif ab.command in GOING and not ab.inserted and record["outcome"] != "again":
+            ab.tree.place = self.robot
+
+    def _connects(self, ab: AB, before: AB, record: Record) -> None:
+        """X4: the user is turned to once, where that was asked for, and he is not seen."""
+        if not before.connect or before.name in self.faced or self.in_view or before.starts:
+            self.report(11, "X4", f"{ab.name} is put in, but {before.shown} needs no channel")
+        if not (record["command"] == "face-human" and ab.devices >= before.devices):
+            self.report(11, "X4", f"{ab.name} does not keep the channel for {before.shown}")
+        self.faced.add(before.name)
+
+    def note_interrupt(self, record: Record) -> None:
+        """X2: a restartable AB, and no other, gives way to a reaction that waits for it."""
+        ab = self.running_one(record, "is interrupted")
+        if ab is None:
+            return
+        by = self.abs.get(base(record["by"]))
+        if "x2" not in self.extensions or not ab.restartable or ab.unit is not None:
+            self.report(2, "X2", f"{ab.shown} is interrupted, which is not marked so")
+        if by is None or by.phase != WAITING or by.cause is None or not by.devices & ab.devices:
+            self.report(2, "X2", f"{ab.shown} is interrupted for {record['by']}, no reaction to it")
+        elif ab.started_at == self.now and (not by.high or by.cause <= (ab.reacted or 0)):
+            self.report(
+                2, "S2", f"{ab.shown} is interrupted at its start: {by.shown} was outranked"
+            )
+        if by is not None:
+            self.gave_way.append((ab, by, self.place))
+        ab.interrupted = True
+        ab.before, ab.content = ab.content, []
+        self.wait(ab)
+
+    def starts_again(self, ab: AB, record: Record) -> None:
+        """X2: from its beginning, and whole."""
+        if not record.get("resumed"):
+            self.report(3, "X2", f"{ab.shown} starts as if it had not been interrupted")
+        before, now = (
+            [(one["command"], one.get("text"), one.get("args")) for one in content]
+            for content in (ab.before, ab.content)
+        )
+        if before != now:
+            self.report(3, "X2", f"{ab.shown} starts again as something else: {now}, not {before}")
+        ab.interrupted = False
+
+    def interruptions(self) -> None:
+        """At the end of an instant: for what ABs were interrupted, and whether wholly."""
+        for ab, by, place in self.gave_way:
+            if by.started <= place:
+                self.report(2, "X2", f"{ab.shown} is interrupted, but {by.shown} does not start")
+        for ab in self.running.values():
+            if ab.unit is not None and ab.unit.phase != RUNNING:
+                self.report(2, "X2", f"{ab.shown} runs on, but its unit {ab.unit.shown} does not")
+
+    def wants_hold(self, tree: Tree, ab: AB, record: Record) -> None:
+        """X3: the latest request says how long; while one is held, requests join it."""
+        tree.hold, tree.hold_state = record.get("hold"), ab.state
+        tree.requested = self.place
+        if ab.parents or ab.unit is not None or ab.inserted:
+            return
+        if any(one.app == ab.app for one in self.windows):
+            return  # C3 and X3 both claim it
+        held = [other for other in self.trees.values() if other.app == ab.app and other.until]
+        if held and not any(tree is other for other in held) and not self.joined_now(tree):
+            self.report(10, "X3", f"{ab.name} does not join {held[0].name}, which is held for it")
+
+    def joined_now(self, tree: Tree) -> bool:
+        return tree.joined >= 0 and self.records[tree.joined]["time"] == self.now
+
+    def note_held(self, record: Record) -> None:
+        name, outcome = record["tree"], record["outcome"]
+        tree = self.trees.get(name)
+        if "x3" not in self.extensions or tree is None:
+            self.report(10, "X3", f"{name} is held, which is not to be")
+            return
+        if outcome == "begun":
+            self._begin_hold(tree, record)
+            return
+        if tree.until is None:
+            self.report(10, "X3", f"{name} is held no longer ({outcome}), but was not")
+        elif outcome == "over" and abs(tree.until - self.now / self.second) > A_MOMENT:
+            self.report(10, "X3", f"{name} was to be held until {tree.until:g}")
+        elif outcome == "left":
+            self.left.setdefault((tree.app, tree.hold_state), name)
+            tree.left_at = self.now
+        tree.until = tree.hold = None
+        if outcome == "joined":
+            tree.joined = self.place
+
+    def _begin_hold(self, tree: Tree, record: Record) -> None:
+        """X3: a stream of which nothing is left stays open, and takes the floor if it is free."""
+        now = self.now / self.second
+        until: float = record["data"]["until"]
+        if tree.open or tree.hold is None or tree.app in self.gone_apps:
+            self.report(10, "X3", f"{tree.name} is held, but nobody asks for it")
+        elif abs(until - now - tree.hold) > A_MOMENT:
+            self.report(10, "X3", f"{tree.name} is held until {until:g}, not for {tree.hold:g} s")
+        tree.until = until
+        self.close_trees()
+        if not self.floor:
+            self.give_floor(tree)
+
+    def holds_rightly(self) -> None:
+        """X3, at the end of an instant: nothing is held too long, or while it goes on."""
+        for tree in self.trees.values():
+            if tree.until is not None and tree.until <= self.now / self.second + A_MOMENT:
+                self.report(10, "X3", f"{tree.name} is held beyond {tree.until:g}")
+            if tree.until is not None and tree.members:
+                self.report(
+                    10, "X3", f"{tree.name} is held, but {next(iter(tree.members))} is of it"
+                )
+            if self.joined_now(tree) and tree.requested < tree.joined:
+                self.report(10, "X3", f"{tree.name} is joined by nothing")
+
+    def _ends_rightly(self, tree: Tree) -> None:
+        """X3: a stream ends only when nobody wants it held; a state left unseen may be why."""
+        state_goes_on = self.last_state.get((tree.app, tree.hold_state), -1) >= self.place
+        if tree.hold is not None and state_goes_on and tree.app not in self.gone_apps:
+            self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold:g} s")
+
+    def note_substitute(self, record: Record) -> None:
+        """X6: from here on, what the robot lacks is asked for no more."""
+        if "x6" not in self.extensions:
+            self.report(3, "X6", f"{record['command']} is replaced, which is not on")
+        self.lacking.add(record["command"])
+
+    def gives_way(self, ab: AB, reaction: AB) -> bool:
+        """X2: whether an AB is certain to be interrupted for a reaction.
+
+        It may not be where the reaction ranks below it (S2a, S2b), or where its state
+        may have been left, so that it must not start again.
+        """
+        ab = ab.outermost
+        heard = not ab.silent and ab.app not in self.gone_apps
+        return (
+            "x2" in self.extensions
+            and ab.restartable
+            and reaction.high
+            and reaction.cause is not None
+            and reaction.cause > (ab.reacted or 0)
+            and heard
+            and self.last_state[ab.app, ab.state] >= self.place
+        )
+
+    def channel_connected(self, ab: AB) -> None:
+        """X4: the first word waits until the robot has turned to a user whom it does not see."""
+        wanted = "x4" in self.extensions and ab.connect and not ab.starts
+        if wanted and ab.name not in self.faced | self.seen and not self.in_view:
+            self.report(11, "X4", f"{ab.shown} starts, but the robot has not turned to the user")
+
+    def restoring(self, ab: AB) -> bool:
+        """X1: its stream is on its way back; what else is of it may wait for that."""
+        return not ab.inserted and any(other.inserted == "X1" for other in ab.tree.members.values())
+
+    def close_trees(self) -> None:
+        """C1, F3: when everything of the instant is taken in, empty trees end."""
+        for tree in [tree for tree in self.trees.values() if not tree.open]:
+            if self.begins.get((self.now, tree.name), -1) > self.place:
+                continue  # it is held from this instant on
+            self._ends_rightly(tree)
+            del self.trees[tree.name]
+            self.ended_trees.add(tree.name)
+            if tree in self.floor:
+                self.floor.remove(tree)

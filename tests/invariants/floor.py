@@ -1,0 +1,162 @@
+"""The floor: who has it, whom it keeps waiting, and what is recorded of it (F1 to F6, C2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tests.invariants.channel import Channel
+from tests.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
+
+
+class Floor(Channel):
+    """F1 to F6, with the suspensions and stops that follow from them."""
+
+    # Who may start ----------------------------------------------------------------
+
+    def carries_floor(self, ab: AB) -> bool:
+        """X5: whether what holds the floor does nothing but a motion that the AB can carry."""
+        contending = self.floor[-1].contending() if self.floor else []
+        return bool(contending) and all(
+            ab.motion == "free" and self.composes(ab, other) and other.phase == RUNNING
+            for other in contending
+        )
+
+    def refused_by_floor(self, ab: AB, surely: bool = False) -> Tree | None:
+        """F2: the stream that keeps the AB from starting, or that may keep it.
+
+        "Another event" is left open by F2 where the floor's stream goes on from one
+        reaction to the next (O2, O3): another than the last is certain to be meant,
+        than an earlier one perhaps. Who reacts to an earlier one may start or wait.
+        """
+        holder = self.holder
+        if holder is None or holder.app == ab.app:
+            return None
+        held = {holder.cause} if surely else holder.causes
+        if ab.cause is not None and ab.cause not in held:
+            return None
+        contending = holder.contending()
+        high = ab.tree.meant(ab).high
+        if contending and all(high and not other.high for other in contending):
+            return None
+        return None if self.carries_floor(ab) else holder
+
+    def refused_by_topic(self, ab: AB) -> Tree | None:
+        """F6: the stream into which the AB would speak."""
+        if "speaker" not in ab.devices or ab.cause is not None or self.holder is ab.tree:
+            return None
+        for tree in self.trees.values():
+            if tree.app != ab.app and tree.spoken and self._has_more_to_say(tree):
+                return tree
+        return None
+
+    def _has_more_to_say(self, tree: Tree) -> bool:
+        """F6: whether something that speaks is linked, without a loop between, behind what runs."""
+        reached = [
+            ab
+            for ab in tree.members.values()
+            if ab.phase == RUNNING and not ab.feedback and ab.unit is None
+        ]
+        for ab in reached:  # it grows
+            for child in tree.members.values():
+                if child.phase != LINKED or ab.name not in child.parents:
+                    continue
+                if "speaker" in child.devices:
+                    return True
+                if not child.feedback and child not in reached:
+                    reached.append(child)
+        return False
+
+    # Who has it -------------------------------------------------------------------
+
+    def take_floor(self, ab: AB, reaction: int | None) -> None:
+        """F1: a reaction takes the floor. F3: so does what needs a device of the floor's stream."""
+        tree, holder = ab.tree, self.holder
+        if reaction is not None:
+            tree.cause = reaction
+            tree.causes.add(reaction)
+        elif holder is None or holder.app == ab.app or not self._in_the_way(ab, holder):
+            return
+        self.give_floor(tree)
+
+    def _in_the_way(self, ab: AB, holder: Tree) -> bool:
+        """F3: whether a running or waiting AB of the floor's stream wants one of the devices."""
+        own = [other for other in holder.members.values() if other.contends]
+        return any(ab.devices & other.devices for other in (*own, *holder.contending()))
+
+    def give_floor(self, tree: Tree) -> None:
+        """C2: who takes the floor suspends the others' streams; those rank alike (S2d)."""
+        if self.holder is tree:
+            return
+        if tree in self.floor:
+            self.floor.remove(tree)
+        self.floor.append(tree)
+        for other in self.trees.values():
+            if other.app != tree.app and other.started >= 0 and not other.suspended:
+                other.suspended, other.rank = True, self.place + 1
+                self.suspended_by[other.name] = tree.name
+
+    def resume(self, ab: AB) -> None:
+        """C2: a suspended stream goes on. It keeps its place until the instant is over (S2d)."""
+        tree = ab.tree
+        if tree.suspended:
+            tree.suspended = False
+            self.resumed.append(tree)
+            if tree.name not in self.resumptions:
+                self.report(13, "C2", f"{tree.name} resumes by {ab.shown} without a record")
+            self.resumptions.discard(tree.name)
+
+    # What the records say -----------------------------------------------------------
+
+    def note_floor(self, record: Record) -> None:
+        """F3: a stack; only the named stream comes to its top, or leaves it."""
+        tree, told = record["tree"], list(record.get("floor") or ())
+        rest = [name for name in self.told_floor if name != tree]
+        if told != (rest if record["outcome"] == "returned" else [*rest, tree]):
+            self.report(13, "F3", f"the floor is {told}, after {self.told_floor}")
+        self.told_floor = told
+
+    def note_suspend(self, record: Record) -> None:
+        self.suspensions[record["tree"]] = record["by"]
+
+    def note_resume(self, record: Record) -> None:
+        self.resumptions.add(record["tree"])
+
+    def note_stop(self, record: Record) -> None:
+        self.stops.add(base(record["behavior"]))
+
+    def floor_told_rightly(self) -> None:
+        """After a start, and at an instant's end: the records tell of all, and of nothing else."""
+        names = [tree.name for tree in self.floor]
+        if names != self.told_floor:
+            self.report(13, "F3", f"the floor is {names}; the records say {self.told_floor}")
+            self.told_floor = names
+        for tree, by in self.suspended_by.items():
+            told = self.suspensions.pop(tree, None)
+            if told != by:
+                self.report(13, "C2", f"{by} suspends {tree}; the records name {told}")
+        for tree, by in self.suspensions.items():
+            self.report(13, "C2", f"{tree} is not suspended by {by}, as a record says")
+        for tree in self.ordered(self.resumptions):
+            self.report(13, "C2", f"{tree} does not resume, as a record says")
+        self.suspensions, self.suspended_by, self.resumptions = {}, {}, set()
+
+    # Stops --------------------------------------------------------------------------
+
+    def stopped_rightly(self) -> None:
+        """F5: who moved and is not moved on is stopped, and nobody else.
+
+        In an emergency every device goes to its safe state anyway (E5).
+        """
+        if self.halted:
+            return
+        driven = self.driven or any("locomotion" in ab.devices for ab in self.running.values())
+        due = set() if driven else set(self.halting)
+        for name in self.ordered(due - self.stops):
+            self.report(14, "F5", f"{name} is moved on by nobody and not stopped")
+        for name in self.ordered(self.stops - due):
+            self.report(14, "F5", f"{name} is stopped for no reason")
+
+    @staticmethod
+    def ordered(names: Iterable[str]) -> list[str]:
+        """Names in an order that chance does not decide."""
+        return sorted(names)

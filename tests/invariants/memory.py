@@ -1,0 +1,178 @@
+"""Working memory, trees and floor, built again from what the records say has happened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tests.invariants.model import (
+    AB,
+    COMPOSED,
+    EXTENSIONS,
+    GONE,
+    LINKED,
+    WAITING,
+    Cut,
+    Record,
+    Tree,
+    base,
+)
+
+
+class Memory:
+    """What is known so far. The families of rules, which read it, stand on top of it."""
+
+    def __init__(
+        self, records: Iterable[Record], policy: str, declared: Sequence[str] = ()
+    ) -> None:
+        self.records = list(records)
+        name, *extensions = policy.split("+")
+        self.policy, _, self.first = name.partition(":")
+        self.prima = self.policy == "prima"
+        self.extensions = EXTENSIONS if "all" in extensions else frozenset(extensions)
+        written = bool(self.records) and self.records[0]["phase"] == "run"
+        self.second = 1 if written else 1000
+        """A second in the records' time: transcripts count seconds, runs milliseconds."""
+        if written and not declared:
+            declared = (self.records[0].get("data") or {}).get("applications", ())
+        self.found: list[str] = []
+        self.apps: dict[str, int] = {app: number for number, app in enumerate(declared)}
+        """The order in which the applications were declared (S2f)."""
+        self.gone_apps: set[str] = set()
+        self.abs: dict[str, AB] = {}
+        self.waiting: dict[str, AB] = {}
+        self.running: dict[str, AB] = {}
+        self.trees: dict[str, Tree] = {}
+        self.floor: list[Tree] = []
+        self.windows: list[Tree] = []
+        """Open windows, the latest last."""
+        self.latest: dict[str, AB] = {}
+        """What each application has requested last, outside units (O1)."""
+        self.halted = False
+        self.in_view = False
+        """Whether the camera sees the user (V4)."""
+        self.sensed_at: float = 0
+        """When the user was last seen, heard or felt (K1)."""
+        self.now: float = 0
+        self.place = 0
+        self.left: dict[tuple[str, int | None], str] = {}
+        """States that a cancellation says were left, and by which AB it was said."""
+        self.serials: dict[int, float] = {}
+        """The numbers of events, and when those happened."""
+        self.numbered = any(one.get("serial") is not None for one in self.records)
+        """Whether events are recorded: some drivers ask for Commands without any."""
+        self.told_floor: list[str] = []
+        """The floor, as ``floor`` records tell of it."""
+        self.extra_reactions = 0
+        self.lacking: set[str] = set()
+        self.seen: set[str] = set()
+        """ABs that have waited while the camera saw the user: X4 may be done with them."""
+        self.faced: set[str] = set()
+        """ABs for which the robot turns to the user (X4)."""
+        self.robot: tuple[float, float] | None = None
+        """Where the robot stands, as its devices have told."""
+        self._read_ahead()
+        self._new_instant()
+
+    def _read_ahead(self) -> None:
+        """Note what is only known later: when things are told of last."""
+        self.last: dict[str, int] = {}
+        self.last_state: dict[tuple[str, int | None], int] = {}
+        self.unit_ends: dict[str, float] = {}
+        self.begins: dict[tuple[float, str], int] = {}
+        """When streams begin to be held, and the index of the record that says so."""
+        self.nested: set[str] = set()
+        """Units inside units: what is in them is requested when they start, and by nobody."""
+        for place, record in enumerate(self.records):
+            if record["phase"] == "end" and record["command"] == "iu":
+                self.unit_ends[record["behavior"]] = record["time"]
+            if record["phase"] == "held" and record["outcome"] == "begun":
+                self.begins[record["time"], record["tree"]] = place
+            if record.get("behavior") and record["phase"] != "halted":
+                self.last[base(record["behavior"])] = place
+            if record["phase"] != "request":
+                continue
+            if record["command"] == "iu" and record.get("unit"):
+                self.nested.add(record["behavior"])
+            if record.get("unit") not in self.nested:
+                self.last_state[record["app"], record.get("state")] = place
+
+    def _new_instant(self) -> None:
+        self.cuts: list[Cut] = []
+        self.urgent: list[tuple[AB, int]] = []
+        """Commands wanted now in this instant, and their places (O2)."""
+        self.failed: list[AB] = []
+        self.unloaded: set[str] = set()
+        self.released = False
+        self.started_leaving: list[tuple[str, set[AB]]] = []
+        self.started_inside: list[AB] = []
+        self.tree_devices: dict[str, frozenset[str]] = {}
+        self.gave_way: list[tuple[AB, AB, int]] = []
+        """X2: what was interrupted, for which reaction, and where the record is."""
+        self.suspensions: dict[str, str] = {}
+        """What ``suspend`` records have said since the latest start: streams, and by whom."""
+        self.suspended_by: dict[str, str] = {}
+        """The same as recomputed."""
+        self.resumptions: set[str] = set()
+        self.decision: Record | None = None
+        """The latest decision, until its winner starts."""
+        self.halting: dict[str, AB] = {}
+        """Feedback Commands that move and whose loop has ended or was cut in this instant."""
+        self.stops: set[str] = set()
+        """Whom ``stop`` records have named in this instant (F5)."""
+        self.driven = False
+        """Whether something that takes the locomotion has started in this instant."""
+        self.ended_trees: set[str] = set()
+        self.told_ends: set[str] = set()
+        """Streams that ended in this instant, and those that a record says did (C1)."""
+        self.resumed: list[Tree] = []
+
+    def report(self, number: int, rule: str, text: str) -> None:
+        """Note a violation of an invariant, with the rule behind it."""
+        self.found.append(f"invariant {number} ({rule}) at {self.now:g}: {text}")
+
+    def wait(self, ab: AB) -> None:
+        """An AB waits from here on; what was said of an earlier wait of it says nothing."""
+        self.running.pop(ab.name, None)
+        ab.phase, ab.said = WAITING, None
+        self.waiting[ab.name] = ab
+
+    def remove(self, ab: AB, ended: bool = True) -> None:
+        """An AB leaves working memory; what waited for its end alone may start (S2c)."""
+        ab.phase = GONE
+        self.waiting.pop(ab.name, None)
+        self.running.pop(ab.name, None)
+        ab.tree.members.pop(ab.name, None)
+        for other in list(ab.tree.members.values()):
+            if ab.name not in other.parents:
+                continue
+            other.parents.discard(ab.name)
+            if not other.parents and other.phase == LINKED:
+                other.followed_at = self.now if ended else -1
+                self.wait(other)
+
+    def running_one(self, record: Record, what: str) -> AB | None:
+        """The running AB that a record is about; a violation if it does not run."""
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None or ab.phase != "running" or ab.shown != record["behavior"]:
+            phase = ab.phase if ab is not None else "unknown"
+            self.report(3, "U1", f"{record['behavior']} {what}, but it is {phase}")
+            return None
+        return ab
+
+    def composes(self, ab: AB, other: AB) -> bool:
+        """X5: a free motion carries a faithful one; both may use the same devices then."""
+        return "x5" in self.extensions and {ab.motion, other.motion} == COMPOSED
+
+    def occupant(self, ab: AB) -> AB | None:
+        """S1, U5: a running AB, outside of its own unit, that has one of its devices."""
+        for other in self.running.values():
+            if other is ab or not ab.devices & other.devices:
+                continue
+            if not ab.inside(other) and not other.inside(ab) and not self.composes(ab, other):
+                return other
+        return None
+
+    @property
+    def holder(self) -> Tree | None:
+        """The stream that has the floor."""
+        return self.floor[-1] if self.floor else None

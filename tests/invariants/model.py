@@ -1,0 +1,174 @@
+"""What the records of a run make known: Atomic Behaviors, streams, and what happens to them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+Record = Mapping[str, Any]
+
+LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
+BASELINES = ("fifo", "fair", "fixed", "none")
+EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6"))
+COMPOSED = {"free", "faithful"}
+SEEKING = ("active-sensing-human", "tracking-human")
+"""What searches or tracks, so that its stream engages whoever is away (K1)."""
+
+
+@dataclass(slots=True, eq=False)
+class AB:
+    """An Atomic Behavior as its records tell of it; a feedback Command is one, loops and all."""
+
+    name: str
+    command: str
+    app: str
+    tree: Tree
+    devices: frozenset[str]
+    high: bool
+    leaves: bool
+    engages: bool
+    feedback: bool
+    question: bool
+    state: int | None
+    unit: AB | None
+    cause: int | None
+    """The event reacted to: the reactive flag, until it starts (C5)."""
+    parents: set[str]
+    requested: float
+    place: int
+    """The index of its request among the records."""
+    restartable: bool = False
+    motion: str = ""
+    connect: bool = False
+    """Whether the robot has to see the user, or turn to them, before it starts (X4)."""
+    inserted: str = ""
+    put_before: str = ""
+    """What it was put in before."""
+    put_behind: bool = False
+    """Whether something was put in before it (X1, X4)."""
+    phase: str = WAITING
+    loop: int = 0
+    starts: int = 0
+    started: int = -1
+    """The index of its latest start among the records."""
+    started_at: float = -1
+    reacted: int | None = None
+    """The event that it reacted to when it started last."""
+    followed_at: float = -1
+    """When a parent of it ended, its loop ended, or a window asked for it (S2c)."""
+    interrupted: bool = False
+    """Whether it has to start again from its beginning (X2)."""
+    broken: bool = False
+    """Whether a loop of it was cut since it started, so that it starts afresh (U2)."""
+    content: list[Record] = field(default_factory=list)
+    """What was requested inside the unit since it started from its beginning."""
+    before: list[Record] = field(default_factory=list)
+    """The same for the time before it was interrupted."""
+    reacted_to: int | None = None
+    """The event that it was asked for because of."""
+    listening: bool = False
+    silent: bool = False
+    """Whether O2 may have made the mediator deaf for it while it runs."""
+    said: tuple[str, str, float] | None = None
+    """Why it waits, because of whom, and since when, as its latest ``hold`` says."""
+
+    def inside(self, other: AB) -> bool:
+        """Whether this is a part of the unit ``other``, at any depth."""
+        unit = self.unit
+        while unit is not None and unit is not other:
+            unit = unit.unit
+        return unit is other
+
+    @property
+    def outermost(self) -> AB:
+        """The AB that is cut if this one is: the unit around it, or itself."""
+        return self if self.unit is None else self.unit.outermost
+
+    @property
+    def contends(self) -> bool:
+        """Whether it runs or waits: what is linked, or inside what is, does neither."""
+        return self.phase != LINKED and self.outermost.phase != LINKED
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is a feedback Command that moves the robot (F5)."""
+        return self.feedback and "locomotion" in self.devices
+
+    @property
+    def shown(self) -> str:
+        return f"{self.name}.{self.loop}" if self.loop else self.name
+
+
+@dataclass(slots=True, eq=False)
+class Tree:
+    """A Communication Stream."""
+
+    name: str
+    app: str
+    members: dict[str, AB] = field(default_factory=dict)
+    windows: int = 0
+    started: int = -1
+    """The index of its latest start: a stream that has not begun is not suspended (S2d)."""
+    spoken: bool = False
+    engaged: bool = False
+    cause: int | None = None
+    causes: set[int] = field(default_factory=set)
+    hold: float | None = None
+    """How long (s) its latest request wants it held afterwards (X3)."""
+    hold_state: int | None = None
+    until: float | None = None
+    """Until when (s) it is held."""
+    joined: int = -1
+    """The index of the record by which a request joined it, being held."""
+    left_at: float = -1
+    """When the state was left for which it was held."""
+    requested: int = -1
+    """The index of the latest request."""
+    suspended: bool = False
+    rank: int = 0
+    """The index of the start that suspended it: the later goes first (S2d)."""
+    place: tuple[float, float] | None = None
+    """Where the robot has gone for it, so that what follows relies on standing there (X1)."""
+
+    @property
+    def open(self) -> bool:
+        """C1: something of it is in working memory, or a window is open; or it is held (X3)."""
+        return bool(self.members) or self.windows > 0 or self.until is not None
+
+    def contending(self) -> list[AB]:
+        """What runs and waits: linked ABs hold nothing back, but for what something was put in for."""
+        return [self.meant(ab) for ab in self.members.values() if ab.contends]
+
+    def meant(self, ab: AB) -> AB:
+        """What an AB that was put in was put in for (X1, X4), while that is there; else itself."""
+        return self.members.get(ab.put_before, ab)
+
+    def seeks(self) -> bool:
+        """K1: whether it searches for the user, or tracks them."""
+        return any(ab.command in SEEKING for ab in self.contending())
+
+    def engages(self, sensed: bool) -> bool:
+        """K1: from the first engaging start to the end, unless all that contends leaves.
+
+        ``sensed``: whether somebody was seen, heard or felt not long ago.
+        """
+        contending = self.contending()
+        leaves = bool(contending) and all(ab.leaves for ab in contending)
+        return self.engaged and not leaves and (sensed or self.seeks())
+
+
+@dataclass(slots=True)
+class Cut:
+    """A cancellation that has to be justified by what else happens in its instant."""
+
+    ab: AB
+    was: str
+    rule: str
+    place: int
+    tree_devices: frozenset[str]
+
+
+def base(behavior: str) -> str:
+    """An AB's name without the number of its loop."""
+    return behavior.partition(".")[0]

@@ -1,0 +1,266 @@
+"""Selection: who goes first (S2), who is held back (S3), and who need not wait (S1)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.invariants.model import AB, RUNNING, WAITING, Record, base
+from tests.invariants.streams import Streams
+
+LETTERS = "abcdef"
+MANY = 8
+"""Of more that wait, not all need to be looked at."""
+
+
+class Selection(Streams):
+    """S1 to S3, by the numbers that S2 compares."""
+
+    def active_app(self) -> str | None:
+        """S2b: whose stream is active: the floor's, else the open one that started last."""
+        if self.holder is not None:
+            return self.holder.app
+        begun = [tree for tree in self.trees.values() if tree.open and tree.started >= 0]
+        return max(begun, key=lambda tree: tree.started).app if begun else None
+
+    def key(self, ab: AB) -> tuple[Any, ...]:
+        """S2a to S2f, and the order of requests for what is equal in all of them."""
+        reaction: tuple[int, int, bool] = (1, 0, False)
+        if ab.cause is not None:
+            reaction = (0, -ab.cause, ab.app != self.active_app())
+        return (
+            not ab.high,
+            reaction,
+            ab.followed_at != self.now,
+            -ab.tree.rank,
+            ab.requested,
+            self.apps.get(ab.app, 0),
+            ab.place,
+        )
+
+    def rule_between(self, ab: AB, other: AB) -> str:
+        """The part of S2 in which two differ first."""
+        pairs = zip(self.key(ab), self.key(other), strict=True)
+        index = next(index for index, (one, two) in enumerate(pairs) if one != two)
+        return f"S2{LETTERS[index]}" if index < len(LETTERS) else "S2e"
+
+    def outranks(self, ab: AB, other: AB) -> bool:
+        """S2: whether the first goes before the second."""
+        return self.key(ab) < self.key(other)
+
+    def rank_is_open(self, ab: AB, other: AB) -> bool:
+        """X1, X4: whether S2c, e or f would decide of what was put in, or waited for that."""
+        put_in = any(one.inserted or one.put_behind for one in (ab, other))
+        return put_in and self.rule_between(ab, other) in ("S2c", "S2e", "S2f")
+
+    def competing(self, ab: AB) -> list[AB]:
+        """All others that wait, outside units, and not because of it (X2); by S2."""
+        aside = [one for one, by, _ in self.gave_way if by is ab]
+        others = [
+            one
+            for one in self.waiting.values()
+            if one is not ab and one.unit is None and one not in aside
+        ]
+        return sorted(others, key=self.key)
+
+    def free_to_go(self, ab: AB) -> bool:
+        """Whether F2, F6 and K1 are certain to let a waiting AB start."""
+        kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
+        return kept is None and not self.restoring(ab)
+
+    def held_back(self, ab: AB, winner: AB | None = None) -> bool:
+        """S3: whether a reaction that outranks it wants one of its devices, and may start.
+
+        Where it is asked who could start in the place of a winner, that holds nothing back.
+        """
+        return any(
+            other is not winner
+            and other.cause is not None
+            and other.devices & ab.devices
+            and self.outranks(other, ab)
+            and self.refused_by_floor(other, surely=True) is None
+            and self.refused_by_channel(other) is None
+            for other in self.competing(ab)
+        )
+
+    def could_start(self, ab: AB, winner: AB) -> bool:
+        """S1: whether nothing keeps a waiting AB from starting in the place of another."""
+        return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab, winner)
+
+    def kept_by_s3(self, ab: AB) -> bool:
+        """Whether nothing but S3 can keep a waiting AB from starting."""
+        return self.occupant(ab) is None and self.free_to_go(ab)
+
+    def busy(self, ab: AB) -> bool:
+        """Whether a running AB occupies one of the devices, and keeps it (S1, U5, X2)."""
+        return any(
+            ab.devices & other.devices
+            and other is not ab
+            and not ab.inside(other)
+            and not self.composes(ab, other)
+            and not self.gives_way(other, ab)
+            for other in self.running.values()
+        )
+
+    # At a start ---------------------------------------------------------------------
+
+    def allowed(self, ab: AB, shown: str) -> None:
+        """Invariants 5, 6, 7 and 12: nobody that could start in its place goes before it."""
+        holder = self.refused_by_floor(ab, surely=True)
+        if holder is not None:
+            number = 7 if ab.leaves else 5
+            self.report(number, "F2", f"{shown} starts while {holder.name} holds the floor")
+        topic = self.refused_by_topic(ab)
+        if topic is not None:
+            self.report(5, "F6", f"{shown} speaks into the topic of {topic.name}")
+        if ab.leaves:
+            self.channel_kept(ab, shown)
+        for other in self.competing(ab):
+            before = self.outranks(other, ab) and not self.rank_is_open(ab, other)
+            if before and self.free_to_go(other):
+                self._passed_over(other, ab, shown)
+
+    def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
+        """S2, S3: what outranks the AB that starts must be unable to start in its place."""
+        rule = self.rule_between(other, ab)
+        if other.cause is not None and other.devices & ab.devices:
+            # S3: whether or not its other devices are free, it holds this one back.
+            number = 5 if other.leaves else 6
+            self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
+        elif self.could_start(other, ab):
+            number = 5 if rule in ("S2a", "S2b") and other.devices & ab.devices else 12
+            self.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
+
+    def decided_rightly(self, ab: AB, shown: str) -> None:
+        """The ``decision`` before a start: its losers, and the rule that decided."""
+        told, self.decision = self.decision, None
+        if told is None or told["winner"] != shown:
+            self.report(13, "S2", f"{shown} starts, but nobody has decided so")
+            return
+        rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
+        losers, count = set(told["losers"]), told["losers_count"]
+        allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
+        strangers = losers - allowed
+        needed = {
+            other.shown
+            for other in rivals
+            if other.devices & ab.devices and not self.composes(ab, other)
+        }
+        if strangers:
+            text = f"{shown} is said to start before {self.ordered(strangers)}"
+            self.report(13, "S2", f"{text}, which could not have started")
+        elif count <= MANY and (needed - losers or len(losers) != count):
+            text = f"{shown} is said to start before {told['losers']}"
+            self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
+        elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
+            self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
+        rivals = [other for other in rivals if other.shown in losers | needed]
+        self._rule_told_rightly(ab, shown, told["rule"], rivals)
+
+    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
+        """S2: what decided between the winner and the first that could have started, if any."""
+        if not rivals:
+            if rule.startswith("S2") or rule == "S3":
+                self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
+            return
+        expected = self.rule_between(ab, rivals[0])
+        alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
+        if self.rank_is_open(ab, rivals[0]):
+            return
+        if rule != expected and not {rule, expected} <= set(alike):
+            text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
+            self.report(13, "S2", text)
+
+    # At the end of an instant -------------------------------------------------------
+
+    def waits_rightly(self, ab: AB) -> None:
+        """Invariant 5: no waiting AB waits while it may start."""
+        if ab.unit is not None:
+            if ab.unit.phase == RUNNING and (self.policy == "none" or self.occupant(ab) is None):
+                self.report(5, "U5", f"{ab.shown} waits in {ab.unit.shown} on free devices")
+        elif self.policy == "none":
+            self.report(5, "none", f"{ab.shown} waits, though nothing mediates")
+        elif self.prima:
+            self._waits_for_a_reason(ab)
+        elif not self.busy(ab) and not any(self._ahead(one, ab) for one in self.waiting.values()):
+            self.report(5, self.policy, f"{ab.shown} waits while its devices are free")
+
+    def _waits_for_a_reason(self, ab: AB) -> None:
+        self.late(ab)
+        if len(self.waiting) <= MANY and not self.restoring(ab):
+            self._reason_told(ab)
+
+    def late(self, ab: AB) -> None:
+        """Invariants 5 and 6: an AB that could start by now does not wait."""
+        if self.free_to_go(ab) and not self.held_back(ab) and not self.busy(ab):
+            if self.occupant(ab) is None:
+                self.report(5, "S1", f"{ab.shown} waits while its devices are free")
+            if ab.cause is not None and not ab.leaves:
+                self.report(6, "S1", f"the reaction {ab.shown} is late")
+
+    def _reason_told(self, ab: AB) -> None:
+        """Why an AB waits is told by its latest ``hold``: true when told, and the rule still so."""
+        if ab.said is None:
+            if not ab.interrupted:  # the record of that says it
+                self.report(13, "S1", f"nothing says why {ab.shown} waits")
+            return
+        rule, by, when = ab.said
+        if when == self.now and not self._held_by(ab, rule, by):
+            self.report(13, rule, f"{ab.shown} is said to wait by {rule} for {by}")
+        elif when != self.now and not self._held_still(ab, rule):
+            self.report(13, rule, f"{ab.shown} is still said to wait by {rule} for {by}")
+
+    def _held_still(self, ab: AB, rule: str) -> bool:
+        """Whether a rule keeps an AB waiting, whosesoever the turn is by now."""
+        kept = {
+            "S1": self.occupant(ab),
+            "S3": self.held_back(ab) or None,
+            "F2": self.refused_by_floor(ab),
+            "F6": self.refused_by_topic(ab),
+            "K1": self.refused_by_channel(ab),
+        }
+        return kept.get(rule) is not None or rule not in kept or self.restoring(ab)
+
+    def _held_by(self, ab: AB, rule: str, by: str) -> bool:
+        """Whether a reason to wait is true."""
+        other = self.abs.get(base(by))
+        if rule == "S1":
+            busy = other is not None and other.phase == RUNNING
+            return busy and other is not None and bool(other.devices & ab.devices)
+        if rule == "S3":
+            waits = other is not None and other.phase == WAITING and other.cause is not None
+            return waits and other is not None and bool(other.devices & ab.devices)
+        kept = {
+            "F2": self.refused_by_floor(ab, surely=False),
+            "F6": self.refused_by_topic(ab),
+            "K1": self.refused_by_channel(ab),
+        }.get(rule)
+        if rule.startswith("X"):
+            return True
+        return kept is not None and (by == kept.name or self._as_well(ab, rule, by))
+
+    def _as_well(self, ab: AB, rule: str, by: str) -> bool:
+        """K1, F6: another stream than the first that keeps it may be named, or an AB of it."""
+        other = self.abs.get(base(by))
+        tree = self.trees.get(by) or (other.tree if other is not None else None)
+        if tree is None or tree.app == ab.app or rule == "F2":
+            return False
+        return tree.engages(self.sensed) if rule == "K1" else tree.spoken
+
+    def _ahead(self, other: AB, ab: AB) -> bool:
+        """Baselines: whether another waiting AB may rank first and hold a device back."""
+        if other is ab or other.unit is not None or not other.devices & ab.devices:
+            return False
+        if self.policy == "fair":
+            return True  # whose turn it is depends on more than these two
+        if self.policy == "fixed":
+            top = self.first or min(self.apps, key=self.apps.__getitem__)
+            if (other.app == top) != (ab.app == top):
+                return other.app == top
+        return other.requested <= ab.requested
+
+    def note_hold(self, record: Record) -> None:
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None or ab.phase != WAITING:
+            self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")
+        else:
+            ab.said = (record["rule"], record.get("by") or "", self.now)

@@ -1,0 +1,162 @@
+"""Streams: when they end (C1), and to which of them a request belongs (O1, O2, O3, C3)."""
+
+from __future__ import annotations
+
+from tests.invariants.extensions import Extensions
+from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree
+
+
+class Streams(Extensions):
+    """What a request continues, and what it follows."""
+
+    def note_window(self, record: Record) -> None:
+        """C3: a window opens or closes."""
+        tree = self.trees.get(record["tree"])
+        if tree is None:
+            self.report(3, "C1", f"a window of {record['tree']} opens, which has ended")
+            tree = self.trees[record["tree"]] = Tree(record["tree"], record["app"])
+        if record["outcome"] == "open":
+            tree.windows += 1
+            self.windows.append(tree)
+            return
+        tree.windows -= 1
+        if tree in self.windows:
+            self.windows.remove(tree)
+
+    def note_stream_end(self, record: Record) -> None:
+        """C1: nothing is lost with a stream; its end is told when it ends, and once."""
+        self.told_ends.add(record["tree"])
+        tree = self.trees.get(record["tree"])
+        if tree is None:
+            return
+        if tree.until is not None:
+            self.report(10, "X3", f"{tree.name} ends, but is held until {tree.until:g}")
+            tree.until = None
+        for ab in list(tree.members.values()):
+            self.report(3, "C1", f"{ab.shown} is {ab.phase}, but its tree has ended: it is lost")
+            self.remove(ab)
+
+    def ends_told_rightly(self) -> None:
+        """C1 at the end of an instant."""
+        for name in self.ordered(self.ended_trees ^ self.told_ends):
+            ended = "not told" if name in self.ended_trees else "told, but it has not ended"
+            self.report(13, "C1", f"the end of {name} is {ended}")
+
+    def window_of(self, app: str) -> Tree | None:
+        """The window in which the application is."""
+        return next((tree for tree in reversed(self.windows) if tree.app == app), None)
+
+    def placed_rightly(self, ab: AB, new: bool) -> None:
+        """O1, O2, C3: the stream that a request belongs to, and what it follows."""
+        for name in self.ordered(ab.parents):
+            if self.abs[name].tree is not ab.tree:
+                self.report(15, "U3", f"{ab.name} of {ab.tree.name} follows {name} of another")
+        if ab.inserted:
+            return
+        if ab.unit is not None:
+            if ab.unit.tree is not ab.tree:
+                self.report(15, "U5", f"{ab.name} is not of the stream of its unit")
+            return
+        if any(one is ab for one, _ in self.urgent):
+            self._urgent_placed(ab)
+        elif ab.cause is not None:
+            self._reaction_placed(ab, new)
+        elif (window := self.window_of(ab.app)) is not None:
+            if ab.tree is not window and not self._goes_on_here(ab):
+                text = f"{ab.name} is of {ab.tree.name}, but asked for in a window of {window.name}"
+                self.report(15, "C3", text)
+        else:
+            self._follows_rightly(ab, new)
+
+    def _goes_on_here(self, ab: AB) -> bool:
+        """Whether it follows in that tree: in its own request, one wanted now, or a hold (X3)."""
+        follows = any(self.abs[name].requested == self.now for name in ab.parents)
+        urgent = any(one.tree is ab.tree for one, _ in self.urgent)
+        return follows or urgent or self.joined_now(ab.tree)
+
+    def _urgent_placed(self, ab: AB) -> None:
+        """O2: it is never linked, and continues what it cancels, before all what ran."""
+        if ab.parents:
+            self.report(15, "O2", f"{ab.name} is wanted now, but waits for {sorted(ab.parents)}")
+        cut = [one for one in self.cuts if one.rule == "O2" and one.ab.app == ab.app]
+        trees = {one.ab.tree.name for one in cut if not one.ab.unit}
+        ran = {
+            one.ab.tree.name
+            for one in cut
+            if one.was == RUNNING
+            or any(
+                other.phase == RUNNING for other in one.ab.tree.members.values() if other is not ab
+            )
+        }
+        if trees and ab.tree.name not in (ran or trees):
+            text = f"{ab.name} is of {ab.tree.name}, but cancels {', '.join(self.ordered(trees))}"
+            self.report(15, "O2", text)
+        for tree in self.trees.values():
+            if tree.app == ab.app:
+                self._cancelled_whole(tree, ab)
+
+    def _cancelled_whole(self, tree: Tree, urgent: AB) -> None:
+        """O2: nothing is left of a tree that wanted one of the devices but what runs on others."""
+        own = [ab for ab in tree.members.values() if ab is not urgent and ab.unit is None]
+        if any(ab.unit is urgent.unit for ab in own) and urgent.unit is not None:
+            return
+        if any(ab.devices & urgent.devices for ab in own if ab.requested < self.now):
+            for ab in own:
+                cut = ab.phase != RUNNING or bool(ab.devices & urgent.devices)
+                if cut and ab.requested < self.now:
+                    self.report(15, "O2", f"{ab.shown} is left, though {urgent.name} is wanted now")
+
+    def _reaction_placed(self, ab: AB, new: bool) -> None:
+        """O1: a reaction is the root of a new tree, or of what it continues (O3, X3)."""
+        if ab.parents:
+            self.report(15, "O1", f"the reaction {ab.name} waits for {sorted(ab.parents)}")
+        alike = any(
+            other is not ab and other.reacted_to == ab.cause and other.requested == self.now
+            for other in ab.tree.members.values()
+        )
+        if not (new or alike or self._continues(ab)):
+            self.report(15, "O1", f"the reaction {ab.name} begins no tree of its own")
+
+    def _continues(self, ab: AB) -> bool:
+        """O3, X3: whether a state was left whose stream this may go on with, or one was held."""
+        cut = any(one.ab.tree is ab.tree or one.rule == "O3" for one in self.cuts)
+        left = any(other.state != ab.state for other in ab.tree.members.values() if other is not ab)
+        held = self.joined_now(ab.tree) or ab.tree.left_at == self.now
+        return cut or left or held
+
+    def _follows_rightly(self, ab: AB, new: bool) -> None:
+        """O1: it follows the latest Command of its application that is still there."""
+        latest = self.latest.get(ab.app)
+        if latest is not None and latest.command == "iu" and latest.phase != GONE:
+            return  # the latest Command may be one inside, which has ended
+        if latest is None or latest.phase == GONE:
+            if not (new or self._continues(ab)):
+                self.report(
+                    15, "O1", f"{ab.name} continues {ab.tree.name}, which it does not follow"
+                )
+        elif latest.tree is not ab.tree:
+            self.report(15, "O1", f"{ab.name} is of {ab.tree.name}; {latest.name} came before it")
+        elif latest.requested < self.now and not ab.parents and not self._begins_par(ab):
+            self.report(15, "O1", f"{ab.name} does not wait for {latest.name}")
+
+    def _begins_par(self, ab: AB) -> bool:
+        """Whether it may be a branch beside one that was asked for in this instant."""
+        return any(
+            other is not ab and other.requested == self.now and other.unit is None
+            for other in ab.tree.members.values()
+        )
+
+    def left_waiting(self) -> None:
+        """E2, at the end of an instant: nothing of an application that has ended waits."""
+        for ab in self.abs_there():
+            if ab.app in self.gone_apps and ab.phase in (WAITING, LINKED) and not self._in_run(ab):
+                self.report(3, "E2", f"{ab.shown} is {ab.phase}, but {ab.app} has ended")
+
+    def abs_there(self) -> list[AB]:
+        """All of working memory."""
+        return [ab for tree in self.trees.values() for ab in tree.members.values()]
+
+    @staticmethod
+    def _in_run(ab: AB) -> bool:
+        """Whether a unit around it runs: that finishes whole (U4, E2)."""
+        return ab.unit is not None and ab.unit.phase == RUNNING

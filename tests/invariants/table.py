@@ -1,0 +1,74 @@
+"""Table 4.2, once more: what each type of Command occupies, and what becomes of the user."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from tests.invariants.model import Record
+
+
+@dataclass(frozen=True)
+class Row:
+    """One type of Command."""
+
+    devices: frozenset[str]
+    feedback: bool = False
+    leaves: bool = False
+    engages: bool = False
+
+
+def row(devices: str, marks: str = "") -> Row:
+    """A row: devices, and which of ``feedback``, ``leaves``, ``engages`` it is marked with."""
+    names = marks.split()
+    return Row(
+        frozenset(devices.split()), "feedback" in names, "leaves" in names, "engages" in names
+    )
+
+
+TABLE: Mapping[str, Row] = {
+    "active-sensing-human": row("human-detection locomotion localization", "feedback engages"),
+    "face-human": row("human-detection locomotion", "engages"),
+    "q-and-a": row("speaker speech-recognition", "engages"),
+    "tracking-human": row("human-detection locomotion", "feedback engages"),
+    "face-human-and-speak": row("human-detection locomotion speaker", "engages"),
+    "turn-and-speak": row("locomotion localization speaker"),
+    "set-direction": row("locomotion localization"),
+    "turn": row("locomotion"),
+    "set-speed-and-time": row("locomotion"),
+    "stop-moving": row("locomotion"),
+    "speak": row("speaker"),
+    "move-head": row("neck"),
+    "point-by-hand": row("arm"),
+    "gesture": row("arm neck"),
+    "topological-move": row("locomotion localization", "feedback leaves"),
+    "set-position": row("locomotion localization", "feedback leaves"),
+    "set-position-and-direction": row("locomotion localization", "feedback leaves"),
+}
+
+MADE: Mapping[str, Row] = {
+    "dance": row("locomotion neck arm"),
+    "spin": row("locomotion"),
+    "waltz": row("locomotion localization"),
+    "point-by-laser": row("laser"),
+}
+"""What the makers of the robots of generated runs have added."""
+
+
+def contradictions(record: Record) -> Iterable[str]:
+    """What of a request is not as the table has it. A type that is in no table is not judged."""
+    command, devices = record["command"], set(record["devices"])
+    leaves = bool(record.get("leaves"))
+    if (record["priority"] == "low") != leaves:
+        yield f"its priority is {record['priority']}"  # K2
+    known = TABLE.get(command) or MADE.get(command)
+    if known is None:
+        if command == "iu" and (leaves or record.get("feedback")):
+            yield "it is a unit that leaves the user, or loops"  # U4
+        return
+    expected = known.devices | ({"speaker"} if record.get("text") else set())
+    if devices != expected:
+        yield f"it occupies {', '.join(sorted(devices))}"
+    for name in ("feedback", "leaves", "engages"):
+        if bool(record.get(name)) != getattr(known, name):
+            yield f"{name} is {bool(record.get(name))}"
