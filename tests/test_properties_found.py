@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from prima.interpreter.reader import read_document
 from prima.messages import (
     Command,
@@ -466,7 +464,6 @@ IN_ORDER = ("fa", "ea", "xa")
 SEARCH = "<block><active-sensing-human>Where are you?</active-sensing-human></block>"
 
 
-@pytest.mark.xfail(strict=True, reason="F5: a loop that O2 cuts is not stopped")
 def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> None:
     # The search turns the robot. What is wanted now says something, and moves nothing.
     body = f'<form id="f1">{SEARCH}<on event="touch"><speak order="now">Wait.</speak></on></form>'
@@ -474,7 +471,6 @@ def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> Non
     assert check(run.records, declared=IN_ORDER) == []
 
 
-@pytest.mark.xfail(strict=True, reason="S3 keeps the loser back; S2b did not decide")
 def test_a_decision_names_no_loser_that_s3_keeps_back() -> None:
     # Had the turn not started, "Hm." would still hold the speaker back from the search.
     reaction = '<par><turn angle="5"/><speak>Hm.</speak></par>'
@@ -483,7 +479,6 @@ def test_a_decision_names_no_loser_that_s3_keeps_back() -> None:
     assert check(run.records, declared=IN_ORDER) == []
 
 
-@pytest.mark.xfail(strict=True, reason="S2c without a parent that has ended, and no window")
 def test_s2c_what_cancels_a_tree_follows_nothing_that_has_ended() -> None:
     # fa has waited for the wheels since 5 ms. What ea wants now cancels its own turn (O2):
     # its parent has not ended, so the earlier request goes first (S2e).

@@ -14,7 +14,7 @@ from prima.scheduler.failures import Failures
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
-from prima.scheduler.selector import Selector
+from prima.scheduler.selector import Ranked, Selector
 from prima.session import Session
 from tests import test_extensions, test_rules, test_rules_in_documents
 
@@ -76,14 +76,13 @@ def loaded_order(patch: pytest.MonkeyPatch) -> None:
 
 def any_loser(patch: pytest.MonkeyPatch) -> None:
     """S2: who waits has lost, whatever keeps it."""
-    could = Selector._could_start
-    asked = []
+    asked: list[object] = []
 
-    def always(self: Selector, ab: Behavior, held: dict[str, Behavior]) -> bool:
-        asked.append(ab)
-        return True if asked.count(ab) % 2 else could(self, ab, held)
+    def in_turn(self: Selector, ranked: list[Ranked], held: object) -> list[Ranked]:
+        asked.append(ranked)
+        return ranked if len(asked) % 2 else []  # before the winner starts, and after
 
-    patch.setattr(Selector, "_could_start", always)
+    patch.setattr(Selector, "_able", in_turn)
 
 
 def ended_is_active(patch: pytest.MonkeyPatch) -> None:

@@ -96,8 +96,8 @@ class Application:
     order: int
     latest: Behavior | None = None
     window: Stream | None = None
-    continuing: tuple[Stream, int] | None = None
-    """The stream that O2 or O3 cancelled, and the instant for which it stays open."""
+    continuing: Stream | None = None
+    """A stream that O3 cancelled: it goes on with what is asked for in this instant."""
     units: dict[int, Behavior] = field(default_factory=dict)
     members: dict[str, Behavior] = field(default_factory=dict)
     """Its ABs in working memory, in the order of their requests."""

@@ -67,7 +67,7 @@ class Endings:
         """Whether it matters what Commands have done to the robot's state."""
         self._rolling: Behavior | None = None
         self._continuing: list[Application] = []
-        """Applications one of whose streams stays open for this instant (O2, O3)."""
+        """Applications one of whose streams stays open for this instant (O3)."""
         self._touched: dict[str, Stream] = {}
         self.halted = False
         self.changed = False
@@ -138,6 +138,8 @@ class Endings:
             self._delete(inner, rule)
         if ab.state is RUNNING and ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
+            if ab.feedback and "locomotion" in ab.devices:
+                self._rolling = ab
         self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state)
         self._remove(ab)
 

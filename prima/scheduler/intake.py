@@ -75,7 +75,8 @@ def check_steps(
     """
     for step in steps:
         if isinstance(step.what, Group):
-            check_steps(step.what.steps, app, table, group_devices(step.what, table))
+            inner = group_devices(step.what, table) if owned is None else owned
+            check_steps(step.what.steps, app, table, inner)
             continue
         check_command(step.what, app, table)
         if owned is not None:

@@ -85,11 +85,11 @@ class Mediator(Failures):
             self._refuse(app, asked, refused)
             return
         first = asked.steps[0].what
-        urgent = first if isinstance(first, Command) and first.now else None
-        if urgent is not None:
-            self._order_now(app, urgent, unit)
         reaction = asked.cause if unit is None else None
-        stream, parent = self._place(app, reaction, unit, urgent is not None)
+        if isinstance(first, Command) and first.now:
+            stream, parent = self._order_now(app, first, reaction, unit), None
+        else:
+            stream, parent = self._place(app, reaction, unit)
         self._hint(stream, asked)
         run = Run(asked.run, app, len(asked.steps))
         made = self._maker.chain(app, stream, asked.steps, asked, self._now(), run, unit)
@@ -143,17 +143,12 @@ class Mediator(Failures):
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
             return
-        # In a window that is its stream, and not one that goes with the state.
-        self._continue(app, [app.window] if app.window else [ab.stream for ab in state])
+        self._continue(app, going_on([ab.stream for ab in state]))
         self._withdraw(state, "O3")
 
-    def _continue(self, app: Application, streams: list[Stream]) -> None:
-        """O2, O3: what the application asks for in this instant goes on with one of its streams.
-
-        Of several that is the one of which an AB runs, or has run last; else the latest.
-        """
-        stream = max(reversed(streams), key=lambda one: (one.runs, one.turn))
-        app.continuing = (stream, self._now())
+    def _continue(self, app: Application, stream: Stream) -> None:
+        """O3: what the application asks for in this instant outside of windows goes on with it."""
+        app.continuing = stream
         self._continuing.append(app)
 
     def _hint(self, stream: Stream, asked: Request) -> None:
@@ -171,7 +166,7 @@ class Mediator(Failures):
             if stream.app is app and stream.hold and state in (None, stream.hold_state):
                 stream.hold = None
                 if stream.held_until is not None:
-                    self._continue(app, [stream])
+                    self._continue(app, stream)
                     self._let_go(stream, "left")
 
     def _refuse(self, app: Application, asked: Request, refused: Refused) -> None:
@@ -191,22 +186,22 @@ class Mediator(Failures):
         self.told.append(Told(app.name, None, [notice]))
 
     def _place(
-        self, app: Application, reaction: int | None, unit: Behavior | None, urgent: bool = False
+        self, app: Application, reaction: int | None, unit: Behavior | None
     ) -> tuple[Stream, Behavior | None]:
-        """O1, O2, O3, C3: the stream a new tree belongs to, and its parent there.
-
-        A reaction and what is wanted now (``urgent``) have none.
-        """
+        """O1, O3, C3: the stream a new tree belongs to, and its parent there; a reaction has none."""
         if unit is not None:
-            return unit.stream, None if urgent else parent_in(app, unit)
-        parent = self._parent(app) if reaction is None and not urgent else None
+            return unit.stream, parent_in(app, unit)
+        parent = self._parent(app) if reaction is None else None
         if parent is not None:
             return parent.stream, parent
-        stream = self._stream(app, reaction)
+        return self._opened(self._stream(app, reaction)), None
+
+    def _opened(self, stream: Stream) -> Stream:
+        """Let a stream begin, or go on after all."""
         if stream.name not in self.memory.streams:
             self.memory.open(stream)
         self._touched[stream.name] = stream
-        return stream, None
+        return stream
 
     def _parent(self, app: Application) -> Behavior | None:
         """O1: what a Command follows; in a window that is an AB of the window's stream."""
@@ -223,12 +218,9 @@ class Mediator(Failures):
         for stream in reversed(held):
             if stream.app is app:
                 return stream
-        continuing = app.continuing
-        if continuing is not None and continuing[1] == self._now():
-            return continuing[0]
         if reaction is None and app.window is not None:
             return app.window
-        return self._maker.stream(app)
+        return app.continuing or self._maker.stream(app)
 
     def _root(self, ab: Behavior, parent: Behavior | None, reaction: int | None) -> None:
         """Give a root its parent by O1, its reactive flag by C5, or its place by C3."""
@@ -236,25 +228,31 @@ class Mediator(Failures):
             link(parent, ab)
         elif reaction is not None:
             ab.reaction = reaction
-        elif ab.app.window is ab.stream or ab.app.continuing is not None:
+        elif ab.app.window is ab.stream:
             ab.freed = self._now()
 
-    def _order_now(self, app: Application, command: Command, unit: Behavior | None) -> None:
-        """O2: cancel this application's trees that want a device of the new Command."""
+    def _order_now(
+        self, app: Application, command: Command, reaction: int | None, unit: Behavior | None
+    ) -> Stream:
+        """O2: cancel this application's trees that want a device of the new Command.
+
+        Gives the stream that goes on: of those cancelled, if any was.
+        """
         devices = self._maker.table[command.type].occupied(command.text)
         if unit is not None:
-            clashing = [ab for ab in unit.inner.values() if ab.devices & devices]
-            self._cancel(clashing, devices)
-            return
+            self._cancel([ab for ab in unit.inner.values() if ab.devices & devices], devices)
+            return unit.stream
         streams = {
             ab.stream.name: ab.stream
             for ab in self.memory.of_app(app)
             if ab.devices & devices and ab.unit is None
         }
-        if streams:
-            self._continue(app, list(streams.values()))
-        for stream in streams.values():
-            self._cancel(list(stream.members.values()), devices)
+        if not streams:
+            return self._opened(self._stream(app, reaction))
+        stream = going_on(list(streams.values()))
+        for one in streams.values():
+            self._cancel(list(one.members.values()), devices)
+        return self._opened(stream)
 
     def open_window(self, told: Told) -> None:
         """C3: while an application handles the end of its Command, its stream stays open."""
@@ -334,3 +332,11 @@ class Mediator(Failures):
                 ab.late = now + allowance(ab)
             elif ab.longest is not None:
                 ab.late = now + ab.longest
+
+
+def going_on(streams: list[Stream]) -> Stream:
+    """O2, O3: of streams that are cancelled, the one that goes on.
+
+    That is the one that runs, or of which an AB started last; else the latest.
+    """
+    return max(reversed(streams), key=lambda one: (one.runs, one.turn))

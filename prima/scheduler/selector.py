@@ -61,12 +61,13 @@ class Selector:
             pass
 
     def _pass(self, now: int) -> bool:
-        """Go through the waiting ABs once; true when what ranks them changed on the way.
+        """Go through the waiting ABs once; true if another pass may find one that may start.
 
-        Until then all rank as they did in the beginning (S2).
+        All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
         """
         ranked = self._ranked(self.memory.waiting, now)
         held: Held = {}
+        before = len(self.started)
         for index, (rank, ab) in enumerate(ranked):
             refusal = self.policy.refusal(ab, self.memory)
             if refusal is None:
@@ -77,7 +78,7 @@ class Selector:
                 self._hold(ab, refusal)
             elif self._start(rank, ab, ranked[index + 1 :], held, now):
                 return True
-        return False
+        return len(self.started) > before
 
     def _ranked(self, found: dict[str, Behavior], now: int) -> list[Ranked]:
         policy, memory = self.policy, self.memory
@@ -90,10 +91,14 @@ class Selector:
             return None
         if self._yielding and refusal[0] == "S1" and self._give_way(ab, held):
             return None
+        self._hold_back(ab, held)
+        return refusal
+
+    def _hold_back(self, ab: Behavior, held: Held) -> None:
+        """S3: keep a waiting AB's devices from those that it outranks, if it is a reaction."""
         if self.policy.holds_back(ab):
             for device in ab.devices:
                 held.setdefault(device, ab)
-        return refusal
 
     def _refused_by_devices(self, ab: Behavior, held: Held) -> Refusal | None:
         """S1 and S3: a device is occupied, or held back for a reaction."""
@@ -107,12 +112,17 @@ class Selector:
                 return ("S3", held[device].id)
         return None
 
-    def _could_start(self, ab: Behavior, held: Held) -> bool:
-        """Whether nothing keeps a waiting AB from starting (S1, S3, F2, F6, K1)."""
-        return (
-            self._refused_by_devices(ab, held) is None
-            and self.policy.refusal(ab, self.memory) is None
-        )
+    def _able(self, ranked: list[Ranked], held: Held) -> list[Ranked]:
+        """Those of waiting ABs that nothing keeps from starting (S1, S3, F2, F6, K1)."""
+        able, held = [], dict(held)
+        for one in ranked:
+            ab = one[1]
+            if self.policy.refusal(ab, self.memory) is not None:
+                continue
+            if self._refused_by_devices(ab, held) is None:
+                able.append(one)
+            self._hold_back(ab, held)
+        return able
 
     def _occupant(self, ab: Behavior) -> Behavior | None:
         """Who occupies one of the AB's devices, but for a motion to be composed with (X5)."""
@@ -250,7 +260,7 @@ class Selector:
             now: the instant.
         """
         policy, memory = self.policy, self.memory
-        rivals = [one for one in lower if self._could_start(one[1], held)]
+        rivals = self._able(lower, held)
         composed = self._composing and rules.x5(ab, memory)
         why = self._admitted_by(ab, composed)
         reaction, ab.reaction = ab.reaction, None
@@ -258,7 +268,8 @@ class Selector:
         beside = composed or not rules.f3(ab, reaction is not None, memory)
         self._run(ab, now)
         changed = self._take_floor(ab, reaction, beside)
-        losers = [one for one in rivals if not self._could_start(one[1], held)]
+        still = self._able(lower, held) if rivals else []
+        losers = [one for one in rivals if one not in still]
         rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
         self.chronicle.decision(ab, rule, [loser.id for _, loser in losers])
         self.chronicle.start(ab, rule, reaction)
