@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "prima"
 LAYERS = [
     {"deferred", "errors"},
     {"diagnostics"},
-    {"values"},
+    {"names", "values"},
     {"commands", "prelude"},
     {"messages"},
     {"markup", "transcript", "codes", "leads"},

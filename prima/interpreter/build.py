@@ -54,11 +54,11 @@ from prima.interpreter.grammar import (
     Answers,
     fold,
 )
-from prima.interpreter.names import HANDLED, RESERVED, STRANGE
 from prima.interpreter.srgs import read_grammar
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
+from prima.names import HANDLED, RESERVED, STRANGE
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:

@@ -48,9 +48,9 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
-from prima.interpreter.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
+from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.values import read_value
 
 LONG_UNIT_MS = 20_000

@@ -17,10 +17,10 @@ from prima.interpreter.expressions import (
     check_script,
     plain_context,
 )
-from prima.interpreter.names import IDENTIFIER, RESERVED
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
+from prima.names import IDENTIFIER, RESERVED
 from prima.values import NUMBER, read_value
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import (
