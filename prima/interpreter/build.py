@@ -58,6 +58,7 @@ from prima.interpreter.srgs import read_grammar
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
+from prima.markup.vocabulary import Attribute
 from prima.names import HANDLED, RESERVED, STRANGE
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
@@ -118,12 +119,16 @@ class Builder:
         except ValueError:
             return default  # the schema's problem, told already
         for item in DIALOGUE.elements[node.key].attributes if node.key else ():
-            number = item.name == name and isinstance(value, int | float)
-            if number and not within(float(value), item.low, item.high):
-                message = f'{name} "{text}" {outside(kind, item.low, item.high)}'
-                remedy = nearest(kind, float(value), item.low, item.high)
-                self.problem(node, "out-of-range", message, remedy, name)
+            if item.name == name:
+                self.bounded(node, name, item, value)
         return value
+
+    def bounded(self, node: Node, name: str, item: Attribute, value: Json) -> None:
+        """Note an attribute's number that is not within the bounds of what it says."""
+        if isinstance(value, int | float) and not within(float(value), item.low, item.high):
+            message = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
+            remedy = nearest(item.kind, float(value), item.low, item.high)
+            self.problem(node, "out-of-range", message, remedy, name)
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
         """An attribute as an expression, if it is there."""
@@ -329,12 +334,14 @@ class Builder:
         for child in parts.get("property", ()):
             name = child.get("name")
             if name in PROPERTIES:
+                item, text = PROPERTIES[name], child.get("value")
                 try:
-                    found[name] = read_value(PROPERTIES[name], child.get("value"))
+                    found[name] = value = read_value(item.kind, text)
                 except ValueError as error:
                     wrong, remedy = parted(str(error))
-                    message = f'{name} "{child.get("value")}" {wrong}'
-                    self.problem(child, "bad-value", message, remedy, "value")
+                    self.problem(child, "bad-value", f'{name} "{text}" {wrong}', remedy, "value")
+                    continue
+                self.bounded(child, "value", item, value)
         return found
 
     def handlers(self, parts: Parts) -> tuple[Handler, ...]:

@@ -6,7 +6,17 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import MAX_TEXT, source
-from prima.interpreter.elements import Block, Field, Filled, Item, Subdialog, Unit, all_items
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Item,
+    Subdialog,
+    Unit,
+    all_items,
+)
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.frame import (
     MAX_DEPTH,
@@ -19,10 +29,25 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
-from prima.messages import CloseUnit, Command, Event, Notice, OpenUnit, Step
+from prima.interpreter.vocabulary import USUAL_CONFIDENCE
+from prima.messages import CloseUnit, Command, Event, Json, Notice, OpenUnit, Step
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
+
+
+def confidence_level(document: Document, form: Form, field: Field | None = None) -> float:
+    """How sure a recogniser has to be of what the user said (0 to 1; VoiceXML 6.3.2)."""
+    nearer = field.properties if field is not None else {}
+    settings = {**document.properties, **form.properties, **nearer}
+    return float(settings.get("confidencelevel", USUAL_CONFIDENCE))
+
+
+def _shadow(notice: Notice) -> dict[str, Json]:
+    """What is known of an utterance besides what it means."""
+    utterance = notice.data.get("utterance")
+    sure = notice.data.get("confidence", None if utterance is None else 1.0)
+    return {"utterance": utterance, "confidence": sure}
 
 
 class Algorithm:
@@ -129,6 +154,7 @@ class Algorithm:
                     if prompt.bargein is not None:
                         settings["bargein"] = prompt.bargein
         frame.reprompt = True
+        settings.pop("confidencelevel", None)  # it is for who understands, not for who listens
         args = {key: f"{value}ms" if key == "timeout" else value for key, value in settings.items()}
         text = " ".join(said)[:MAX_TEXT]
         self.owner.count_output(len(text), field.node)
@@ -138,13 +164,11 @@ class Algorithm:
         self.owner.execute.check(notice, fiber)
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
-            heard = notice.data.get("utterance")
-            event = self.owner.internal(outcome, "", command, utterance=heard)
-            raise Thrown(event, command.source)
+            raise Thrown(
+                self.owner.internal(outcome, "", command, **_shadow(notice)), command.source
+            )
         self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
-        self.owner.engine.set(
-            frame.dialog, f"{field.name}$", {"utterance": notice.data.get("utterance")}
-        )
+        self.owner.engine.set(frame.dialog, f"{field.name}$", _shadow(notice))
         yield from self._process(frame, fiber, field, field.filled)
 
     def _process(self, frame: Frame, fiber: Fiber, item: Item, own: Sequence[Filled]) -> Content:

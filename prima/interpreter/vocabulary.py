@@ -13,7 +13,25 @@ from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
 NAMESPACE = "urn:prima:dialogue:1"
 
 TYPES = ("boolean", "number", "digits", "date", "time", "text")
-PROPERTIES = {"timeout": "duration", "bargein": "boolean"}
+USUAL_CONFIDENCE = 0.5
+"""How sure a recogniser has to be where no document says so (VoiceXML 2.0, 6.3.2)."""
+_ASKING = TABLE_4_2["q-and-a"].arguments
+PROPERTIES = {
+    item.name: item
+    for item in (
+        attribute("timeout", "duration", _ASKING["timeout"].doc),
+        attribute("bargein", "boolean", _ASKING["bargein"].doc),
+        attribute(
+            "confidencelevel",
+            "number",
+            "how sure the recogniser has to be of an answer; below it, it is nomatch",
+            default=f"{USUAL_CONFIDENCE}",
+            low=0,
+            high=1,
+        ),
+    )
+}
+"""Settings of questions, by name."""
 
 SPEAKING = tuple(row.name for row in TABLE_4_2.values() if row.name != "q-and-a")
 ACTING = (*SPEAKING, "command", "par", "seq", "iu")
@@ -159,7 +177,7 @@ ELEMENTS = (
     ),
     Element(
         "property",
-        "A setting for what stands in the same element: timeout, bargein.",
+        f"A setting for what stands in the same element: {', '.join(PROPERTIES)}.",
         (
             attribute("name", "text", "which", "required", choices=tuple(PROPERTIES)),
             attribute("value", "text", "its value", "required"),
