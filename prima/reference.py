@@ -186,7 +186,7 @@ def _command(row: CommandType) -> tuple[str, ...]:
     ]
     return (
         name,
-        ", ".join(sorted(row.devices)),
+        ", ".join(sorted(row.devices)) or "none",
         ", ".join(mark for mark, holds in marks.items() if holds),
         "" if row.text == "none" else row.text,
         ", ".join(arguments),

@@ -167,6 +167,64 @@ def test_par_and_seq_make_one_tree() -> None:
     assert len({record["tree"] for record in bench.phases("request")}) == 1
 
 
+# Pauses in texts --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "cues"),
+    [
+        ('Look.<break time="1s"/>There.', "Look. There.", [(5, 1000)]),
+        (' <break time="500ms"/> Well ', "Well", [(0, 500)]),
+        (
+            'a <value expr="1 + 1"/> <break time="20ms"/>\n b<break time="1s"/>',
+            "a 2 b",
+            [(3, 20), (5, 1000)],
+        ),
+        ('a<break time="1s"/><break time="2s"/>b', "a b", [(1, 1000), (1, 2000)]),
+        ('<value expr="\'\'"/><break time="1s"/>b', "b", [(0, 1000)]),
+    ],
+)
+def test_a_break_is_a_pause_in_what_is_said(
+    text: str, said: str, cues: list[tuple[int, int]]
+) -> None:
+    bench = Bench(f"<form id='a'><block><speak>{text}</speak></block></form>")
+    (record,) = bench.phases("request")
+    assert record["text"] == said
+    assert [(one["at"], one["pause"]) for one in record["cues"]] == cues
+
+
+def test_breaks_of_prompts_stand_where_they_are_said() -> None:
+    bench = Bench(
+        """<form id="a"><field name="f" type="boolean"><prompt>So, <break time="1s"/> well?</prompt>
+        <prompt cond="false">No <break time="3s"/>.</prompt><prompt>Or <break time="2s"/> not?</prompt>
+        </field></form>"""
+    )
+    (record,) = bench.phases("request")
+    assert record["text"] == "So, well? Or not?"
+    assert record["cues"] == [{"at": 3, "pause": 1000}, {"at": 12, "pause": 2000}]
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "remedy"),
+    [
+        ('<speak><break time="1s"/></speak>', "nothing-to-say", '<pause time="1s"/>'),
+        ('<active-sensing-human><break time="1s"/></active-sensing-human>', "nothing-to-say", ""),
+        ("<speak>a<break/></speak>", "missing-attribute", 'time="..."'),
+        ('<speak>a<break time="1"/></speak>', "bad-value", '"1s"'),
+        ('<speak>a<break time="90s"/></speak>', "out-of-range", "60s"),
+        ('<pause time="0s"/>', "out-of-range", "1ms"),
+        ("<pause/>", "missing-attribute", 'time="..."'),
+        ('<break time="1s"/>', "misplaced-element", '<pause time="1s"/>'),
+        ('<speak>a<pause time="1s"/></speak>', "misplaced-element", '<break time="1s"/>'),
+        ('<iu><speak>a<break time="60s"/></speak></iu>', "long-unit", ""),
+    ],
+)
+def test_what_is_wrong_with_a_pause_is_told(content: str, code: str, remedy: str) -> None:
+    _, problems = read(f"<form id='a'><block>{content}<exit/></block></form>")
+    (problem,) = problems
+    assert problem.code == code and remedy in problem.remedy, problem
+
+
 # Questions --------------------------------------------------------------------------------
 
 ASK = """<form id="a"><field name="colour">

@@ -53,6 +53,23 @@ def rehearse(
     return api.rehearse(path, policy)
 
 
+def test_pauses_last_as_long_as_they_say(tmp_path: Path) -> None:
+    body = (
+        """<form id="a"><block><speak>One.{}</speak>{}<gesture name="bow"/><exit/></block></form>"""
+    )
+    starts = []
+    for pauses in (("", ""), ('<break time="800ms"/>', ""), ("", '<pause time="1.2s"/>')):
+        transcript = rehearse(tmp_path, body.format(*pauses))
+        (start,) = [
+            one
+            for one in transcript.records
+            if one["phase"] == "start" and one["command"] == "gesture"
+        ]
+        starts.append(start["time"])
+    plain, broken, paused = starts
+    assert (round(broken - plain, 3), round(paused - plain, 3)) == (0.8, 1.2)
+
+
 def test_the_recogniser_of_a_scenario_may_be_unsure(tmp_path: Path) -> None:
     body = """<form id="a"><field name="town"><prompt>Which town?</prompt>
       <option>Boston</option><option>Austin</option>

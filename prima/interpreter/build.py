@@ -35,6 +35,7 @@ from prima.interpreter.elements import (
     Item,
     Link,
     Log,
+    Pause,
     Prompt,
     Reprompt,
     Return,
@@ -184,7 +185,7 @@ class Builder:
 
     def text(self, node: Node) -> Text:
         """Text with values in it, white space folded."""
-        parts: list[str | Expression] = []
+        parts: list[str | Expression | Pause] = []
         for item in node.content:
             if isinstance(item, str):
                 folded = " ".join(item.split())
@@ -197,9 +198,15 @@ class Builder:
                 expr = self.expression(item)
                 if expr is not None:
                     parts.append(expr)
+            elif item.tag == "break":
+                parts.append(self.pause(item))
         if parts and isinstance(parts[-1], str):
             parts[-1] = parts[-1].rstrip()
         return tuple(part for part in parts if part != "")
+
+    def pause(self, node: Node) -> Pause:
+        """A break."""
+        return Pause(int(self.value(node, "time", "duration", 0)))  # in ms
 
     def params(self, node: Node) -> tuple[tuple[str, str | Expression], ...]:
         """The param children."""
@@ -683,8 +690,11 @@ class Builder:
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]
             choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]
             self.problem(node, "exclusive", excluding, "Keep one of them.", choices[-1])
-        if row.text == "required" and text is None:
+        wordless = text is not None and all(isinstance(part, Pause) for part in text)
+        if wordless or (row.text == "required" and text is None):
             remedy = "Write its text inside it."
+            if wordless and row.text == "required":
+                remedy += ' A pause between Commands is <pause time="1s"/>.'
             self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
 
     def act(self, node: Node) -> Act | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import MAX_TEXT, source
+from prima.interpreter.content import source
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -30,7 +30,7 @@ from prima.interpreter.frame import (
     Transfer,
 )
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
-from prima.messages import CloseUnit, Command, Event, Json, Notice, OpenUnit, Step
+from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
@@ -135,7 +135,8 @@ class Algorithm:
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
         """Ask, and take the answer: the Command Q&A (C4)."""
         settings = {**self.owner.document.properties, **frame.form.properties, **field.properties}
-        said: list[str] = []
+        text = ""
+        cues: tuple[Cue, ...] = ()
         if frame.reprompt:
             seen = frame.prompts.get(field.name, 0) + 1
             frame.prompts = {**frame.prompts, field.name: seen}
@@ -148,7 +149,8 @@ class Algorithm:
             highest = max((prompt.count for prompt in fitting), default=0)
             for prompt in fitting:
                 if prompt.count == highest:
-                    said.append(self.owner.execute.text(prompt.text, fiber))
+                    text, more = self.owner.execute.speech(prompt.text, fiber, text)
+                    cues += more
                     if prompt.timeout is not None:
                         settings["timeout"] = prompt.timeout
                     if prompt.bargein is not None:
@@ -156,9 +158,10 @@ class Algorithm:
         frame.reprompt = True
         settings.pop("confidencelevel", None)  # it is for who understands, not for who listens
         args = {key: f"{value}ms" if key == "timeout" else value for key, value in settings.items()}
-        text = " ".join(said)[:MAX_TEXT]
         self.owner.count_output(len(text), field.node)
-        command = Command("q-and-a", args, text or None, lang=field.lang, source=source(field.node))
+        command = Command(
+            "q-and-a", args, text or None, lang=field.lang, source=source(field.node), cues=cues
+        )
         number = self.owner.request([Step(command)], fiber)
         notice = yield number
         self.owner.execute.check(notice, fiber)
