@@ -40,7 +40,8 @@ CODES: dict[str, str] = {
     "no-form": "An application is made of forms, its states; it begins with the first.",
     "no-such-form": "A goto, subdialog or link names a form that is not there.",
     "no-such-item": "A name is used that no item of the form has.",
-    "no-such-rule": "A grammar names a rule that it does not have.",
+    "no-such-rule": "A grammar names a rule that it does not have; or a tag names one to which its"
+    " own rule does not refer.",
     "no-such-name": "A scenario, world or application names a place, thing, gesture, sensor, device or"
     " application that the world, robot or scenario does not have.",
     "no-such-argument": "A Command is given an argument that the robot's profile does not name.",
@@ -58,7 +59,8 @@ CODES: dict[str, str] = {
     " be meant; if it is over there, say so with <exit/>, or in a subdialog with <return/>.",
     "dead-content": "What stands behind a goto, return or exit is never reached.",
     "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
-    " form item, <foreach> or <script> declares. At run time that is error.semantic.",
+    " form item, <foreach> or <script> declares. At run time that is error.semantic. A grammar's tag"
+    " uses a name that no tag of the grammar declares: at run time such an answer is no match.",
     "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
     " stopped.",
     "assigning-condition": "A condition has = where a comparison, ==, was most likely meant: it changes the"
@@ -76,13 +78,15 @@ CODES: dict[str, str] = {
     " into pieces at semantic breakpoints (thesis 4.5).",
     "shared-device": "Branches of a par that need one device cannot run at once: they run one after"
     " the other, in document order (rule U3).",
-    "bad-token": "A word of a grammar cannot be said or typed: a quote that is not closed, or a key that"
-    " no telephone has.",
-    "format": "The grammar is of a format that is not read: JSGF, GSL or another. SRGS is, as XML or ABNF.",
+    "bad-token": "A word of a grammar cannot be said or typed: a quote that is not closed, a key that"
+    " no telephone has, or in the ABNF form a question mark, which SRGS reserves (2.5).",
+    "format": "The grammar is of a format that is not read: JSGF, GSL or another. SRGS is, as XML or ABNF."
+    " Or its media type says the other of these two forms than it has; or none of SRGS's.",
     "language": "The grammar is in a language that whoever loads it does not take.",
     "mode": "A grammar is for voice or for dtmf, and what it refers to is of the same mode.",
     "no-root": "The grammar names no rule to begin with, and has more than one: write root on <grammar>.",
-    "not-abnf": "The text is no grammar in the ABNF form of SRGS; the place is where reading stopped.",
+    "not-abnf": "The text is no grammar in the ABNF form of SRGS; the place is where reading stopped. Its first"
+    " line is the header, #ABNF 1.0 UTF-8; and nothing else.",
     "not-fetched": "A grammar refers to another file, and whoever loads it fetches none.",
     "private-rule": "A grammar refers to a rule of another grammar that is private there. Make it public.",
     "tag-format": "tag-format names a language that is not read: semantics/1.0 and semantics/1.0-literals are.",

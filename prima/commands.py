@@ -231,6 +231,13 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
             ),
             _row("speak", "Speak", "speaker", "Says its text.", text="required"),
             _row(
+                "pause",
+                "Pause",
+                "",
+                "Does nothing for a while; what stands behind it waits.",
+                time=Argument("duration", "for how long", 1, 60000, required=True),
+            ),
+            _row(
                 "move-head",
                 "Move Head",
                 "neck",
@@ -289,7 +296,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
         )
     }
 )
-"""The 17 Command types by name."""
+"""The 17 Command types by name, and Pause, which is none of the thesis's and needs no device."""
 
 
 _A_KIND = {

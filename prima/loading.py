@@ -231,7 +231,16 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
     problems: list[Problem] = []
     for path in paths:
         problems += _validate_one(str(path))
-    return sorted(set(problems))
+    return sorted(once(problems))
+
+
+def once(problems: Iterable[Problem]) -> list[Problem]:
+    """Problems once each: what is an error in a file is no warning of a document that names it."""
+    found = dict.fromkeys(problems)
+    errors = {(one.place, one.message) for one in found if one.severity == "error"}
+    return [
+        one for one in found if one.severity == "error" or (one.place, one.message) not in errors
+    ]
 
 
 def _validate_one(path: str) -> list[Problem]:
@@ -242,8 +251,10 @@ def _validate_one(path: str) -> list[Problem]:
             from prima.voicexml.document import read_page
 
             page = read_page(_path(path).name, path, data)
-            return [*page.problems, *page.warnings(), *_not_there(page, _path(path).parent)]
-        if not application and is_grammar(data):
+            folder = _path(path).parent
+            found = [*page.problems, *page.warnings(), *_not_there(page, folder)]
+            return [*found, *_grammars_of(page, folder)]
+        if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
             return _grammar_problems(_path(path), data)
         root = None if application else parse(path, data)
         if root is None or root.namespace == DIALOGUE.namespace:
@@ -299,36 +310,68 @@ SCHEME = pattern(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 """How a URI begins that is no file's name."""
 GRAMMAR = pattern(rb"<(?:[\w.-]+:)?grammar[\s>/]")
 """How the root element of a grammar begins that is a file of its own."""
+GRAMMAR_FILES = (".gram", ".abnf", ".grxml", ".srgs")
+"""How the names of files end that are nothing but grammars."""
+MOST_BEGUN = 2000
+"""Characters of a file that are looked at to tell what it is."""
 OTHER_FORMS = (b"#ABNF", b"#JSGF", b";GSL", b"#GSL")
 """How grammars begin that are no XML."""
 
 
 def is_grammar(data: bytes) -> bool:
-    """Whether a file is a grammar, as far as its beginning tells."""
+    """Whether a file is a grammar, as far as its beginning tells; it may lack its header."""
     root = root_of(data)
-    return root.startswith(OTHER_FORMS) or GRAMMAR.match(root) is not None
+    if root.startswith(OTHER_FORMS) or GRAMMAR.match(root) is not None:
+        return True
+    if root.startswith((b"<", b"{")):
+        return False
+    from prima.grammar.media import looks_like_abnf
+
+    return looks_like_abnf(root[:MOST_BEGUN].decode("latin-1"))
 
 
 def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
     """What is wrong with a grammar, and with those of its folder that it refers to."""
     from prima.grammar import load
 
-    def fetch(uri: str) -> bytes:
-        from prima.voicexml.document import FetchError
+    try:
+        problems = load(data, base=path.name, fetch=_fetcher(path.parent)).warnings()
+    except DocumentError as error:
+        problems = error.problems
+    return [_in_folder(path.parent, problem) for problem in problems]
 
+
+def _in_folder(folder: Path, problem: Problem) -> Problem:
+    return problem._replace(place=problem.place._replace(file=str(folder / problem.place.file)))
+
+
+def _fetcher(folder: Path) -> Callable[[str], bytes]:
+    """Gives the bytes of grammars in a folder."""
+    from prima.voicexml.document import FetchError
+
+    def fetch(uri: str) -> bytes:
         try:
-            return _fetch(path.parent, uri)
+            return _fetch(folder, uri)
         except FetchError as error:
             raise LookupError(str(error).rstrip(".")) from None
 
-    try:
-        problems = load(data, base=path.name, fetch=fetch).warnings()
-    except DocumentError as error:
-        problems = error.problems
-    return [
-        problem._replace(place=problem.place._replace(file=str(path.parent / problem.place.file)))
-        for problem in problems
-    ]
+    return fetch
+
+
+def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
+    """What is wrong with the grammars in files that a VoiceXML document names."""
+    from prima.voicexml.check import grammar_problems
+
+    fetch = _fetcher(folder)
+    for node in page.root.walk():
+        uri = node.get("src").strip()
+        if node.tag != "grammar" or not uri or SCHEME.match(page.resolve(uri, node)):
+            continue
+        for problem in grammar_problems(node, page.lang, page.base(), fetch):
+            if problem.place.file != node.source.file:
+                yield _in_folder(folder, problem)
+            elif problem.code != "no-such-file":  # which is told already
+                yield problem
 
 
 def _prices(document: Document) -> list[Problem]:

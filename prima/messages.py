@@ -9,7 +9,7 @@ All of them are data: whoever receives one decides what it means.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from prima.deferred import dataclass, field
 
@@ -249,16 +249,56 @@ class Failed:
     reason: str
 
 
+class Hypothesis(NamedTuple):
+    """What a recogniser takes an utterance for, and how sure it is (0 to 1)."""
+
+    text: str
+    confidence: float = 1.0
+
+
+class Understood(NamedTuple):
+    """What an application makes of an utterance, and of which hypothesis."""
+
+    value: Json
+    utterance: str
+    confidence: float = 1.0
+
+
 @dataclass(slots=True)
 class Heard:
     """The user said something (rule V1)."""
 
     text: str
     data: Data = field(default_factory=dict)
-    """Of a question with marks: ``markname``, the last one passed when the user began to speak,
+    """Of a recogniser that tells: ``confidence``, how sure it is of the text (0 to 1; 1 if it does
+    not tell), and ``alternatives``, what else it may have been, each an object with ``text`` and
+    ``confidence``. Of a question with marks: ``markname``, the last one passed when the user began to speak,
     or None, and ``marktime``, the ms that were played from there on. Of a recording:
     ``duration``, its ms, and ``maxtime``, whether it was cut off. ``toolong``: it took longer than
     the question lets it (``longest``)."""
+
+    @property
+    def hypotheses(self) -> list[Hypothesis]:
+        """What it may have been, the likeliest first; of equal ones in the order given."""
+        others = self.data.get("alternatives")
+        told = [one for one in others if isinstance(one, dict)] if isinstance(others, list) else []
+        found = [Hypothesis(self.text, _confidence(self.data))]
+        found += [Hypothesis(str(one.get("text", "")), _confidence(one)) for one in told]
+        return sorted(found, key=lambda one: -one.confidence)
+
+    def filled(self, answer: Understood) -> dict[str, Json]:
+        """What is told of a question that it answers."""
+        told = {name: value for name, value in self.data.items() if name != "alternatives"}
+        if "confidence" in told or answer.utterance != self.text:
+            told["confidence"] = answer.confidence
+        return {"outcome": "filled", "utterance": answer.utterance, "value": answer.value, **told}
+
+
+def _confidence(data: Data) -> float:
+    """How sure a recogniser is, 0 to 1; 1 where it does not tell."""
+    told = data.get("confidence")
+    sure = isinstance(told, int | float) and not isinstance(told, bool) and 0 <= told <= 1
+    return float(told) if sure and told is not None else 1.0
 
 
 @dataclass(slots=True)

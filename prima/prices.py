@@ -21,16 +21,19 @@ from prima.interpreter.elements import (
     Form,
     GroupTemplate,
     Item,
+    Pause,
     Run,
     StepTemplate,
     Text,
     Unit,
     all_acts,
     all_items,
+    pauses_in,
 )
 from prima.markup.tree import Node
 from prima.sim.scenario import POINTING_MS, Profile
 from prima.sim.voice import duration
+from prima.values import milliseconds
 from prima.voicexml.document import VoiceDocument
 
 UNKNOWN_LETTERS = 20
@@ -208,8 +211,9 @@ def _motion(command: CommandTemplate, row: CommandType, profile: Profile) -> tup
             return POINTING_MS, True
         case "gesture":
             return profile.gestures.get(str(args.get("name")), 0), isinstance(args.get("name"), str)
-        case "set-speed-and-time" if isinstance(args.get("time"), int):
-            return int(str(args["time"])), True
+        case "pause" | "set-speed-and-time":
+            time = args.get("time")
+            return milliseconds(time, 0) if isinstance(time, str) else 0, isinstance(time, str)
         case "turn" if isinstance(args.get("angle"), int | float):
             return round(abs(float(str(args["angle"]))) / profile.turn_speed * 1000), True
         case name:
@@ -219,9 +223,11 @@ def _motion(command: CommandTemplate, row: CommandType, profile: Profile) -> tup
 def _speech(text: Text | None, lang: str, profile: Profile) -> tuple[int, bool]:
     if not text:
         return 0, True
-    said = "".join("x" * UNKNOWN_LETTERS if isinstance(one, Expression) else one for one in text)
+    unknown = "x" * UNKNOWN_LETTERS
+    words = [one if isinstance(one, str) else unknown for one in text if not isinstance(one, Pause)]
     known = not any(isinstance(one, Expression) for one in text)
-    return duration(said, lang, profile.voices), known
+    spoken = duration("".join(words), lang, profile.voices) if words else 0
+    return spoken + pauses_in(text), known
 
 
 def _question(field: Field, form: Form, document: Document, profile: Profile) -> Price:

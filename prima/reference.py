@@ -34,7 +34,7 @@ from prima.interpreter import (
     grammar,
     handling,
 )
-from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, SPEAKING
+from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
@@ -186,7 +186,7 @@ def _command(row: CommandType) -> tuple[str, ...]:
     ]
     return (
         name,
-        ", ".join(sorted(row.devices)),
+        ", ".join(sorted(row.devices)) or "none",
         ", ".join(mark for mark, holds in marks.items() if holds),
         "" if row.text == "none" else row.text,
         ", ".join(arguments),
@@ -358,18 +358,12 @@ def defaults() -> str:
     question = TABLE_4_2["q-and-a"].arguments
     timeout = question["timeout"].default
     assert isinstance(timeout, int)
-    return table(
-        ("property", "kind", "default", "meaning"),
-        (
-            ("`timeout`", "duration", f"`{seconds(timeout)}`", sentence(question["timeout"].doc)),
-            (
-                "`bargein`",
-                "boolean",
-                f"`{str(question['bargein'].default).lower()}`",
-                sentence(question["bargein"].doc),
-            ),
-        ),
-    )
+    usual = {"timeout": seconds(timeout), "bargein": str(question["bargein"].default).lower()}
+    rows = [
+        (f"`{name}`", item.kind, f"`{usual.get(name, item.default)}`", sentence(item.doc))
+        for name, item in PROPERTIES.items()
+    ]
+    return table(("property", "kind", "default", "meaning"), rows)
 
 
 ACCEPTED = {

@@ -32,6 +32,7 @@ from prima.messages import (
     GoOn,
     Halted,
     Heard,
+    Hypothesis,
     Inbound,
     Json,
     LeaveState,
@@ -317,7 +318,7 @@ class Session:
         """V1: the question that listens, then links that listen all the time, then nomatch."""
         self.mediator.senses_user()
         self._serial += 1
-        told = dict(value.data)
+        told, said = dict(value.data), value.hypotheses
         self._record(
             "event",
             "user",
@@ -334,19 +335,18 @@ class Session:
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
             return
         if question is not None and question.run is not None:
-            answer = self.apps[question.app.name].answer(question.run.number, value.text)
+            answer = self.apps[question.app.name].answer(question.run.number, said)
             if answer is not None:
-                data = {"outcome": "filled", "utterance": value.text, "value": answer, **told}
-                self._conclude(question.id, data)
+                self._conclude(question.id, value.filled(answer))
                 return
-            link = self.apps[question.app.name].listens_to(value.text)
+            link = self.apps[question.app.name].listens_to(said)
             if link is not None and link.event:
                 # As in VoiceXML, a link ends the input of the field that is being visited.
                 self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
                 return
-        if question is None and self._breaks_in(value.text, told):
+        if question is None and self._breaks_in(value, said):
             return
-        if self._follow_links(value.text) or question is None or question.silent:
+        if self._follow_links(value.text, said) or question is None or question.silent:
             return
         if asked is None or not asked.cued("hotword"):
             self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text, **told})
@@ -357,7 +357,7 @@ class Session:
         command = question.command
         return question.listening or (command is not None and bool(command.args.get("bargein")))
 
-    def _breaks_in(self, text: str, data: dict[str, Json]) -> bool:
+    def _breaks_in(self, value: Heard, said: list[Hypothesis]) -> bool:
         """Whether an application takes what the user says while its prompts are being said."""
         now, memory = self.chronicle.now, self.mediator.memory
         for ab in [*memory.running.values(), *memory.waiting.values()]:
@@ -367,16 +367,16 @@ class Session:
             during: Command | None = ab.command
             if ab.state is WAITING:  # between two prompts, the first of which has just ended
                 during = app.before(ab.command) if ab.freed == now else None
-            if during is not None and app.breaks_in(now, during, text, data):
+            if during is not None and app.breaks_in(now, during, value, said):
                 self._act(app)
                 return True
         return False
 
-    def _follow_links(self, text: str) -> bool:
+    def _follow_links(self, text: str, said: list[Hypothesis]) -> bool:
         taken = False
         event = Event("speech", self._serial, {"text": text})
         for app in self._in_order():
-            link = app.listens_to(text)
+            link = app.listens_to(said)
             if link is not None:
                 taken = True
                 app.follow(self.chronicle.now, link, event)

@@ -75,8 +75,11 @@ class Bench:
         assert question is not None
         self.step(Listening(question.id))
 
-    def hears(self, text: str) -> None:
-        self.step(Heard(text))
+    def hears(self, text: str, confidence: float | None = None, **others: float) -> None:
+        """The user says something; of which, and of ``others``, the recogniser is so sure."""
+        told = [{"text": word, "confidence": sure} for word, sure in others.items()]
+        data = {} if confidence is None else {"confidence": confidence}
+        self.step(Heard(text, {**data, **({"alternatives": told} if told else {})}))
 
     def silence(self) -> None:
         question = self.session.mediator.question()

@@ -53,6 +53,14 @@ def test_speech_costs_what_it_lasts(tmp_path: Path) -> None:
     assert price.devices == {"speaker"}
 
 
+def test_pauses_cost_what_they_last_and_only_those_in_speech_the_speaker(tmp_path: Path) -> None:
+    (said,) = priced(tmp_path, block('<speak>Good <break time="2s"/>morning.</speak>'))
+    assert (said.lasts, said.known) == (lasting("Good morning.") + 2000, True)
+    (unit,) = priced(tmp_path, block('<iu><speak>Good.</speak><pause time="3s"/></iu>'))
+    assert (unit.lasts, unit.known) == (lasting("Good.") + 3000, True)
+    assert unit.devices == {"speaker"}
+
+
 def test_what_an_expression_says_is_not_known(tmp_path: Path) -> None:
     (price,) = priced(tmp_path, block('<speak>Good <value expr="1"/></speak>'))
     assert not price.known and price.seconds.startswith("at least ")

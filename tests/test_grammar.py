@@ -751,6 +751,109 @@ def test_the_parser_of_abnf_and_the_engine_are_loaded_when_needed() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+# Media types --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("file", "kind", "form"),
+    [("g.gram", "application/srgs+xml", "ABNF"), ("g.grxml", "application/srgs", "XML")],
+)
+def test_a_type_that_contradicts_the_form_is_refused_where_it_stands(
+    file: str, kind: str, form: str
+) -> None:  # SRGS 2.2.2
+    files = {"g.gram": f"{ABNF}public $r = x;", "g.grxml": xml('<rule id="r">x</rule>')}
+    right = {"ABNF": "application/srgs", "XML": "application/srgs+xml"}[form]
+
+    def fetch(uri: str) -> bytes:
+        return files[uri].encode()
+
+    def problem(*given: object, **options: object) -> str:
+        with pytest.raises(GrammarError) as caught:
+            load(*given, fetch=fetch, **options)  # type: ignore[arg-type]
+        (one,) = caught.value.problems
+        return str(one)
+
+    told = (
+        f'error: The type "{kind}" contradicts "{file}", which is in the {form} form.'
+        f" Write {right}, or leave the type out. [format]"
+    )
+    assert problem(files[file], base=file, type=kind).endswith(told)
+    assert problem(f"{ABNF}$r = a\n| $<{file}>~<{kind}>;", base="a.gram") == f"a.gram:5:3: {told}"
+    both = f"{ABNF}$r = $<{file}>~<{right}> $<{file}>~<{kind}>;"  # fetched once, checked twice
+    assert problem(both, base="a.gram").endswith(told)
+    node = inside(f'<grammar src="{file}" type="{kind}"/>')
+    assert problem(node) == f"{node.attribute_place('src')}: {told}"
+    inline = files[file] if form == "XML" else f"<grammar><![CDATA[{files[file]}]]></grammar>"
+    node = inside(inline.replace("<grammar", f'<grammar type="{kind}"', 1))
+    assert "contradicts this grammar, which is in the" in problem(node)
+
+
+def test_a_type_in_use_that_is_none_of_srgs_is_taken_with_a_warning() -> None:
+    def fetch(uri: str) -> bytes:
+        return f"{ABNF}public $r = x;".encode()
+
+    kind = "application/abnf"
+    for grammar in (
+        load(f"{ABNF}$r = x;", type=kind),
+        load(f"{ABNF}$r = $<b.gram>~<{kind}>;", base="a.gram", fetch=fetch),
+        load(inside(f'<grammar src="b.gram" type="{kind}"/>'), fetch=fetch),
+        load(inside(f'<grammar type="{kind}"><![CDATA[{ABNF}$r = x;]]></grammar>')),
+    ):
+        (warning,) = grammar.warnings()
+        assert (warning.severity, warning.code) == ("warning", "format")
+        assert "read as application/srgs. Write application/srgs." in str(warning)
+        assert grammar.match("x")
+    assert not load(f"{ABNF}$r = x;", type="application/srgs").warnings()
+
+
+# Names in tags ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rules", "told"),
+    [
+        ("$r = a {out = nothing};", ["nothing"]),
+        ("$r = a {out = nope(1)};", ["nope"]),
+        ("$r = a {out = session.id};", ["session"]),
+        ("$r = $s {out = rules.t}; $s = a;", ["rule t"]),
+        ("$r = $s {out = meta.t.text}; $s = a;", ["rule t"]),
+        ("$r = $s {out = rules.s + meta.s.text + rules.latest()}; $s = a;", []),
+        ("$r = $s {out = other}; $s = a {other = 1};", []),
+        ("$r = a {var n = 1} {out = n; out.text = 'nothing'; /* nope */};", []),
+        ("$r = a {out = Math.max(1, 2) + meta.current().text};", []),
+        ("$r = a {out = typeof nothing};", []),
+        ("$r = a {!{let f = function (x) { return x; }; out = f(2)}!};", []),
+        ("$r = $<builtin:grammar/boolean> {out = rules.boolean};", []),
+    ],
+)
+def test_names_that_no_tag_knows_are_told(rules: str, told: list[str]) -> None:
+    warnings = load(SCRIPT + rules, base="g.gram").warnings()
+    assert [
+        one.message.split('"')[1]
+        if "which nothing" in one.message
+        else f"rule {one.message.split(chr(34))[1]}"
+        for one in warnings
+    ] == told
+    codes = {"rule t": "no-such-rule"}
+    assert [one.code for one in warnings] == [codes.get(one, "undeclared-variable") for one in told]
+    assert all(one.place.file == "g.gram" and one.place.column > 1 for one in warnings)
+
+
+def test_tags_of_the_header_give_names_to_those_of_rules() -> None:
+    text = SCRIPT + "{!{function twice(x) { return 2 * x; }}!};\n$r = a {out = twice(2)};"
+    assert not load(text).warnings()
+    assert [one.code for one in load(text.replace("= twice", "= twcie")).warnings()] == [
+        "undeclared-variable"
+    ]
+
+
+def test_tags_of_other_formats_have_no_names() -> None:
+    assert not load(f"{ABNF}$r = a {{nothing}};").warnings()
+    assert not load(f"{ABNF}$r = a {{city='Rome'; n=Rome}};").warnings()
+    (warning,) = load(f"{ABNF}$r = $s {{$.x = $t}}; $s = a;").warnings()
+    assert warning.code == "no-such-rule"
+
+
 # What an audit found ----------------------------------------------------------------------------
 
 
@@ -795,11 +898,21 @@ def test_a_text_has_no_encoding_whatever_its_header_says(encoding: str) -> None:
     assert load(text).match("café")
 
 
-def test_a_byte_that_is_none_is_told_with_its_line_and_a_remedy() -> None:
+@pytest.mark.parametrize(
+    ("data", "place"),
+    [
+        (b"#ABNF 1.0 UTF-8;\rlanguage en;\rroot $r;\r$r = caf\xe9;", "4:9"),
+        ("#ABNF 1.0;\r\n$r = été ".encode() + b"\xe9;", "2:10"),
+        (b"\xef\xbb\xbf" + "#ABNF 1.0; // é".encode() + b"\xff", "1:16"),
+        (b'<grammar root="r">\r<rule id="caf\xc3\xa9\xe9"/></grammar>', "2:15"),
+    ],
+)
+def test_a_byte_that_is_none_is_told_with_its_place_and_a_remedy(data: bytes, place: str) -> None:
     with pytest.raises(GrammarError) as caught:
-        load(b"#ABNF 1.0 UTF-8;\rlanguage en;\rroot $r;\r$r = caf\xe9;", base="a.gram")
+        load(data, base="a.gram")
     (problem,) = caught.value.problems
-    assert (problem.place.line, bool(problem.remedy)) == (4, True)
+    assert (str(problem.place), bool(problem.remedy)) == (f"a.gram:{place}", True)
+    assert problem.message == "A byte here is not UTF-8."
 
 
 def test_what_stands_inside_of_words_does_not_cut_them() -> None:

@@ -62,7 +62,7 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
             4,
             8,
             "+ b;",
-            'Here may stand ";". Signs are words only in quotes.',
+            'Write <1-> for once or more; a sign that is said, in quotes: "+".',
         ),
         (
             HEAD + "$r = a {x}y};",
@@ -72,11 +72,12 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
             "A tag that holds a } itself is written {!{ ... }!}.",
         ),
         (
-            HEAD + "$r = $s!en<2>; $s = a;",
+            HEAD + "$r = $s<2>!en; $s = a;",
             4,
-            8,
-            "!en<2>; $s = a;",
-            "A language stands only after a token or a bracket, before its repeat: oui!fr<2>.",
+            11,
+            "!en; $s = a;",
+            "A language stands only after a token, a rule or a bracket, before its repeat:"
+            " oui!fr<2>.",
         ),
         (
             HEAD + '$r = "a b;',
@@ -133,3 +134,47 @@ def test_the_parser_is_made_for_abnf_alone() -> None:
     xml += '<rule id="r">a</rule></grammar>'
     code = f"import sys\nfrom prima.grammar import load\nload({xml!r})\nassert 'lark' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_line_that_goes_on_after_the_header_is_told_where_it_does() -> None:  # SRGS 4.1
+    told = (1, 11, "The line goes on after the header.", 'Put a line end after "#ABNF 1.0;".')
+    assert problems("#ABNF 1.0; language en;\nroot $r;\n$r = a;") == [told]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "language en;\nroot $r;\n$r = a;",
+        "// towns\n/* all */ root $r;\n$r = a;",
+        "$r = a;",
+        "public $r = a;",
+        "ABNF 1.0;\n$r = a;",
+        "#abnf",
+    ],
+)
+@pytest.mark.parametrize("kind", ["", "application/srgs"])
+def test_abnf_without_its_header_is_told_which_to_write(text: str, kind: str) -> None:
+    if text == "#abnf" and not kind:
+        return
+    with pytest.raises(GrammarError) as caught:
+        load(text, base="g/towns.gram", type=kind)
+    assert [str(one) for one in caught.value.problems] == [
+        "g/towns.gram:1:1: error: The header of the ABNF form is missing."
+        ' Begin with "#ABNF 1.0 UTF-8;" in the first line. [not-abnf]'
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "why", "remedy"),
+    [
+        ("$r = a?;", '"a?" has a question mark, which is reserved after an expansion.', "<0-1>"),
+        ("$r = $s?; $s = a;", '"$s?" has a question mark', "<0-1>"),
+        ("$r = a*;", '"*;" cannot stand here.', "<0->"),
+        ("$r = a+;", '"+;" cannot stand here.', "<1->"),
+    ],
+)
+def test_signs_of_other_languages_are_told_with_what_to_write(
+    text: str, why: str, remedy: str
+) -> None:
+    (_, _, message, wanted), *_ = problems(HEAD + text)
+    assert message.startswith(why) and remedy in wanted

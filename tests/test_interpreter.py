@@ -14,7 +14,7 @@ from prima.interpreter.frame import Fiber
 from prima.interpreter.grammar import fold
 from prima.interpreter.sensors import sensors_read
 from prima.interpreter.units import units_of
-from prima.messages import Loaded, Sensed, Unloaded
+from prima.messages import Heard, Loaded, Sensed, Unloaded
 from tests.robot import Bench, document, read
 
 # Items and content -------------------------------------------------------------------
@@ -167,6 +167,64 @@ def test_par_and_seq_make_one_tree() -> None:
     assert len({record["tree"] for record in bench.phases("request")}) == 1
 
 
+# Pauses in texts --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "cues"),
+    [
+        ('Look.<break time="1s"/>There.', "Look. There.", [(5, 1000)]),
+        (' <break time="500ms"/> Well ', "Well", [(0, 500)]),
+        (
+            'a <value expr="1 + 1"/> <break time="20ms"/>\n b<break time="1s"/>',
+            "a 2 b",
+            [(3, 20), (5, 1000)],
+        ),
+        ('a<break time="1s"/><break time="2s"/>b', "a b", [(1, 1000), (1, 2000)]),
+        ('<value expr="\'\'"/><break time="1s"/>b', "b", [(0, 1000)]),
+    ],
+)
+def test_a_break_is_a_pause_in_what_is_said(
+    text: str, said: str, cues: list[tuple[int, int]]
+) -> None:
+    bench = Bench(f"<form id='a'><block><speak>{text}</speak></block></form>")
+    (record,) = bench.phases("request")
+    assert record["text"] == said
+    assert [(one["at"], one["pause"]) for one in record["cues"]] == cues
+
+
+def test_breaks_of_prompts_stand_where_they_are_said() -> None:
+    bench = Bench(
+        """<form id="a"><field name="f" type="boolean"><prompt>So, <break time="1s"/> well?</prompt>
+        <prompt cond="false">No <break time="3s"/>.</prompt><prompt>Or <break time="2s"/> not?</prompt>
+        </field></form>"""
+    )
+    (record,) = bench.phases("request")
+    assert record["text"] == "So, well? Or not?"
+    assert record["cues"] == [{"at": 3, "pause": 1000}, {"at": 12, "pause": 2000}]
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "remedy"),
+    [
+        ('<speak><break time="1s"/></speak>', "nothing-to-say", '<pause time="1s"/>'),
+        ('<active-sensing-human><break time="1s"/></active-sensing-human>', "nothing-to-say", ""),
+        ("<speak>a<break/></speak>", "missing-attribute", 'time="..."'),
+        ('<speak>a<break time="1"/></speak>', "bad-value", '"1s"'),
+        ('<speak>a<break time="90s"/></speak>', "out-of-range", "60s"),
+        ('<pause time="0s"/>', "out-of-range", "1ms"),
+        ("<pause/>", "missing-attribute", 'time="..."'),
+        ('<break time="1s"/>', "misplaced-element", '<pause time="1s"/>'),
+        ('<speak>a<pause time="1s"/></speak>', "misplaced-element", '<break time="1s"/>'),
+        ('<iu><speak>a<break time="60s"/></speak></iu>', "long-unit", ""),
+    ],
+)
+def test_what_is_wrong_with_a_pause_is_told(content: str, code: str, remedy: str) -> None:
+    _, problems = read(f"<form id='a'><block>{content}<exit/></block></form>")
+    (problem,) = problems
+    assert problem.code == code and remedy in problem.remedy, problem
+
+
 # Questions --------------------------------------------------------------------------------
 
 ASK = """<form id="a"><field name="colour">
@@ -185,6 +243,76 @@ def test_options_fold_case_width_and_punctuation(said: str, value: str) -> None:
     bench = Bench(ASK.format(""))
     bench.hears(said)
     assert bench.logs() == [value]
+
+
+SURE = """{}<form id="a">{}<field name="f">{}<prompt>Well?</prompt>
+  <option>red</option><option>blue</option>
+  <nomatch><log expr="'no ' + event.data.utterance + ' ' + event.data.confidence"/></nomatch>
+  <filled><log expr="f + ' ' + f$.utterance + ' ' + f$.confidence"/></filled>
+</field></form>"""
+LEVEL = '<property name="confidencelevel" value="{}"/>'
+
+
+@pytest.mark.parametrize(
+    ("levels", "sure", "logged"),
+    [
+        (("", "", ""), None, "red Red 1"),
+        (("", "", ""), 0.5, "red Red 0.5"),
+        (("", "", ""), 0.49, "no Red 0.49"),
+        (("0.9", "", ""), 0.8, "no Red 0.8"),
+        (("0.9", "0.7", ""), 0.8, "red Red 0.8"),
+        (("0.9", "0.7", "0.85"), 0.8, "no Red 0.8"),
+        (("", "", "0"), 0.0, "red Red 0"),
+    ],
+)
+def test_an_answer_of_which_the_recogniser_is_not_sure_enough_is_nomatch(
+    levels: tuple[str, str, str], sure: float | None, logged: str
+) -> None:
+    bench = Bench(SURE.format(*(LEVEL.format(level) if level else "" for level in levels)))
+    bench.hears("Red", sure)
+    assert bench.logs() == [logged]
+
+
+def test_the_likeliest_words_that_a_question_takes_are_the_answer() -> None:
+    bench = Bench(SURE.format("", "", ""))
+    bench.hears("wed", 0.8, blue=0.6, red=0.7)
+    assert bench.logs() == ["red red 0.7"]
+    (heard,) = [one for one in bench.phases("event") if one["event"] == "speech"]
+    assert heard["text"] == "wed" and heard["data"]["confidence"] == 0.8
+    bench = Bench(SURE.format("", "", ""))
+    bench.hears("wed", 0.8, red=0.4)
+    assert bench.logs() == ["no wed 0.8"]
+
+
+def test_a_link_takes_only_what_the_recogniser_is_sure_of() -> None:
+    text = (
+        f"{LEVEL.format('0.6')}<link event='stop'><grammar>stop</grammar></link>"
+        "<form id='a'><on event='stop'><log>stopped</log></on></form>"
+    )
+    for sure, logged in ((0.5, []), (0.7, ["stopped"])):
+        bench = Bench(text)
+        bench.hears("stop", sure)
+        assert bench.logs() == logged
+    bench = Bench(text)
+    bench.hears("shop", 0.9, stop=0.8)
+    assert bench.logs() == ["stopped"]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"confidence": "much"},
+        {"confidence": 7},
+        {"confidence": True},
+        {"confidence": None},
+        {"alternatives": "blue"},
+        {"alternatives": ["blue", None, {}]},
+    ],
+)
+def test_what_a_recogniser_tells_wrongly_is_as_if_it_told_nothing(data: dict[str, object]) -> None:
+    bench = Bench(SURE.format("", "", ""))
+    bench.step(Heard("Red", data))
+    assert bench.logs() == ["red Red 1"]
 
 
 def test_signs_at_the_end_of_a_word_tell_answers_apart() -> None:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "prima"
 LAYERS = [
     {"deferred", "errors"},
     {"diagnostics"},
-    {"values"},
+    {"names", "values"},
     {"commands", "prelude"},
     {"messages"},
     {"markup", "transcript", "codes", "leads"},
@@ -55,16 +55,17 @@ INSIDE = {
     ],
     "grammar": [
         {"budget", "errors", "text", "numbers"},
+        {"media"},
         {"model", "moments", "sandbox"},
         {"values", "builtin", "leads", "legacy", "chart"},
         {"xmlform", "abnf", "ranking"},
-        {"semantics"},
+        {"semantics", "tags"},
         {"grammar", "linking"},
         {"loading"},
         {"__init__"},
     ],
     "interpreter": [
-        {"vocabulary", "names", "grammar", "evaluation"},
+        {"vocabulary", "grammar", "evaluation"},
         {"scripts", "ecmascript"},
         {"expressions", "leads"},
         {"elements", "srgs", "compiling"},

@@ -10,9 +10,9 @@ import pytest
 
 from prima.commands import Argument, check_argument
 from prima.errors import DocumentError, Problem
-from prima.interpreter.names import declared_names, free_names
 from prima.interpreter.reader import read_document
 from prima.markup.reader import parse
+from prima.names import declared_names, free_names
 from prima.sim.scenario import read_robot, read_scenario, read_world
 from tests.robot import read, xml
 

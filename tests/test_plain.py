@@ -25,10 +25,10 @@ from prima.interpreter.compiling import (
 from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import Engine
-from prima.interpreter.names import STRANGE
 from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
 from prima.interpreter.reader import read_document
 from prima.messages import Loaded, Occurred
+from prima.names import STRANGE
 from prima.prelude import MEMORY_LIMIT
 from prima.scheduler.selection import Policy
 from prima.session import Session

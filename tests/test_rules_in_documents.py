@@ -216,3 +216,73 @@ def test_e3_an_application_whose_commands_are_all_refused_ends_alone() -> None:
     assert [r["app"] for r in bench.phases("unload")] == ["ea"]
     bench.event("touch")
     assert bench.saying() == ["Hello."]
+
+
+# Pauses -------------------------------------------------------------------------------------------
+
+COUNTS = """<form id="a"><block>
+  <speak>Three.</speak><pause time="2s"/><speak>Two.</speak><exit/>
+</block></form>"""
+TALKS = """<form id="a"><on event="train"><speak>I like trains.</speak></on>
+  <on event="touch"><speak>Ouch.</speak></on>
+  <on event="later" reactive="false"><speak>By the way.</speak></on></form>"""
+
+
+def test_s4_a_reaction_starts_at_once_in_a_pause_which_goes_on() -> None:
+    bench = pair(COUNTS, TALKS)
+    bench.finish("Three.")
+    assert bench.saying() == ["pause"]
+    bench.event("touch")
+    assert bench.saying() == ["Ouch.", "pause"]
+    bench.finish("pause")
+    assert bench.saying() == ["Ouch."]
+    bench.finish("Ouch.")
+    assert bench.saying() == ["Two."]
+
+
+def test_f6_nobody_speaks_into_a_pause_between_two_sentences() -> None:
+    bench = pair(COUNTS, TALKS)
+    bench.event("later")
+    bench.finish("Three.")
+    assert bench.saying() == ["pause"]
+    bench.finish("pause")
+    assert bench.saying() == ["Two."]
+    bench.finish("Two.")
+    assert bench.saying() == ["By the way."]
+
+
+def test_u3_a_pause_delays_its_branch_alone() -> None:
+    bench = pair(
+        """<form id="a"><block><par><speak>Look there.</speak>
+        <seq><pause time="1s"/><move-head pan="30"/></seq></par><speak>Good.</speak></block></form>"""
+    )
+    assert bench.saying() == ["Look there.", "pause"]
+    bench.finish("pause")
+    assert bench.saying() == ["Look there.", "move-head"]
+    bench.finish("Look there.")
+    bench.finish("move-head")
+    assert bench.saying() == ["Good."]
+
+
+def test_u4_a_pause_in_a_unit_lets_nobody_in() -> None:
+    bench = pair(
+        """<form id="a"><block><iu><speak>Smile!</speak><pause time="1s"/><gesture name="bow"/></iu>
+        <exit/></block></form>""",
+        TALKS,
+    )
+    bench.finish("Smile!")
+    bench.event("touch")
+    assert bench.saying() == ["iu", "pause"]
+    bench.finish("pause")
+    assert bench.saying() == ["gesture", "iu"]
+    bench.finish("gesture")
+    assert bench.saying() == ["Ouch."]
+
+
+def test_e3_a_pause_has_a_time_within_its_bounds() -> None:
+    bench = pair(
+        """<form id="a"><block><pause time-expr="'90s'"/></block>
+        <error><log expr="event.name + ': ' + event.message"/><exit/></error></form>"""
+    )
+    (told,) = bench.logs()
+    assert told.startswith("error.semantic: ") and "from 1ms to 60s" in told

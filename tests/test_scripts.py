@@ -8,8 +8,8 @@ import pytest
 
 from prima.interpreter.evaluation import SCOPES, ScriptError
 from prima.interpreter.expressions import Engine
-from prima.interpreter.names import assigned_names
 from prima.interpreter.scripts import hoisted
+from prima.names import assigned_names
 from tests.work import steps
 
 

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from prima import api
+from prima.errors import DocumentError
 from prima.interpreter.evaluation import PULSE
 from prima.scheduler.selection import policy_named
 from prima.session import Session
@@ -50,6 +51,53 @@ def rehearse(
         "utf-8",
     )
     return api.rehearse(path, policy)
+
+
+def test_pauses_last_as_long_as_they_say(tmp_path: Path) -> None:
+    body = (
+        """<form id="a"><block><speak>One.{}</speak>{}<gesture name="bow"/><exit/></block></form>"""
+    )
+    starts = []
+    for pauses in (("", ""), ('<break time="800ms"/>', ""), ("", '<pause time="1.2s"/>')):
+        transcript = rehearse(tmp_path, body.format(*pauses))
+        (start,) = [
+            one
+            for one in transcript.records
+            if one["phase"] == "start" and one["command"] == "gesture"
+        ]
+        starts.append(start["time"])
+    plain, broken, paused = starts
+    assert (round(broken - plain, 3), round(paused - plain, 3)) == (0.8, 1.2)
+
+
+def test_the_recogniser_of_a_scenario_may_be_unsure(tmp_path: Path) -> None:
+    body = """<form id="a"><field name="town"><prompt>Which town?</prompt>
+      <option>Boston</option><option>Austin</option>
+      <nomatch><reprompt/></nomatch><noinput><exit/></noinput>
+      <filled><log expr="town + ' ' + town$.confidence"/><exit/></filled></field></form>"""
+    script = """<answer to="Which town" times="1" confidence="0.4">Boston
+        <alternative confidence="0.3">Austin</alternative></answer>
+      <when asked="Which town" count="2" after="1s"><say confidence="0.7">Bosten
+        <alternative confidence="0.6">Austin</alternative>
+        <alternative confidence="0.2">Houston</alternative></say></when>"""
+    transcript = rehearse(tmp_path, body, script)
+    table = transcript.table()
+    assert '"Boston" (confidence 0.4, or "Austin" 0.3)' in table
+    assert '"Bosten" (confidence 0.7, or "Austin" 0.6, or "Houston" 0.2)' in table
+    assert "log: Austin 0.6" in table
+    again = api.replay(transcript, tmp_path / "scenario.xml")
+    assert again.dumps() == transcript.dumps()
+
+
+def test_an_alternative_is_not_likelier_than_what_is_heard(tmp_path: Path) -> None:
+    script = """<answer to="a" confidence="0.4">b
+      <alternative confidence="0.5">c</alternative><alternative>d</alternative></answer>
+      <answer to="b">c<alternative confidence="1.5">c</alternative></answer>"""
+    with pytest.raises(DocumentError) as caught:
+        rehearse(tmp_path, "<form id='a'/>", script)
+    told = [(one.code, one.place.line) for one in caught.value.problems if one.severity == "error"]
+    assert ("out-of-range", 2) in told and ("missing-attribute", 2) in told
+    assert ("out-of-range", 3) in told
 
 
 def told(transcript: api.Transcript) -> list[str]:

@@ -146,6 +146,65 @@ def test_a_folder_stands_for_its_documents(tmp_path: Path) -> None:
     assert "files: 3; errors: 1, warnings: 1" in done.stderr
 
 
+PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
+<form id="f"><field name="a"><prompt>A?</prompt>
+<grammar src="g/towns.gram" type="application/srgs"/>
+<grammar src="g/towns.gram#r" type="application/srgs+xml"/>
+<grammar src="g/tags.gram" type="application/abnf"/>
+</field></form></vxml>
+"""
+TAGS = """#ABNF 1.0;
+language en;
+root $r;
+tag-format <semantics/1.0>;
+public $r = a
+  {out = nope};
+"""
+
+
+def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None:
+    (tmp_path / "g").mkdir()
+    (tmp_path / "page.vxml").write_text(PAGE)
+    (tmp_path / "g" / "tags.gram").write_text(TAGS)
+    towns = tmp_path / "g" / "towns.gram"
+    towns.write_text("#ABNF 1.0;\nlanguage en;\npublic $r = Rome;\n")
+    done = prima("validate", "page.vxml", "--format", "short", cwd=tmp_path)
+    assert [line.partition(" W")[0] for line in done.stdout.splitlines()] == [
+        'g/tags.gram:6:3: warning: The tag uses "nope", which nothing in the grammar declares:'
+        " what needs it is not taken. For the text itself write 'nope' in quotes."
+        " [undeclared-variable]",
+        'page.vxml:3:15: warning: The grammar "g/towns.gram" names no root rule.'
+        " Name a rule: #name.",
+        'page.vxml:4:15: warning: The type "application/srgs+xml" contradicts "g/towns.gram",'
+        " which is in the ABNF form.",
+        'page.vxml:5:15: warning: The type "application/abnf" is none of SRGS;'
+        " it is read as application/srgs.",
+    ]
+    towns.write_text("language en;\npublic $r = Rome;\n")  # an error of the file is told once
+    done = prima("validate", "page.vxml", "g", "--format", "short", cwd=tmp_path)
+    told = [line for line in done.stdout.splitlines() if "towns.gram:" in line]
+    assert told == [
+        "g/towns.gram:1:1: error: The header of the ABNF form is missing."
+        ' Begin with "#ABNF 1.0 UTF-8;" in the first line. [not-abnf]'
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("g.txt", "root $r;\n$r = a;", 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'),
+        ("g.gram", "towns: Rome", "Begin with <grammar ...> for the XML form, or with #ABNF"),
+        ("g.txt", "towns: Rome", "Begin with a root element, such as <prima> or <vxml>."),
+    ],
+)
+def test_a_grammar_without_its_beginning_is_told_how_grammars_begin(
+    tmp_path: Path, name: str, text: str, told: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    done = prima("validate", name, "--format", "short", cwd=tmp_path)
+    assert done.returncode == 1 and told in done.stdout
+
+
 def test_all_documents_that_come_along_are_clean() -> None:
     done = prima("validate", "documents", "--format", "short", cwd=ROOT)
     assert done.returncode == 0

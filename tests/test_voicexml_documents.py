@@ -687,6 +687,65 @@ def test_lastresult_has_the_n_best_as_many_as_maxnbest_says() -> None:  # 5.1.5
     assert call.logs() == ["2", "red bus", "red car"]
 
 
+N_BEST = """<property name="maxnbest" value="{}"/><form><field name="f"><prompt>Well?</prompt>
+<option value="B">Boston</option><option value="A">Austin</option><option value="H">Houston</option>
+<nomatch><foreach item="one" array="application.lastresult$"><log expr="'no ' + one.utterance + ' '
+ + one.confidence"/></foreach></nomatch>
+<filled><foreach item="one" array="application.lastresult$"><log expr="one.utterance + ' ' +
+ one.confidence + ' ' + one.interpretation + ' ' + one.inputmode"/></foreach>
+<log expr="f + ' ' + f$.utterance + ' ' + f$.confidence + ' ' + f$.interpretation + ' ' + f$.inputmode"/>
+</filled></field></form>"""
+
+
+@pytest.mark.parametrize(
+    ("most", "said", "logged"),
+    [
+        (
+            3,
+            ("Boston", {"Austin": 0.6, "Houston": 0.5}),
+            ["Boston 0.7 B voice", "Austin 0.6 A voice", "Houston 0.5 H voice"],
+        ),
+        (
+            2,
+            ("Boston", {"Austin": 0.6, "Houston": 0.5}),
+            ["Boston 0.7 B voice", "Austin 0.6 A voice"],
+        ),
+        (1, ("Boston", {"Austin": 0.6}), ["Boston 0.7 B voice"]),
+        (3, ("Bosten", {"Houston": 0.6, "Austin": 0.3}), ["Houston 0.6 H voice"]),
+    ],
+)
+def test_lastresult_has_what_else_the_recogniser_has_heard(
+    most: int, said: tuple[str, dict[str, float]], logged: list[str]
+) -> None:  # 5.1.5
+    call = Call(N_BEST.format(most))
+    call.play()
+    call.listens()
+    call.hears(said[0], 0.7, **said[1])
+    town, sure, code, _ = logged[0].split()
+    assert call.logs() == [*logged, f"{code} {town} {sure} {code} voice"]
+
+
+def test_what_the_recogniser_is_not_sure_of_is_nomatch_and_lastresult_tells() -> None:  # 5.1.5
+    call = Call(N_BEST.format(2))
+    call.play()
+    call.listens()
+    call.hears("Boston", 0.4, Austin=0.3, Houston=0.2)
+    assert call.logs() == ["no Boston 0.4", "no Austin 0.3"]
+
+
+def test_the_likeliest_words_decide_which_grammars_are_meant() -> None:  # 3.1.4
+    call = Call(
+        '<property name="maxnbest" value="5"/>'
+        f'<link event="stop"><grammar {GRAMMAR} root="r"><rule id="r">stop</rule></grammar></link>'
+        + ask("<option>shop</option><option>top</option>")
+        + "<catch event='stop'><log expr='application.lastresult$.length'/></catch>"
+    )
+    call.play()
+    call.listens()
+    call.hears("stop", 0.9, shop=0.8, top=0.7)
+    assert call.logs() == ["1"]
+
+
 @pytest.mark.parametrize("value", ["inf", "nan", "-1", "many", "1e99", ""])
 def test_a_maxnbest_that_is_none_is_one(value: str) -> None:  # 6.3.6
     assert asked(

@@ -113,7 +113,7 @@ def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int]:
             unread.append(str(error))
         if len(names) >= MANY and sys.stderr.isatty():
             click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
-    problems = list(dict.fromkeys(problems))
+    problems = loading.once(problems)
     _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell(f"prima: {message}")

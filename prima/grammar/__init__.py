@@ -7,7 +7,8 @@ from prima.grammar.errors import (
     UnsupportedLanguage,
 )
 from prima.grammar.grammar import Grammar, Match
-from prima.grammar.loading import load, supports
+from prima.grammar.loading import load
+from prima.grammar.media import supports
 from prima.grammar.semantics import SemanticError
 
 __all__ = [

@@ -13,6 +13,7 @@ from lark import Lark, TextSlice, Token, UnexpectedCharacters, UnexpectedInput, 
 
 from prima.errors import Place, Problem, did_you_mean
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
+from prima.grammar.media import FIRST_LINE, NO_HEADER
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys
 from prima.grammar.values import (
@@ -27,11 +28,12 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.markup.reader import ENCODINGS
+from prima.markup.reader import ENCODINGS, byte_place, with_line_feeds
 from prima.markup.tree import Source
 
 MAX_DEPTH = 100
 HEADER = re.compile(r"#ABNF[ \t]+([^\s;]+)(?:[ \t]+([^\s;]+))?[ \t]*;")
+LINE_END = re.compile(r"[ \t]*(?:\n|\Z)")
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
 DECLARATIONS = frozenset(
     ["base", "http-equiv", "language", "lexicon", "meta", "mode", "root", "tag-format"]
@@ -49,12 +51,12 @@ def decode_abnf(file: str, data: bytes) -> str:
         message = f'The encoding "{encoding[:40]}" is not accepted.'
         raise refuse(GrammarError, Place(file), "encoding", message, "Save it as UTF-8.")
     try:
-        return _lines(data.decode(encoding))
+        return with_line_feeds(data.decode(encoding))
     except UnicodeDecodeError as error:
-        line = _lines(data[: error.start].decode("latin-1")).count("\n") + 1
-        message = f"A byte here is not {encoding.upper()}."
+        message = f"A byte here is not {encoding.upper().removesuffix('-SIG')}."
         remedy = "Save it as UTF-8, or name the encoding it has in the header."
-        raise refuse(GrammarError, Place(file, line), "encoding", message, remedy) from None
+        place = byte_place(file, encoding, error)
+        raise refuse(GrammarError, place, "encoding", message, remedy) from None
 
 
 def as_unicode(text: str) -> bytes:
@@ -65,10 +67,6 @@ def as_unicode(text: str) -> bytes:
     blank = "UTF-8".ljust(len(header[2]))
     named = text[: header.start(2)] + blank + text[header.end(2) :]
     return named.encode(errors="surrogatepass")
-
-
-def _lines(text: str) -> str:
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _is_accepted(encoding: str) -> bool:
@@ -98,20 +96,33 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
         GrammarError: the text is not of this form.
     """
     document.where = where
-    header = HEADER.match(source.text)
-    if header is None or header[1] != "1.0":
-        found = header[1] if header else ""
-        message = f'Version "{found[:20]}" is not known.' if found else "The header is missing."
-        remedy = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
-        raise refuse(GrammarError, source.at(0), "not-abnf", message, remedy)
+    header = _header(source)
     reader = _Reader(source, document, problems)
     before = _reader.set(reader)
     try:
-        _parser().parse(TextSlice(source.text, header.end(), len(source.text)))
+        _parser().parse(TextSlice(source.text, header, len(source.text)))
     except UnexpectedInput as error:
         raise GrammarError([*problems.found, _unexpected(source, error)]) from None
     finally:
         _reader.reset(before)
+
+
+def _header(source: Source) -> int:
+    """Where the header ends, which has the first line for itself (4.1).
+
+    Raises:
+        GrammarError: there is none, or not of a version that is known, or its line goes on.
+    """
+    header = HEADER.match(source.text)
+    if header is None or header[1] != "1.0":
+        found = header[1] if header else ""
+        message = f'Version "{found[:20]}" is not known.' if found else NO_HEADER
+        raise refuse(GrammarError, source.at(0), "not-abnf", message, FIRST_LINE)
+    if LINE_END.match(source.text, header.end()) is None:
+        message = "The line goes on after the header."
+        remedy = f'Put a line end after "{header[0]}".'
+        raise refuse(GrammarError, source.at(header.end()), "not-abnf", message, remedy)
+    return header.end()
 
 
 # What cannot stand where it stands
@@ -134,6 +145,11 @@ _EXPECTED = {
 """What is named of all that may stand in a place: the first that may."""
 _CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
 """What ends alternatives: named where they may go on, too."""
+_QUANTIFIERS = {
+    "*": 'Write <0-> for any number of times; a sign that is a key or said, in quotes: "*".',
+    "+": 'Write <1-> for once or more; a sign that is said, in quotes: "+".',
+}
+"""Remedies for signs of other languages that SRGS keeps back (2.5)."""
 _UNCLOSED = {
     '"': 'A quote is opened and not closed: write the other ".',
     "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
@@ -161,7 +177,9 @@ def _remedy(error: UnexpectedInput, found: str, token: Token | None) -> str:
     if found.startswith("}"):
         return "A tag that holds a } itself is written {!{ ... }!}."
     if found.startswith("!"):
-        return "A language stands only after a token or a bracket, before its repeat: oui!fr<2>."
+        return "A language stands only after a token, a rule or a bracket, before its repeat: oui!fr<2>."
+    if found[:1] in _QUANTIFIERS:
+        return _QUANTIFIERS[found[0]]
     if token is None and found[:1] in _UNCLOSED:
         return _UNCLOSED[found[0]]
     assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
@@ -372,6 +390,7 @@ class _Reader:
     # Tokens (2.1), references (2.2), tags (2.6) and languages (2.7)
 
     def WORD(self, token: Token) -> str:
+        self._no_question_mark(token)
         return self._token(token.value, token)
 
     def QUOTED(self, token: Token) -> str:
@@ -381,6 +400,17 @@ class _Reader:
             self.note(token, "bad-token", message, "Write () for nothing.")
             return ""
         return self._token(text, token)
+
+    def _no_question_mark(self, token: Token) -> bool:
+        """Refuse the sign that is kept back wherever a repeat may stand (2.5)."""
+        if "?" not in token:
+            return False
+        message = f'"{token[:40]}" has a question mark, which is reserved after an expansion.'
+        remedy = (
+            "Write <0-1> after what may be left out; drop a ? of a sentence, which nobody hears."
+        )
+        self.note(token, "bad-token", message, remedy)
+        return True
 
     def _token(self, text: str, token: Token) -> str:
         if self.document.mode != "dtmf":
@@ -396,7 +426,7 @@ class _Reader:
         name = token[1:]
         if name in RESERVED:
             return Special(name)
-        if problem := name_problem(name):
+        if not self._no_question_mark(token) and (problem := name_problem(name)):
             self.note(token, "bad-value", problem, "Choose another name.")
         return self._reference(f"#{name}", token)
 

@@ -35,6 +35,8 @@ class Problems:
 
     def __init__(self) -> None:
         self.found: list[Problem] = []
+        self.warnings: list[Problem] = []
+        """What is accepted, and yet to be told."""
         self.kind: type[GrammarError] = GrammarError
 
     @property
@@ -46,6 +48,11 @@ class Problems:
         """Note one thing; after many, no more are looked at."""
         if not self.full:
             self.found.append(Problem(where(), "error", code, message, remedy))
+
+    def warn(self, where: Where, code: str, message: str, remedy: str = "") -> None:
+        """Note what is accepted, and yet better written in another way."""
+        if len(self.warnings) < MOST_PROBLEMS:
+            self.warnings.append(Problem(where(), "warning", code, message, remedy))
 
     def unsupported(
         self, kind: type[GrammarError], where: Where, code: str, message: str, remedy: str = ""

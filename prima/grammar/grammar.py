@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from prima.deferred import dataclass
@@ -11,7 +11,6 @@ from prima.errors import Problem
 from prima.grammar.budget import Budget
 from prima.grammar.chart import Chart
 from prima.grammar.errors import GrammarError, Where, refuse
-from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Mode, Reference
 from prima.grammar.ranking import best, frames
 from prima.grammar.semantics import Failure, Interpreter, SemanticError
@@ -55,10 +54,18 @@ class Match:
 class Grammar:
     """Rules that take utterances; made by :func:`prima.grammar.load`."""
 
-    def __init__(self, document: Document, rule: str, where: Where, lenient: bool = False) -> None:
+    def __init__(
+        self,
+        document: Document,
+        rule: str,
+        where: Where,
+        lenient: bool = False,
+        warnings: Sequence[Problem] = (),
+    ) -> None:
         self._document = document
         self._lenient = lenient
         self._where = where
+        self._warnings = warnings
         self.root = rule or document.root
         """The rule that is matched; empty if the document names none."""
 
@@ -93,32 +100,17 @@ class Grammar:
         return dict(self._document.meta)
 
     def warnings(self) -> list[Problem]:
-        """Tags of this document that are no script, so that what needs them is not taken (SISR)."""
-        document = self._document
-        tags = [*document.globals, *document.tags]
-        if not tags or document.dialect == "literals":
-            return []
-        from prima.grammar.sandbox import Sandbox
+        """What is accepted and hardly meant: media types, and tags that cannot be run (SISR)."""
+        from prima.grammar.tags import tag_warnings  # few callers ask
 
-        sandbox = Sandbox(Budget())
-        legacy = document.dialect == "legacy"
-        return [
-            Problem(
-                tag.where(),
-                "warning",
-                "bad-expression",
-                f'"{" ".join(tag.code.split())[:60]}" is not ECMAScript: what needs it is not taken.',
-            )
-            for tag in tags
-            if sandbox.fault(translate(tag.code) if legacy else tag.code)
-        ]
+        return [*self._warnings, *tag_warnings(self._document)]
 
     def rule(self, name: str) -> Grammar:
         """The grammar with another of its rules as root."""
         if name not in self._document.rules:
             message = f'There is no rule "{name}".'
             raise refuse(GrammarError, self._where(), "no-such-rule", message)
-        return Grammar(self._document, name, self._where, self._lenient)
+        return Grammar(self._document, name, self._where, self._lenient, self._warnings)
 
     def match(self, text: str, *, mode: str = "voice", most: int = 1, now: int = 0) -> list[Match]:
         """What an utterance may mean, best first; nothing if the grammar does not take it.

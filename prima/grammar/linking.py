@@ -17,6 +17,7 @@ from prima.grammar.errors import (
 )
 from prima.grammar.leads import index_choices
 from prima.grammar.legacy import FORMATS, settle
+from prima.grammar.media import check_form, media_type
 from prima.grammar.model import Document, Reference, Rule
 from prima.markup.uris import join
 
@@ -64,8 +65,12 @@ class Library:
 
     def fetch(self, uri: str, media: str, where: Where) -> Document | None:
         """The document of a URI, fetched the first time; what is wrong is noted."""
-        if uri in self.documents:
-            return self.documents[uri]
+        found = self.documents[uri] if uri in self.documents else self._first(uri, media, where)
+        if found is not None:
+            check_form(self.problems, media_type(media), found.form, uri, where)
+        return found
+
+    def _first(self, uri: str, media: str, where: Where) -> Document | None:
         self.documents[uri] = None
         if self._fetch is None:
             message = f'Nothing fetches the grammar "{uri[:200]}" here.'

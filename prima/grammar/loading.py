@@ -12,28 +12,18 @@ from prima.grammar.builtin import TYPES, Conflict, built_in
 from prima.grammar.errors import (
     GrammarError,
     UnsupportedBuiltIn,
-    UnsupportedFormat,
     UnsupportedLanguage,
     refuse,
 )
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, joined
+from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse, too_large
 from prima.markup.tree import Inner, Node, Source
 
-XML_TYPES = frozenset(
-    ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
-)
-ABNF_TYPES = frozenset(["application/srgs", "application/grammar"])
-OPEN_TYPES = frozenset(
-    ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
-)
-"""Types that say nothing of the form; the content does."""
-OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
-"""How formats that are not SRGS begin."""
 _NAMED = re.compile(rf"(?:builtin:.*|(?:{'|'.join(TYPES)})(?:\?.*)?)", re.DOTALL)
 _DECLARED = re.compile(r"""(<\?xml[^>]*?)\s+encoding\s*=\s*(?:"[^"]*"|'[^']*')""")
 
@@ -82,6 +72,8 @@ def load(
     else:
         data = source if isinstance(source, bytes) else _bytes(source)
         document = _document(lang, lenient, library, base, data, type)
+        media, file = media_type(type), urldefrag(base)[0]
+        check_form(library.problems, media, document.form, file, document.where)
         library.add(document)
     _language(library, document, languages)
     library.link()
@@ -92,7 +84,7 @@ def load(
     if lenient and rule and not document.rules[rule].public and rule != document.root:
         message = f'The rule "{rule}" is private: it is for this grammar alone.'
         raise refuse(GrammarError, document.where(), "private-rule", message)
-    return Grammar(document, rule, document.where, lenient)
+    return Grammar(document, rule, document.where, lenient, library.problems.warnings)
 
 
 def _language(library: Library, document: Document, languages: Languages | None) -> None:
@@ -136,22 +128,24 @@ def _element(
     rule: str,
 ) -> tuple[Document, str]:
     """A <grammar> element inside a document: rules, text in ABNF, or a reference by src."""
-    media = _media(node.get("type") or type)
+    media = media_type(node.get("type") or type)
     if node.get("xml:base"):
         base = joined(base, node.get("xml:base"), partial(node.attribute_place, "xml:base"))
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
     where = partial(_place, node)
     document = Document(base, where, mode or "voice", node.get("xml:lang", lang))
-    _known_type(media, where(), node.own_text)
-    if media in ABNF_TYPES or (not node.nodes and node.own_text.lstrip().startswith("#ABNF")):
+    check_known(media, where(), node.own_text)
+    if not node.nodes and (media in ABNF_TYPES or node.own_text.lstrip().startswith("#ABNF")):
         from prima.grammar.abnf import read_abnf
 
+        document.form = "ABNF"
         read_abnf(Inner(node), document, library.problems, where)
     else:
         read_xml(node, document, library.problems, inline=True)
         document.base = ""  # it is in the URI already
         _root(document)
+    check_form(library.problems, media, document.form, "", partial(node.attribute_place, "type"))
     library.add(document)
     return document, rule
 
@@ -169,7 +163,7 @@ def _external(
 ) -> tuple[Document, str]:
     where = partial(node.attribute_place, "src")
     uri, fragment = urldefrag(joined(base, node.get("src").strip(), where))
-    _known_type(media, where(), "")
+    check_known(media, where(), "")
     document = library.fetch(uri, media, where)
     library.problems.check()
     assert document is not None
@@ -202,25 +196,21 @@ def _document(
     lang: str, lenient: bool, library: Library, uri: str, data: bytes, type: str
 ) -> Document:
     """The bytes of a whole file as a document; its language is its own."""
-    media = _media(type)
+    media = media_type(type)
     uri, file = urldefrag(uri)[0], uri or "grammar"
     if len(data) > LIMITS.bytes:
         raise GrammarError(too_large(file, len(data)).problems)
     begin = _beginning(data)
-    _known_type(media, Place(file), begin)
+    check_known(media, Place(file), begin)
     document = Document(uri, partial(Place, file))
     if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
         from prima.grammar.abnf import decode_abnf, read_abnf
 
         source = Source(file, decode_abnf(file, data))
+        document.form = "ABNF"
         read_abnf(source, document, library.problems, document.where)
         return document
-    if begin and not begin.startswith("<"):
-        message = "This is no grammar of SRGS."
-        remedy = (
-            "Begin with <grammar ...> for the XML form, or with #ABNF 1.0 UTF-8; for the other."
-        )
-        raise refuse(GrammarError, Place(file), "not-xml", message, remedy)
+    check_no_text(file, begin)
     try:
         node = parse(file, data)
     except DocumentError as error:
@@ -237,27 +227,6 @@ def _beginning(data: bytes) -> str:
     if data[:2] in (b"#\0", b"\0#"):
         return data[:200].replace(b"\0", b"").decode("latin-1")
     return data[:200].decode("utf-8-sig", errors="replace").lstrip()
-
-
-def _media(type: str) -> str:
-    return type.split(";")[0].strip().lower()
-
-
-def _known_type(media: str, place: Place, begin: str) -> None:
-    """Refuse what is not SRGS."""
-    remedy = "Write it in SRGS: application/srgs+xml or application/srgs."
-    for start, name in OTHERS.items():
-        if begin.lstrip().startswith(start):
-            message = f"This grammar is in {name}, which is not supported."
-            raise refuse(UnsupportedFormat, place, "format", message, remedy)
-    if media not in XML_TYPES | ABNF_TYPES | OPEN_TYPES:
-        message = f'Grammars of type "{media[:80]}" are not supported.'
-        raise refuse(UnsupportedFormat, place, "format", message, remedy)
-
-
-def supports(type: str) -> bool:
-    """Whether grammars of a media type can be loaded."""
-    return _media(type) in XML_TYPES | ABNF_TYPES
 
 
 def _place(node: Node) -> Place:

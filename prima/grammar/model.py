@@ -8,6 +8,7 @@ from typing import Literal
 
 from prima.deferred import dataclass, field
 from prima.grammar.errors import Where
+from prima.grammar.media import Form
 from prima.messages import Json
 
 Mode = Literal["voice", "dtmf", ""]
@@ -140,5 +141,6 @@ class Document:
     """How tags are read: ``script``, ``literals`` or ``legacy``."""
     faults: dict[str, str] = field(default_factory=dict)
     """Scripts of tags that were needed, and why each is none by itself; empty if it is one."""
+    form: Form = "XML"
     merges: bool = False
     """Whether slots that referenced rules fill are those of the rule that refers."""

@@ -322,4 +322,5 @@ def _asked(field: Field) -> list[str]:
 
 def _text(text: Text) -> str:
     """Text with the expressions in it in braces."""
-    return "".join(part if isinstance(part, str) else f"{{{part.code}}}" for part in text)
+    shown = [f"{{{part.code}}}" if isinstance(part, Expression) else part for part in text]
+    return "".join(part if isinstance(part, str) else " " for part in shown)

@@ -25,7 +25,7 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.evaluation import Scope, ScriptError
-from prima.interpreter.form import Algorithm
+from prima.interpreter.form import Algorithm, confidence_level
 from prima.interpreter.frame import (
     Abandoned,
     Fiber,
@@ -50,6 +50,7 @@ from prima.messages import (
     Data,
     Event,
     GoOn,
+    Hypothesis,
     Json,
     LeaveState,
     Notice,
@@ -60,6 +61,7 @@ from prima.messages import (
     Say,
     Send,
     Step,
+    Understood,
 )
 
 if TYPE_CHECKING:
@@ -204,14 +206,16 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def _look(self, watch: Watch, raised: list[str]) -> None:
         raised += self.handling.check_watches([watch])
 
-    def listens_to(self, text: str) -> Link | None:
+    def listens_to(self, said: Sequence[Hypothesis]) -> Link | None:
         """The link that takes what the user said, innermost scope first (V1)."""
         frame = self.frame
         if frame is None:
             return None
-        for link in (*frame.form.links, *self.document.links):
-            if link.grammar.match(text) is not None:
-                return link
+        least = confidence_level(self.document, frame.form)
+        for text, confidence in said:
+            for link in (*frame.form.links, *self.document.links):
+                if confidence >= least and link.grammar.match(text) is not None:
+                    return link
         return None
 
     def follow(self, now: int, link: Link, event: Event) -> None:
@@ -226,16 +230,31 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             self._guard(self.transfer, frame, GoForm(link.form))
         self.cause = None
 
-    def answer(self, run: int, text: str) -> Json:
-        """The value of the asking field for what the user said, or None if it takes no such."""
-        answers = self.answers(run)
-        return answers.match(text) if answers is not None else None
+    def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
+        """What the asking field makes of what the user said, or None if it takes no such.
+
+        The likeliest hypothesis that it takes counts, if the recogniser is sure enough of it.
+        """
+        asking = self._asking(run)
+        if asking is None:
+            return None
+        form, field = asking
+        least = confidence_level(self.document, form, field)
+        for text, confidence in said:
+            value = field.answers.match(text) if confidence >= least else None
+            if value is not None:
+                return Understood(value, text, confidence)
+        return None
 
     def answers(self, run: int) -> Answers | None:
         """What the asking field takes, if a field asks."""
+        asking = self._asking(run)
+        return asking[1].answers if asking is not None else None
+
+    def _asking(self, run: int) -> tuple[Form, Field] | None:
         fiber = self._waiting.get(run)
         item = fiber.frame.item if fiber is not None else None
-        return item.answers if isinstance(item, Field) else None
+        return (fiber.frame.form, item) if fiber and isinstance(item, Field) else None
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
         """Give the application's own delayed events that are due."""

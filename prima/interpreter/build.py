@@ -35,6 +35,7 @@ from prima.interpreter.elements import (
     Item,
     Link,
     Log,
+    Pause,
     Prompt,
     Reprompt,
     Return,
@@ -54,11 +55,12 @@ from prima.interpreter.grammar import (
     Answers,
     fold,
 )
-from prima.interpreter.names import HANDLED, RESERVED, STRANGE
 from prima.interpreter.srgs import read_grammar
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
+from prima.markup.vocabulary import Attribute
+from prima.names import HANDLED, RESERVED, STRANGE
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:
@@ -118,12 +120,16 @@ class Builder:
         except ValueError:
             return default  # the schema's problem, told already
         for item in DIALOGUE.elements[node.key].attributes if node.key else ():
-            number = item.name == name and isinstance(value, int | float)
-            if number and not within(float(value), item.low, item.high):
-                message = f'{name} "{text}" {outside(kind, item.low, item.high)}'
-                remedy = nearest(kind, float(value), item.low, item.high)
-                self.problem(node, "out-of-range", message, remedy, name)
+            if item.name == name:
+                self.bounded(node, name, item, value)
         return value
+
+    def bounded(self, node: Node, name: str, item: Attribute, value: Json) -> None:
+        """Note an attribute's number that is not within the bounds of what it says."""
+        if isinstance(value, int | float) and not within(float(value), item.low, item.high):
+            message = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
+            remedy = nearest(item.kind, float(value), item.low, item.high)
+            self.problem(node, "out-of-range", message, remedy, name)
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
         """An attribute as an expression, if it is there."""
@@ -179,7 +185,7 @@ class Builder:
 
     def text(self, node: Node) -> Text:
         """Text with values in it, white space folded."""
-        parts: list[str | Expression] = []
+        parts: list[str | Expression | Pause] = []
         for item in node.content:
             if isinstance(item, str):
                 folded = " ".join(item.split())
@@ -192,9 +198,15 @@ class Builder:
                 expr = self.expression(item)
                 if expr is not None:
                     parts.append(expr)
+            elif item.tag == "break":
+                parts.append(self.pause(item))
         if parts and isinstance(parts[-1], str):
             parts[-1] = parts[-1].rstrip()
         return tuple(part for part in parts if part != "")
+
+    def pause(self, node: Node) -> Pause:
+        """A break."""
+        return Pause(int(self.value(node, "time", "duration", 0)))  # in ms
 
     def params(self, node: Node) -> tuple[tuple[str, str | Expression], ...]:
         """The param children."""
@@ -329,12 +341,14 @@ class Builder:
         for child in parts.get("property", ()):
             name = child.get("name")
             if name in PROPERTIES:
+                item, text = PROPERTIES[name], child.get("value")
                 try:
-                    found[name] = read_value(PROPERTIES[name], child.get("value"))
+                    found[name] = value = read_value(item.kind, text)
                 except ValueError as error:
                     wrong, remedy = parted(str(error))
-                    message = f'{name} "{child.get("value")}" {wrong}'
-                    self.problem(child, "bad-value", message, remedy, "value")
+                    self.problem(child, "bad-value", f'{name} "{text}" {wrong}', remedy, "value")
+                    continue
+                self.bounded(child, "value", item, value)
         return found
 
     def handlers(self, parts: Parts) -> tuple[Handler, ...]:
@@ -676,8 +690,11 @@ class Builder:
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]
             choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]
             self.problem(node, "exclusive", excluding, "Keep one of them.", choices[-1])
-        if row.text == "required" and text is None:
+        wordless = text is not None and all(isinstance(part, Pause) for part in text)
+        if wordless or (row.text == "required" and text is None):
             remedy = "Write its text inside it."
+            if wordless and row.text == "required":
+                remedy += ' A pause between Commands is <pause time="1s"/>.'
             self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
 
     def act(self, node: Node) -> Act | None:

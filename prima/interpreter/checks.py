@@ -44,13 +44,14 @@ from prima.interpreter.elements import (
     Unit,
     all_acts,
     all_items,
+    pauses_in,
     run_commands,
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
-from prima.interpreter.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
+from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.values import read_value
 
 LONG_UNIT_MS = 20_000
@@ -708,7 +709,7 @@ class Checker:
         for form, items in self.forms:
             for item in items:
                 if isinstance(item, Unit):
-                    self._long_unit(item.node, self._unit_text(item))
+                    self._long_unit(item.node, self._unit_speaks(item))
                 for prompt in item.prompts if isinstance(item, Field) else ():
                     self._literal(prompt.node, prompt.text, form)
 
@@ -851,27 +852,30 @@ class Checker:
     def _long_units(self, steps: Sequence[StepTemplate]) -> None:
         for step in steps:
             if isinstance(step.what, GroupTemplate):
-                text = sum(_letters(command.text) for command in run_commands(step.what.steps))
-                self._long_unit(step.what.node, text)
+                lasts = sum(self._lasts(one.text) for one in run_commands(step.what.steps))
+                self._long_unit(step.what.node, lasts)
 
-    def _long_unit(self, node: Node, letters: int) -> None:
+    def _lasts(self, text: Text | None) -> int:
+        """About how long (ms) it takes to say a text."""
         syllables = self.document.lang.lower().startswith(SYLLABLES)
-        lasts = letters * (MS_A_SYLLABLE if syllables else MS_A_LETTER)
+        return _letters(text) * (MS_A_SYLLABLE if syllables else MS_A_LETTER) + pauses_in(text)
+
+    def _long_unit(self, node: Node, lasts: int) -> None:
         if lasts > LONG_UNIT_MS:
             message = f"This unit speaks for about {lasts // 1000} s: no reaction can break in."
             self.note(node, "long-unit", message, "Divide it (thesis 4.5).", severity="warning")
 
-    @staticmethod
-    def _unit_text(unit: Unit) -> int:
-        letters = 0
+    def _unit_speaks(self, unit: Unit) -> int:
+        """About how long (ms) a unit around items speaks."""
+        lasts = 0
         for item in unit.items:
             if isinstance(item, Field):
-                letters += sum(_letters(prompt.text) for prompt in item.prompts[:1])
+                lasts += sum(self._lasts(prompt.text) for prompt in item.prompts[:1])
             elif isinstance(item, Block):
                 for act in all_acts(item.content):
                     if isinstance(act, Run):
-                        letters += sum(_letters(one.text) for one in run_commands(act.steps))
-        return letters
+                        lasts += sum(self._lasts(one.text) for one in run_commands(act.steps))
+        return lasts
 
     def _after_goto(self) -> None:
         """Content behind a goto, return or exit is never reached."""

@@ -14,7 +14,7 @@ from typing import Any
 
 from prima.deferred import dataclass, pattern
 from prima.interpreter.ecmascript import CONSTANTS, HELPERS, Scopes, index_of, number_text
-from prima.interpreter.names import GLOBALS, RESERVED
+from prima.names import GLOBALS, RESERVED
 
 Function = Callable[[Scopes], Any]
 Where = Callable[[str], tuple[str, ...]]

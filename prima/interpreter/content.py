@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from prima.interpreter.elements import (
@@ -18,6 +18,7 @@ from prima.interpreter.elements import (
     GroupTemplate,
     If,
     Log,
+    Pause,
     Reprompt,
     Return,
     Run,
@@ -42,7 +43,7 @@ from prima.interpreter.frame import (
 )
 from prima.interpreter.plain import PlainEngine
 from prima.markup.tree import Node
-from prima.messages import Command, Group, Json, Notice, Say, Step
+from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
 from prima.values import quoted, read_value, shown
 
 if TYPE_CHECKING:
@@ -100,11 +101,29 @@ class Executor:
         except ScriptError as error:
             raise self.failure(error, expr) from None
 
-    def text(self, parts: Text, fiber: Fiber, most: int = MAX_TEXT) -> str:
-        """Text with its values filled in, of ``most`` characters."""
+    def speech(self, parts: Text, fiber: Fiber, after: str = "") -> tuple[str, tuple[Cue, ...]]:
+        """What is said behind other text, with its values filled in, and its pauses as cues."""
+        said = after
+        cues: list[Cue] = []
+        piece: list[str | Expression] = []
+        for part in (*parts, None):
+            if part is not None and not isinstance(part, Pause):
+                piece.append(part)
+                continue
+            said = " ".join(filter(None, (said, self.text(piece, fiber))))
+            if part is not None:
+                cues.append(Cue(len(said), "pause", part.lasts))
+            piece = []
+        return said[:MAX_TEXT], tuple(cues)
+
+    def text(
+        self, parts: Iterable[str | Expression | Pause], fiber: Fiber, most: int = MAX_TEXT
+    ) -> str:
+        """Text with its values filled in, of ``most`` characters; without its pauses."""
         said, length = [], 0
         for part in parts:
-            text = part if isinstance(part, str) else self.said(part, fiber)
+            text = self.said(part, fiber) if isinstance(part, Expression) else part
+            text = text if isinstance(text, str) else " "
             said.append(text)
             length += len(text)
             if length > RESULT_LIMIT:
@@ -338,7 +357,7 @@ class Executor:
 
     def command(self, template: CommandTemplate, fiber: Fiber) -> Command:
         """A Command with its arguments."""
-        text = self.text(template.text, fiber) if template.text is not None else None
+        text, cues = self.speech(template.text, fiber) if template.text is not None else (None, ())
         self.owner.count_output(len(text or ""), template.node)
         args = {name: self.plain(value, fiber) for name, value in template.args.items()}
         extra = self.named(template.extra, fiber)
@@ -354,6 +373,7 @@ class Executor:
             lang=template.lang,
             source=source(template.node),
             restartable=template.restartable,
+            cues=cues,
         )
         if template.handlers:
             command.hook = template.handlers

@@ -12,8 +12,20 @@ from prima.markup.tree import Node
 if TYPE_CHECKING:
     from prima.messages import Json
 
-Text = tuple["str | Expression", ...]
-"""Text with expressions in it, in order."""
+Text = tuple["str | Expression | Pause", ...]
+"""Text with expressions and pauses in it, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """A silence inside of what is said, in ms."""
+
+    lasts: int
+
+
+def pauses_in(text: Text | None) -> int:
+    """How long all pauses of a text last together, in ms."""
+    return sum(part.lasts for part in text or () if isinstance(part, Pause))
 
 
 @dataclass(slots=True)

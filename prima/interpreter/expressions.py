@@ -28,9 +28,9 @@ from prima.interpreter.evaluation import (
     plain_number,
     whole,
 )
-from prima.interpreter.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
 from prima.messages import Json
+from prima.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.prelude import (
     CLOCK,
     DATE,

@@ -5,8 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import MAX_TEXT, source
-from prima.interpreter.elements import Block, Field, Filled, Item, Subdialog, Unit, all_items
+from prima.interpreter.content import source
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Item,
+    Subdialog,
+    Unit,
+    all_items,
+)
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.frame import (
     MAX_DEPTH,
@@ -19,10 +29,25 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
-from prima.messages import CloseUnit, Command, Event, Notice, OpenUnit, Step
+from prima.interpreter.vocabulary import USUAL_CONFIDENCE
+from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter
+
+
+def confidence_level(document: Document, form: Form, field: Field | None = None) -> float:
+    """How sure a recogniser has to be of what the user said (0 to 1; VoiceXML 6.3.2)."""
+    nearer = field.properties if field is not None else {}
+    settings = {**document.properties, **form.properties, **nearer}
+    return float(settings.get("confidencelevel", USUAL_CONFIDENCE))
+
+
+def _shadow(notice: Notice) -> dict[str, Json]:
+    """What is known of an utterance besides what it means."""
+    utterance = notice.data.get("utterance")
+    sure = notice.data.get("confidence", None if utterance is None else 1.0)
+    return {"utterance": utterance, "confidence": sure}
 
 
 class Algorithm:
@@ -110,7 +135,8 @@ class Algorithm:
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
         """Ask, and take the answer: the Command Q&A (C4)."""
         settings = {**self.owner.document.properties, **frame.form.properties, **field.properties}
-        said: list[str] = []
+        text = ""
+        cues: tuple[Cue, ...] = ()
         if frame.reprompt:
             seen = frame.prompts.get(field.name, 0) + 1
             frame.prompts = {**frame.prompts, field.name: seen}
@@ -123,28 +149,29 @@ class Algorithm:
             highest = max((prompt.count for prompt in fitting), default=0)
             for prompt in fitting:
                 if prompt.count == highest:
-                    said.append(self.owner.execute.text(prompt.text, fiber))
+                    text, more = self.owner.execute.speech(prompt.text, fiber, text)
+                    cues += more
                     if prompt.timeout is not None:
                         settings["timeout"] = prompt.timeout
                     if prompt.bargein is not None:
                         settings["bargein"] = prompt.bargein
         frame.reprompt = True
+        settings.pop("confidencelevel", None)  # it is for who understands, not for who listens
         args = {key: f"{value}ms" if key == "timeout" else value for key, value in settings.items()}
-        text = " ".join(said)[:MAX_TEXT]
         self.owner.count_output(len(text), field.node)
-        command = Command("q-and-a", args, text or None, lang=field.lang, source=source(field.node))
+        command = Command(
+            "q-and-a", args, text or None, lang=field.lang, source=source(field.node), cues=cues
+        )
         number = self.owner.request([Step(command)], fiber)
         notice = yield number
         self.owner.execute.check(notice, fiber)
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
-            heard = notice.data.get("utterance")
-            event = self.owner.internal(outcome, "", command, utterance=heard)
-            raise Thrown(event, command.source)
+            raise Thrown(
+                self.owner.internal(outcome, "", command, **_shadow(notice)), command.source
+            )
         self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
-        self.owner.engine.set(
-            frame.dialog, f"{field.name}$", {"utterance": notice.data.get("utterance")}
-        )
+        self.owner.engine.set(frame.dialog, f"{field.name}$", _shadow(notice))
         yield from self._process(frame, fiber, field, field.filled)
 
     def _process(self, frame: Frame, fiber: Fiber, item: Item, own: Sequence[Filled]) -> Content:

@@ -9,7 +9,7 @@ the scope has already, and a ``function`` there under another name, from which t
 from __future__ import annotations
 
 from prima.deferred import dataclass, field
-from prima.interpreter.names import DECLARES, HEADED, PAIRS, Reader
+from prima.names import DECLARES, HEADED, PAIRS, Reader
 
 HIDDEN = "$_"
 """What is added to the name of a function at the top."""

@@ -8,7 +8,7 @@ from functools import lru_cache
 from prima.deferred import pattern
 from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Document
-from prima.interpreter.names import GLOBALS, STRANGE, free_names, tokens_of
+from prima.names import GLOBALS, STRANGE, free_names, tokens_of
 
 SENSOR = pattern(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
 HIDING = pattern(

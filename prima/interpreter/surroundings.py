@@ -9,7 +9,9 @@ from prima.errors import Problem, did_you_mean, one_of
 from prima.interpreter.elements import (
     CommandTemplate,
     Document,
+    Expression,
     Field,
+    Pause,
     Run,
     Text,
     all_acts,
@@ -115,7 +117,7 @@ class Sayings:
     def __init__(self, documents: Iterable[Document], asked: bool) -> None:
         texts = [text for document in documents for text in _texts(document, asked)]
         self.lines = {_joined(text) for text in texts}
-        self._open = any(not isinstance(part, str) for text in texts for part in text)
+        self._open = any(isinstance(part, Expression) for text in texts for part in text)
         """Whether some of it is known only in a run."""
         self._all = "\n".join(map(fold, self.lines))
 
@@ -125,7 +127,8 @@ class Sayings:
 
 
 def _joined(text: Text) -> str:
-    return "".join(part for part in text if isinstance(part, str))
+    words = (" " if isinstance(part, Pause) else part for part in text)
+    return "".join(part for part in words if isinstance(part, str))
 
 
 def _texts(document: Document, asked: bool) -> list[Text]:

@@ -13,7 +13,25 @@ from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
 NAMESPACE = "urn:prima:dialogue:1"
 
 TYPES = ("boolean", "number", "digits", "date", "time", "text")
-PROPERTIES = {"timeout": "duration", "bargein": "boolean"}
+USUAL_CONFIDENCE = 0.5
+"""How sure a recogniser has to be where no document says so (VoiceXML 2.0, 6.3.2)."""
+_ASKING = TABLE_4_2["q-and-a"].arguments
+PROPERTIES = {
+    item.name: item
+    for item in (
+        attribute("timeout", "duration", _ASKING["timeout"].doc),
+        attribute("bargein", "boolean", _ASKING["bargein"].doc),
+        attribute(
+            "confidencelevel",
+            "number",
+            "how sure the recogniser has to be of an answer; below it, it is nomatch",
+            default=f"{USUAL_CONFIDENCE}",
+            low=0,
+            high=1,
+        ),
+    )
+}
+"""Settings of questions, by name."""
 
 SPEAKING = tuple(row.name for row in TABLE_4_2.values() if row.name != "q-and-a")
 ACTING = (*SPEAKING, "command", "par", "seq", "iu")
@@ -98,7 +116,7 @@ def _command(row: CommandType) -> Element:
     restart = () if row.feedback or row.now else (_RESTARTABLE,)
     says = row.text != "none"
     marks = [
-        "devices " + ", ".join(sorted(row.devices)),
+        "devices " + ", ".join(sorted(row.devices)) if row.devices else "no devices",
         *(["one Atomic Behavior for each loop"] if row.feedback else []),
         *(["leaves the user"] if row.leaves else []),
         *(["engages the user"] if row.engages else []),
@@ -107,9 +125,9 @@ def _command(row: CommandType) -> Element:
         row.name,
         f"{row.title}. {row.doc} [{'; '.join(marks)}]",
         (*arguments, *order, *restart),
-        ("param", "on", *(("value",) if says else ())),
+        ("param", "on", *(("value", "break") if says else ())),
         says,
-        source="thesis Table 4.2",
+        source="" if row.name == "pause" else "thesis Table 4.2",
     )
 
 
@@ -159,7 +177,7 @@ ELEMENTS = (
     ),
     Element(
         "property",
-        "A setting for what stands in the same element: timeout, bargein.",
+        f"A setting for what stands in the same element: {', '.join(PROPERTIES)}.",
         (
             attribute("name", "text", "which", "required", choices=tuple(PROPERTIES)),
             attribute("value", "text", "its value", "required"),
@@ -209,7 +227,7 @@ ELEMENTS = (
             attribute("timeout", "duration", "how long to wait for an answer", high=600000),
             attribute("bargein", "boolean", "whether the user may answer before it ends"),
         ),
-        ("value",),
+        ("value", "break"),
         text=True,
         source="VoiceXML 4.1",
     ),
@@ -487,6 +505,12 @@ ELEMENTS = (
         (attribute("expr", "expression", "the expression", "required"),),
         source="VoiceXML 4.1.4",
     ),
+    Element(
+        "break",
+        "A pause in what is said: the robot goes on with the same utterance after it.",
+        (attribute("time", "duration", "how long", "required", low=1, high=60000),),
+        source="SSML 2.2.3",
+    ),
 )
 
 HINTS = {
@@ -518,7 +542,7 @@ HINTS = {
         "Speech is plain text: leave the mark out.",
     ),
     **dict.fromkeys(
-        ("b", "break", "emphasis", "em", "i", "p", "phoneme", "prosody", "s", "say-as", "sub"),
+        ("b", "emphasis", "em", "i", "p", "phoneme", "prosody", "s", "say-as", "sub"),
         "Speech is plain text: leave the mark out.",
     ),
     "else-if": "Write <elseif>.",
@@ -530,7 +554,10 @@ HINTS = {
     "head": "Leave it out: facts about the document stand in <meta>.",
     "body": "Leave it out: forms stand in <prima>.",
     "html": "Begin with <prima>.",
-    "sleep": 'Write <send event="..." delay="..."/> and handle the event.',
+    **dict.fromkeys(
+        ("delay", "silence", "sleep", "wait"),
+        'Write <pause time="1s"/>; or, for an event afterwards, <send event="..." delay="1s"/>.',
+    ),
     "submit": 'Write <send to="...">.',
     "disconnect": "Write <exit/>.",
     "transfer": 'Write <send to="...">.',
@@ -539,7 +566,6 @@ HINTS = {
     "object": 'Write <command type="...">.',
     "stop": "Write <stop-moving>.",
     "move": "Write <topological-move>.",
-    "wait": 'Write <send event="..." delay="..."/> and handle the event.',
 }
 
 DIALOGUE = Vocabulary(NAMESPACE, "dialogue", "prima", ELEMENTS, HINTS)

@@ -6,7 +6,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from prima.interpreter.names import (
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
+from prima.names import (
     GLOBALS,
     IDENTIFIER,
     INSERTED,
@@ -15,9 +18,6 @@ from prima.interpreter.names import (
     free_names,
     tokens_of,
 )
-from prima.interpreter.vocabulary import DIALOGUE
-from prima.lsp.scan import Attr, Page, Tag
-from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
 from prima.voicexml.vocabulary import VOICEXML
 
 ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")

@@ -110,14 +110,24 @@ def decode(file: str, data: bytes) -> str:
             data
         ):  # its encoding counts for nothing there: told by the parser
             return data.decode("iso-8859-1")
-        line = data.count(b"\n", 0, error.start) + 1
         raise _error(
-            Place(file, line, error.start - data.rfind(b"\n", 0, error.start)),
+            byte_place(file, encoding, error),
             "encoding",
             f"A byte here is not {encoding.upper()}.",
             "Save it as UTF-8, or declare the encoding it has.",
         ) from None
+    return with_line_feeds(text)
+
+
+def with_line_feeds(text: str) -> str:
+    """Text whose lines end as XML has it, whatever they end with in the file (XML 1.0, 2.11)."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def byte_place(file: str, encoding: str, error: UnicodeDecodeError) -> Place:
+    """Where the byte stands that is not in a file's encoding; columns count characters."""
+    before = with_line_feeds(error.object[: error.start].decode(encoding, errors="ignore"))
+    return Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
 
 def _codec(encoding: str) -> str:

@@ -90,9 +90,18 @@ def text_remedy(node: Node, spoken: bool) -> str:
     return "Say it with <speak>, or remove it." if spoken else "Remove it."
 
 
+PAUSES = {
+    "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside of a text.',
+    "pause": 'Inside of a text write <break time="1s"/>; a <pause> stands between Commands.',
+}
+"""The two pauses, where the one stands in the place of the other."""
+
+
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
     """What to do with an element that stands where it may not."""
     allowed = vocabulary.parents(tag)
+    if tag in PAUSES and "break" in vocabulary.tags:
+        return PAUSES[tag]
     if parent.tag in ("else", "elseif"):
         return (
             f"<{parent.tag}> only divides the <if>: end its tag with />, and write this behind it."

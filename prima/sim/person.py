@@ -192,6 +192,7 @@ class Person:
         match doing.name:
             case "say":
                 self._speak(doing.text, script, now)
+                script.told = {**values.get("told", {}), **script.told}
             case "hang-up":
                 return [self._hang_up(now)]
             case "touch":

@@ -291,6 +291,8 @@ class Robot:
                 self._turn_to(task)
             case "face-human" | "face-human-and-speak":
                 task.control = self._face
+            case "pause":
+                task.ends = now + int(args["time"])
             case "set-speed-and-time":
                 self.world.drive = (float(args["speed"]), float(args["turn-speed"]))
                 task.ends = now + int(args["time"])

@@ -637,7 +637,27 @@ def _doing(reader: Reader, node: Node) -> Doing:
         _check_where(reader, node, "to", "a place to go to")
     if node.tag == "event":
         values["data"] = _data(node)
+    if node.tag == "say":
+        values["told"] = _recognised(reader, node)
     return Doing(node.tag, node.text, values)
+
+
+def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
+    """What the recogniser tells of what the user says (:class:`prima.messages.Heard`)."""
+    told: dict[str, Json] = {}
+    sure = reader.get(node, "confidence")
+    if "confidence" in node.attributes:
+        told["confidence"] = sure
+    others = [(one.text, reader.get(one, "confidence")) for one in node.all("alternative")]
+    for one, (_, less) in zip(node.all("alternative"), others, strict=True):
+        if None not in (sure, less) and less > sure:
+            message = f"An alternative is less likely than what is heard, {sure:g} or below."
+            remedy = "Put the likeliest words first."
+            reader.problem(one, "out-of-range", message, "confidence", remedy)
+    if others:
+        told["confidence"] = sure
+        told["alternatives"] = [{"text": text, "confidence": less} for text, less in others]
+    return told
 
 
 def _check_where(reader: Reader, node: Node, name: str, what: str, needed: bool = True) -> None:
@@ -661,7 +681,7 @@ def _answer(reader: Reader, node: Node) -> When:
         1000 if after is None else after,
         times,
         1,
-        [Doing("say", node.text)],
+        [Doing("say", node.text, {"told": _recognised(reader, node)})],
     )
 
 

@@ -269,6 +269,9 @@ _ACTIONS = (
     *("say", "hang-up", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note"),
     *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload", "load"),
 )
+_CONFIDENCE = attribute(
+    "confidence", "number", "how sure the recogniser is of the words", default="1", low=0, high=1
+)
 _TRIGGERS = (
     attribute("at", "duration", "a time of the run"),
     attribute("said", "text", "the robot has said something with these words"),
@@ -384,7 +387,9 @@ SCENARIO = Vocabulary(
                 attribute(
                     "times", "integer", "how often at most", default="1000", low=1, high=1000
                 ),
+                _CONFIDENCE,
             ),
+            ("alternative",),
             text=True,
         ),
         Element(
@@ -398,7 +403,13 @@ SCENARIO = Vocabulary(
             ),
             _ACTIONS,
         ),
-        Element("say", "The user says something.", text=True),
+        Element("say", "The user says something.", (_CONFIDENCE,), ("alternative",), text=True),
+        Element(
+            "alternative",
+            "What else it may have been, as the recogniser hears it: it is less sure of this.",
+            (replace(_CONFIDENCE, required=True, default=""),),
+            text=True,
+        ),
         Element(
             "hang-up",
             "The user hangs up, in the middle of what he says if he speaks: the event"

@@ -326,10 +326,23 @@ def _call_row(record: Record, uri: str, outcome: str) -> Row:
     return Row(record["time"], "E", record["app"], f"{uri} {what}", event=True, kind="call")
 
 
+def _heard(text: str, data: Record) -> str:
+    """What the user said, and how sure the recogniser is where it tells."""
+    said = f'"{text}"'
+    if "confidence" not in data:
+        return said
+    others = "".join(
+        f', or "{one.get("text")}" {one.get("confidence")}'
+        for one in data.get("alternatives") or ()
+        if isinstance(one, dict)
+    )
+    return f"{said} (confidence {data['confidence']}{others})"
+
+
 def _event_row(record: Record, handled: set[int]) -> Row | None:
     name, data = record["event"], record.get("data") or {}
     if name == "speech":
-        return Row(record["time"], "U", "", f'"{record["text"]}"', kind="speech")
+        return Row(record["time"], "U", "", _heard(record["text"], data), kind="speech")
     if record["actor"] == "robot" and record.get("serial") not in handled:
         return None  # the camera sees the human, and nobody minds
     if name == "human.found" and record["actor"] == "robot":

@@ -17,6 +17,7 @@ from prima.messages import (
     Data,
     Event,
     Fetched,
+    Hypothesis,
     Json,
     LeaveState,
     Notice,
@@ -26,7 +27,9 @@ from prima.messages import (
     Send,
     Step,
     Transferred,
+    Understood,
 )
+from prima.messages import Heard as Spoken
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
 from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
@@ -154,29 +157,31 @@ class VoiceInterpreter(Bounds["Engine"]):
         self.sensors.update(values)
         return []
 
-    def listens_to(self, text: str) -> None:
+    def listens_to(self, said: Sequence[Hypothesis]) -> None:
         """VoiceXML listens where it waits, and nowhere else."""
 
     def follow(self, now: int, link: object, event: Event) -> None:
         """Nothing is followed, as nothing is listened to all the time."""
 
-    def answer(self, run: int, text: str) -> Json:
+    def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
         """What the active grammars make of what the user said, or None if they take it not."""
         context = self._machine.context
         if context is None or run != self._run or self.over:
             return None
         try:
-            self.heard = self._machine.inputs.hear(context, text)
+            self.heard = self._machine.inputs.hear(context, said)
         except Thrown:
             return None  # told when the question was asked
         if self.heard is None and context.item is not None and context.item.tag == "record":
-            self.heard = Heard(text, text, context.item, context.page)
+            text, sure = said[0]
+            self.heard = Heard(text, text, context.item, context.page, sure)
             self.heard.recognised = False
         if self.heard is None:
             return None
         self.heard.mark = self._marked
-        found = self.heard.interpretation
-        return found if found is not None else self.heard.utterance
+        heard, found = self.heard, self.heard.interpretation
+        value = found if found is not None else heard.utterance
+        return Understood(value, heard.utterance, heard.confidence)
 
     def before(self, command: Command) -> Command | None:
         """Which of the Commands that are waited for comes before one of them, if any does."""
@@ -185,7 +190,9 @@ class VoiceInterpreter(Bounds["Engine"]):
                 return one
         return None
 
-    def breaks_in(self, now: int, command: Command, text: str, data: Data) -> bool:
+    def breaks_in(
+        self, now: int, command: Command, heard: Spoken, said: Sequence[Hypothesis]
+    ) -> bool:
         """Take what the user says during a prompt as the answer to the question behind it (4.1.5).
 
         What is being said is said to its end (rule U1), what is queued behind it is not (O3).
@@ -194,14 +201,14 @@ class VoiceInterpreter(Bounds["Engine"]):
         if self.over or not any(one is command for one in self._open):
             return False
         self._tick(now)
-        if data.get("toolong") and command.cued("longest"):
-            outcome: dict[str, Json] = {"outcome": "maxspeechtimeout", "utterance": text}
+        if heard.data.get("toolong") and command.cued("longest"):
+            outcome: dict[str, Json] = {"outcome": "maxspeechtimeout", "utterance": heard.text}
         else:
-            value = self.answer(self._run, text)
-            if value is None or self.heard is None:
+            answer = self.answer(self._run, said)
+            if answer is None or self.heard is None:
                 return False
             self.heard.mark = None  # the last one played, which the device tells
-            outcome = {"outcome": "filled", "utterance": text, "value": value, **data}
+            outcome = heard.filled(answer)
         self.actions.append(LeaveState(self._state))
         self._drive(Resume(outcome))
         self._catch_up()

@@ -17,10 +17,10 @@ from prima.interpreter.expressions import (
     check_script,
     plain_context,
 )
-from prima.interpreter.names import IDENTIFIER, RESERVED
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
+from prima.names import IDENTIFIER, RESERVED
 from prima.values import NUMBER, read_value
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import (
@@ -408,7 +408,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         if node.key == "script" and node.own_text.strip():
             _compile(node, "", problems, context)
         if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
-            problems += _grammar_problems(node, root.get("xml:lang", "en"))
+            problems += grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):
             problems += _type_problems(node)
         naming = NAMING.get(node.key, "")
@@ -517,13 +517,16 @@ def _type_problems(field: Node) -> list[Problem]:
     return []
 
 
-def _grammar_problems(node: Node, lang: str) -> list[Problem]:
-    """What is wrong with a grammar inside the document; what it refers to elsewhere is not read."""
+def grammar_problems(
+    node: Node, lang: str, base: str = "", fetch: Callable[[str], bytes] | None = None
+) -> list[Problem]:
+    """What is wrong with a ``<grammar>``; without ``fetch`` it is read as far as it stands there."""
     from prima.grammar import GrammarError, load
 
     mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"
+    lang = node.get("xml:lang", lang)
     try:
-        return load(node, lang=node.get("xml:lang", lang), mode=mode, lenient=True).warnings()
+        return load(node, base=base, lang=lang, mode=mode, fetch=fetch, lenient=True).warnings()
     except GrammarError as error:
         return [
             problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())

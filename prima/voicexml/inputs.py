@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.markup.tree import Node
-from prima.messages import Json, Say
+from prima.messages import Hypothesis, Json, Say
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held
 from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
@@ -61,13 +61,37 @@ class Inputs:
             message = f"{source(item)}: no grammar listens here"
             raise Thrown("error.semantic", message, source(item))
 
-    def hear(self, context: Context, text: str) -> Heard | None:
-        """What the most specific grammars take of an utterance, or None (3.1.4)."""
-        for said, mode in self._ways(context, text):
-            heard = self._best(context, said, mode)
-            if heard is not None:
-                return heard
-        return None
+    def hear(self, context: Context, said: Sequence[Hypothesis]) -> Heard | None:
+        """What the most specific grammars take of what was said, or None (3.1.4).
+
+        The likeliest hypothesis that any grammar takes decides which those are; further results
+        are of the others (5.1.5).
+        """
+        most = self.most_results(context)
+        first: Active | None = None
+        results: list[Found] = []
+        for text, sure in said:
+            if len(results) >= most:
+                break
+            for words, mode in self._ways(context, text):
+                active, found = self._taken(context, words, mode, sure, first)
+                results += [one for one in found if one.means not in {r.means for r in results}]
+                first = first or active
+                if found:
+                    break
+        if first is None:
+            return None
+        best, *others = results[:most]
+        further = [(one.utterance, one.interpretation, one.confidence) for one in others]
+        owner, page = first.owner, first.page
+        return Heard(
+            best.utterance, best.interpretation, owner, page, best.confidence, best.mode, further
+        )
+
+    def most_results(self, context: Context) -> int:
+        """How many results are wanted at most (6.3.2)."""
+        wanted = self.owner.number(context, "maxnbest", 1)
+        return int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
 
     def noted(self, context: Context, text: str) -> tuple[str, str] | None:
         """What no grammar has taken, and whether by keys; None if nobody listens to such (6.3.6)."""
@@ -86,36 +110,23 @@ class Inputs:
             if mode in modes:
                 yield said, mode
 
-    def _best(self, context: Context, said: str, mode: str) -> Heard | None:
-        """The best results of the first scope in which a grammar takes what was said."""
-        wanted = self.owner.number(context, "maxnbest", 1)
-        most = int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
+    def _taken(
+        self, context: Context, said: str, mode: str, sure: float, first: Active | None
+    ) -> tuple[Active | None, list[Found]]:
+        """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
+        most = self.most_results(context)
         least = self.owner.number(context, "confidencelevel", USUAL_CONFIDENCE)
-        if not 0 <= least <= 1:
-            least = USUAL_CONFIDENCE
-        first: Active | None = None
+        least = least if 0 <= least <= 1 else USUAL_CONFIDENCE
         results: list[Found] = []
         for active in self._active:
-            if first is not None and (active.level is not first.level or len(results) >= most):
-                break
-            for one in active.match(said, mode, most):
-                fits = one.confidence >= least
-                if fits and all(one.means != other.means for other in results):
-                    results.append(one)
+            if first is not None and active.level is not first.level:
+                continue
+            for one in active.match(said, mode, most) if len(results) < most else ():
+                found = replace(one, confidence=round(one.confidence * sure, 6))
+                if found.confidence >= least and found.means not in {r.means for r in results}:
+                    results.append(found)
                     first = first or active
-        if first is None:
-            return None
-        best, *others = results[:most]
-        further = [(one.utterance, one.interpretation, one.confidence) for one in others]
-        return Heard(
-            best.utterance,
-            best.interpretation,
-            first.owner,
-            first.page,
-            best.confidence,
-            best.mode,
-            further,
-        )
+        return first, results
 
     # Which grammars listen --------------------------------------------------------------
 

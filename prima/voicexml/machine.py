@@ -9,7 +9,8 @@ from prima.interpreter.content import source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Json
+from prima.messages import Command, Cue, Data, Json
+from prima.messages import Heard as Spoken
 from prima.values import milliseconds
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
@@ -455,14 +456,25 @@ class Machine:
                 yield from self.items_of.process(context, heard)
             return
         if outcome == "nomatch":
-            noted = self.inputs.noted(context, str(resume.data.get("utterance", "")))
-            if noted is None:
-                raise Thrown("noinput", "", source(item))
-            said, mode = noted
-            heard = Heard(said, said, item, context.page, mode=mode)
-            heard.take_mark(resume.data)
-            self.items_of.remember(context, heard)
+            self._not_taken(context, item, resume.data)
         raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
+
+    def _not_taken(self, context: Context, item: Node, data: Data) -> None:
+        """Set ``application.lastresult$`` for what no grammar takes (5.1.5).
+
+        Raises:
+            Thrown: ``noinput``, if nobody listens to such input (6.3.6).
+        """
+        (text, sure), *others = Spoken(str(data.get("utterance", "")), data).hypotheses
+        noted = self.inputs.noted(context, text)
+        if noted is None:
+            raise Thrown("noinput", "", source(item))
+        said, mode = noted
+        further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
+        most = self.inputs.most_results(context)
+        heard = Heard(said, said, item, context.page, sure, mode, further[: most - 1])
+        heard.take_mark(data)
+        self.items_of.remember(context, heard)
 
 
 def _is_spoken(piece: Node | str) -> bool:

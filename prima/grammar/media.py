@@ -1,0 +1,89 @@
+"""Media types of grammars, and the form that each says (SRGS 2.2.2 and Appendix G)."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+from prima.errors import Place
+from prima.grammar.errors import GrammarError, Problems, UnsupportedFormat, Where, refuse
+
+Form = Literal["XML", "ABNF"]
+XML_TYPES = frozenset(
+    ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
+)
+LOOSE_TYPE = "application/abnf"
+"""A type that is in use for the ABNF form, though it is none of SRGS's."""
+ABNF_TYPES = frozenset(["application/srgs", "application/grammar", LOOSE_TYPE])
+OPEN_TYPES = frozenset(
+    ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
+)
+"""Types that say nothing of the form; the content does."""
+OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
+"""How formats that are not SRGS begin."""
+RIGHT_TYPES: dict[Form, str] = {"XML": "application/srgs+xml", "ABNF": "application/srgs"}
+NO_HEADER = "The header of the ABNF form is missing."
+FIRST_LINE = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
+_LOOKS = re.compile(
+    r"(?:\s|//[^\n]*\n|/\*.*?\*/)*+(?:#?\s*ABNF\b|(?:public\s|private\s)?\s*\$\w+\s*="
+    r"|(?:language|mode|root|tag-format|base|lexicon|meta|http-equiv)\s[^;\n]*;)",
+    re.DOTALL,
+)
+
+
+def media_type(type: str) -> str:
+    """A media type without its parameters."""
+    return type.split(";")[0].strip().lower()
+
+
+def supports(type: str) -> bool:
+    """Whether grammars of a media type can be loaded."""
+    return media_type(type) in XML_TYPES | ABNF_TYPES
+
+
+def looks_like_abnf(text: str) -> bool:
+    """Whether a text that lacks the header of the ABNF form goes on as that form does."""
+    return _LOOKS.match(text) is not None
+
+
+def check_known(media: str, place: Place, begin: str) -> None:
+    """Refuse what is not SRGS, by its media type or by how it begins.
+
+    Raises:
+        UnsupportedFormat: it is something else.
+    """
+    remedy = "Write it in SRGS: application/srgs+xml or application/srgs."
+    for start, name in OTHERS.items():
+        if begin.lstrip().startswith(start):
+            message = f"This grammar is in {name}, which is not supported."
+            raise refuse(UnsupportedFormat, place, "format", message, remedy)
+    if media not in XML_TYPES | ABNF_TYPES | OPEN_TYPES:
+        message = f'Grammars of type "{media[:80]}" are not supported.'
+        raise refuse(UnsupportedFormat, place, "format", message, remedy)
+
+
+def check_no_text(file: str, begin: str) -> None:
+    """Refuse a file that begins as neither form does.
+
+    Raises:
+        GrammarError: with the header to write, where the text looks like the ABNF form.
+    """
+    if not begin or begin.startswith("<"):
+        return
+    if looks_like_abnf(begin):
+        raise refuse(GrammarError, Place(file), "not-abnf", NO_HEADER, FIRST_LINE)
+    remedy = "Begin with <grammar ...> for the XML form, or with #ABNF 1.0 UTF-8; for the other."
+    raise refuse(GrammarError, Place(file), "not-xml", "This is no grammar of SRGS.", remedy)
+
+
+def check_form(problems: Problems, media: str, form: Form, file: str, where: Where) -> None:
+    """Note a media type that says the other form than a grammar has; warn of a loose one."""
+    right = RIGHT_TYPES[form]
+    types = XML_TYPES if form == "ABNF" else ABNF_TYPES
+    if media in types:
+        what = f'"{file}"' if file else "this grammar"
+        message = f'The type "{media}" contradicts {what}, which is in the {form} form.'
+        problems.note(where, "format", message, f"Write {right}, or leave the type out.")
+    elif media == LOOSE_TYPE:
+        message = f'The type "{media}" is none of SRGS; it is read as {right}.'
+        problems.warn(where, "format", message, f"Write {right}.")

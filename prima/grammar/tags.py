@@ -1,0 +1,111 @@
+"""What is wrong with the tags of a grammar, as far as their text tells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from prima.errors import Problem, did_you_mean
+from prima.grammar.budget import Budget
+from prima.grammar.legacy import translate
+from prima.grammar.model import BuiltIn, Choice, Document, Part, Reference, Repeat, Sequence, Tag
+from prima.names import GLOBALS, assigned_names, declared_names, free_names
+
+SISR = frozenset(["out", "rules", "meta"])
+"""Variables of every tag of a rule (SISR 1.0)."""
+ELSEWHERE = frozenset(
+    ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
+)
+"""Variables that applications have, and tags have not."""
+_RULE = re.compile(r"(?<![\w$.])(?:rules|meta)\s*\.\s*([^\W\d]\w*)(?!\w)(?!\s*\()")
+_OTHER_TEXT = re.compile(
+    r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[^\n]*|/\*.*?\*/', re.DOTALL
+)
+LOST = "what needs it is not taken"
+
+
+def tag_warnings(document: Document) -> list[Problem]:
+    """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
+    if not (document.tags or document.globals) or document.dialect == "literals":
+        return []
+    from prima.grammar.sandbox import Sandbox
+
+    sandbox = Sandbox(Budget())
+    found: list[Problem] = []
+    sound: dict[int, str] = {}
+    """Tags that are scripts, by the identity of the tag."""
+    for tag in (*document.globals, *document.tags):
+        code = _script(document, tag)
+        if sandbox.fault(code):
+            shown = " ".join(tag.code.split())[:60]
+            message = f'"{shown}" is not ECMAScript: {LOST}.'
+            found.append(Problem(tag.where(), "warning", "bad-expression", message))
+        else:
+            sound[id(tag)] = code
+    return [*found, *_unknown(document, sound)]
+
+
+def _script(document: Document, tag: Tag) -> str:
+    legacy = document.dialect == "legacy" and not any(tag is one for one in document.globals)
+    return translate(tag.code) if legacy else tag.code
+
+
+def _unknown(document: Document, sound: dict[int, str]) -> Iterator[Problem]:
+    """Names that are neither SISR's nor given a value by any tag of the document."""
+    codes = [*sound.values()]
+    own = {name for code in codes for name in (*declared_names(code), *assigned_names(code))}
+    known = own | SISR
+    for tag in document.globals:
+        yield from _names(tag, sound.get(id(tag), ""), known)
+    for rule in document.rules.values():
+        tags, rules = _held(rule.body)
+        for tag in tags:
+            code = sound.get(id(tag), "")
+            yield from _names(tag, code, known)
+            yield from _rules(tag, code, rules)
+
+
+def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
+    used = {*free_names(code), *(ELSEWHERE & set(re.findall(r"(?<![\w$.])\w+", _bare(code))))}
+    for name in sorted(used - known):
+        if re.search(rf"\btypeof\s+{re.escape(name)}\b", code):
+            continue
+        message = f'The tag uses "{name}", which nothing in the grammar declares: {LOST}.'
+        remedy = did_you_mean(name, known | GLOBALS - ELSEWHERE)
+        remedy = remedy or f"For the text itself write '{name}' in quotes."
+        yield Problem(tag.where(), "warning", "undeclared-variable", message, remedy)
+
+
+def _rules(tag: Tag, code: str, rules: set[str]) -> Iterator[Problem]:
+    """Rules by name, of which the tag's own rule refers to none."""
+    for name in dict.fromkeys(_RULE.findall(_bare(code))):
+        if name in rules:
+            continue
+        message = f'The tag uses the rule "{name}", to which its own rule does not refer.'
+        remedy = did_you_mean(name, rules) or "rules.latest() is the rule matched last."
+        yield Problem(tag.where(), "warning", "no-such-rule", message, remedy)
+
+
+def _bare(code: str) -> str:
+    return _OTHER_TEXT.sub(" ", code)
+
+
+def _held(body: Part) -> tuple[list[Tag], set[str]]:
+    """The tags of a rule, and the names of the rules that it refers to."""
+    tags: list[Tag] = []
+    rules: set[str] = set()
+    todo: list[Part] = [body]
+    while todo:
+        part = todo.pop()
+        match part:
+            case Tag():
+                tags.append(part)
+            case Reference(rule=rule) if rule is not None:
+                rules.add(rule.name)
+            case Sequence() | Choice():
+                todo += part.parts
+            case Repeat():
+                todo.append(part.part)
+            case BuiltIn():
+                rules.add("builtin")
+    return tags, rules
