@@ -55,7 +55,8 @@ class Mediator(Failures):
 
     def sees_user(self, yes: bool) -> None:
         """V4: the camera has come to see the user, or has lost them (for X4 and K1)."""
-        self.senses_user()
+        if yes or self.memory.in_view:
+            self.senses_user()
         self.memory.in_view = yes
 
     def senses_user(self) -> None:
@@ -228,7 +229,7 @@ class Mediator(Failures):
             link(parent, ab)
         elif reaction is not None:
             ab.reaction = reaction
-        elif ab.app.window is ab.stream:
+        elif ab.app.window is not None:
             ab.freed = self._now()
 
     def _order_now(

@@ -306,7 +306,8 @@ class Selector:
         ab.restarting = False
         self.memory.start(ab, now)
         stream = ab.stream
-        stream.spoken = stream.spoken or "speaker" in ab.devices
+        if ab.command is not None and "speaker" in ab.devices:
+            stream.spoken = True
         if ab.engages:
             self.memory.engage(stream)
         if stream.suspended is not None and ab.unit is None:

@@ -78,7 +78,13 @@ class Streams(Extensions):
         """O2: it is never linked, and continues what it cancels, before all what ran."""
         if ab.parents:
             self.report(15, "O2", f"{ab.name} is wanted now, but waits for {sorted(ab.parents)}")
-        cut = [one for one in self.cuts if one.rule == "O2" and one.ab.app == ab.app]
+        mine = [one.place for one in self.abs.values() if one.app == ab.app]
+        since = max((place for place in mine if place < ab.place), default=-1)
+        cut = [
+            one
+            for one in self.cuts
+            if one.rule == "O2" and one.ab.app == ab.app and one.place > since
+        ]
         trees = {one.ab.tree.name for one in cut if not one.ab.unit}
         ran = {
             one.ab.tree.name
