@@ -362,19 +362,26 @@ def table_of(path: Path) -> str:
 
 def test_a_table_is_compared_by_text_or_by_behavior(tmp_path: Path) -> None:
     path = write(tmp_path, "")
-    table = table_of(path)
-    assert difference(table, table, "text") == ""
-    rows = api.rehearse(path).rows()
-    for row in rows[3:]:
+    run = api.rehearse(path)
+    table, rows = run.table(), run.rows()
+    assert difference(table, rows, "text") == ""
+    late = run.rows()
+    for row in late[3:]:
         row.time += 0.2
-    later = format_rows(rows)
+    later = format_rows(late)
     assert later != table
-    assert difference(later, table, "behavior") == ""
-    assert difference(later, table, "text").startswith("--- expected")
+    assert difference(later, rows, "behavior") == ""
+    assert difference(later, rows, "text").startswith("--- expected")
     other = table.replace("Going up.", "Going down.")
-    assert "(was: " in difference(other, table, "behavior")
-    assert difference("no table at all\n", table, "text").startswith("--- expected")
-    assert difference("", table, "behavior")
+    assert "(was: " in difference(other, rows, "behavior")
+    assert difference("no table at all\n", rows, "text").startswith("--- expected")
+    assert difference("", rows, "behavior")
+
+
+@pytest.mark.parametrize("columns", [60, 80, 116, 300])
+def test_a_table_may_be_as_wide_as_it_was_written(columns: int) -> None:
+    run = api.rehearse(api.documents_folder() / "scenarios" / "follow-during-navigation-ja.xml")
+    assert difference(run.table(columns=columns), run.rows(), "text") == ""
 
 
 def test_update_shows_asks_and_never_writes_a_failed_run(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, put, tell
+from prima.cli.common import check_output, columns, put, tell
 from prima.cli.report import write_page
 
 SCENARIO = "follow-during-navigation.xml"
@@ -41,7 +41,7 @@ def demo(output: str, no_open: bool) -> None:
     check_output(output, "page")
     loaded = api.load_scenario(api.documents_folder() / "scenarios" / SCENARIO)
     made = api.rehearse(loaded)
-    put(made.table())
+    put(made.table(columns=columns()))
     write_page(make([made], [loaded]), output)
     if not no_open and _has_display():
         _open(output)

@@ -14,6 +14,7 @@ from prima.cli.common import (
     POLICY_NAMES,
     clean,
     coloured,
+    columns,
     format_option,
     limit_option,
     put,
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
     from prima.talk import Conversation, Game
     from prima.transcript.table import Row
 
-WIDE = 60
-"""Columns of the behaviour where no terminal says how many there are."""
 COLOURS = {"U": "cyan", "E": "yellow"}
 """Colours of rows, by who does it."""
 
@@ -185,37 +184,27 @@ class Screen:
     """Prints rows, answers and messages; above the line that is being typed, if there is one."""
 
     def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
-        from prima.transcript.table import width
-
         self.interactive = interactive
         self.typist: Typist | None = None
         self._why = why
         self._json = json
-        self._apps = max([3, *(width(name) for name in game.names.applications)])
+        self._apps = game.names.applications
         self._headed = False
 
     def rows(self, rows: list[Row]) -> None:
         """Show rows as they happen."""
-        from prima.transcript.table import format_head, format_row
+        from prima.transcript.table import format_head, format_row, layout
 
         if self._json:
             return
-        column = self._column()
-        lines = [] if self._headed else [format_head(self._apps, column, self._why)]
+        shape = layout(self._apps, columns(), self._why)
+        lines = [] if self._headed else [format_head(shape)]
         self._headed = True
         for row in rows:
-            text = "\n".join(format_row(row, self._apps, column, self._why))
+            text = "\n".join(format_row(row, shape))
             colour = COLOURS.get(row.actor) if coloured() else None
             lines.append(click.style(clean(text), fg=colour) if colour else clean(text))
         self._print("\n".join(lines), styled=True)
-
-    def _column(self) -> int:
-        if not self.interactive:
-            return WIDE
-        import shutil
-
-        rest = 35 + self._apps + (6 if self._why else 0)
-        return min(max(shutil.get_terminal_size((100, 24)).columns - rest, 24), 76)
 
     def show(self, text: str) -> None:
         """Show what was asked for: among records, that is a message."""
