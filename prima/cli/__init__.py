@@ -30,7 +30,7 @@ COMMANDS = {
     "graph": "Draw an application's states, or a run's trees and streams.",
     "replay": "Run a transcript's inbound events again.",
     "export": "Write a transcript for ELAN, Praat, a player, Foxglove, a table.",
-    "explain": "Explain a problem's code, or a transcript's row.",
+    "explain": "Explain a rule, a problem's code, or a transcript's row.",
     "study": "Measure situations under every policy.",
     "documents": "Copy the documents that come with PRIMA.",
     "schemas": "Copy the schemas of documents, for editors.",
