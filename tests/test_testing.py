@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from html import escape
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -351,6 +352,42 @@ def test_states_of_voicexml() -> None:
         api.rehearse(ROOT / "documents" / "scenarios" / "pizza-and-follow.xml")
     assert [change.state for change in states.changes["pizza"]] == ["order", ""]
     assert [change.state for change in states.changes["follow"]][-1] == "sleep"
+
+
+LOOKED = {
+    # What came instead stands in the window, though what is nearest came long before it.
+    '<expect says="Going up" on="reply.lift" within="2s"/>': ["reply.lift", "Going up", "Floor 3"],
+    '<expect does="gesture" on="touch" within="1s"/>': ["touches", "do not push", "Gesture"],
+    # It waits for something that never comes: both ends of the run.
+    '<expect says="x" on="sound"/>': ["starts desk", "Which floor", "ends desk"],
+    '<expect says="zzzzz"/>': ["starts desk", "ends desk"],
+    '<never event="touch"/>': ["touches"],
+    '<expect says="zzzzz" at="50s"/>': ["ends desk"],
+    '<expect logs="floor 3" times="2"/>': ["floor 3", "starts desk", "ends desk"],
+}
+
+
+@pytest.mark.parametrize(("expected", "rows"), LOOKED.items())
+def test_a_failure_shows_the_rows_where_it_looked(
+    expected: str, rows: list[str], tmp_path: Path
+) -> None:
+    path = write(tmp_path, expected)
+    text = prima("test", path, cwd=tmp_path).stdout
+    data = json.loads(prima("test", path, "--format", "json", cwd=tmp_path).stdout)
+    (failure,) = data["scenarios"][0]["failures"]
+    for row in rows:
+        assert any(row in line for line in failure["rows"]), (row, failure["rows"])
+    assert "\n".join(failure["rows"]) in text
+    assert len(failure["rows"]) <= 16
+
+
+def test_rows_between_those_shown_are_dots(tmp_path: Path) -> None:
+    found = outcome(tmp_path, '<expect says="Which floor" on="reply.lift" within="1s"/>')
+    lines = found.failures[0].rows.splitlines()
+    at = lines.index("       ...")
+    shown = [int(line.split()[0]) for line in lines[1:] if line.strip("* ")[:1].isdigit()]
+    assert 0 < at < len(lines) - 1 and shown == sorted(set(shown))
+    assert any(after - before > 1 for before, after in pairwise(shown))
 
 
 # Expected tables -------------------------------------------------------------------

@@ -458,19 +458,24 @@ def format_rows(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> s
     It is as wide as its longest row needs, and at most so many columns; longer rows go on in
     further lines.
     """
+    shape = shape_of(rows, why, columns)
+    lines = [format_head(shape)]
+    for row in rows:
+        lines += format_row(row, shape)
+    return "\n".join(lines) + "\n"
+
+
+def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Layout:
+    """The layout of these rows: as wide as the longest needs, and at most so many columns."""
     made = layout((row.app for row in rows), columns, why)
     if rows:
-        numbers = max(made.numbers, *(len(str(row.number)) for row in rows[-1:]))
+        numbers = max(made.numbers, len(str(rows[-1].number)))
         times = max(made.times, len(f"{rows[-1].time:.2f}"))
         more = numbers + times - made.numbers - made.times
         room = max(made.behavior - more, NARROWEST)
         made = made._replace(numbers=numbers, times=times, behavior=room)
     longest = max([8, *(width(printable(row.what)) for row in rows)])
-    made = made._replace(behavior=min(longest, made.behavior))
-    lines = [format_head(made)]
-    for row in rows:
-        lines += format_row(row, made)
-    return "\n".join(lines) + "\n"
+    return made._replace(behavior=min(longest, made.behavior))
 
 
 def format_head(shape: Layout) -> str:
