@@ -93,6 +93,7 @@ INSIDE = {
     "graph": [
         {"layout", "model"},
         {"run", "svg", "words"},
+        {"thrown"},
         {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
         {"worldmap"},
         {"__init__"},
