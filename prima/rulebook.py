@@ -117,8 +117,7 @@ EXAMPLES: dict[str, Example] = {
     "S2b": Example(TOUR, "hello reacts to the touch, so it goes before the rest of tour."),
     "S2c": Example(ORDER, "The conversation goes on with its next question; tour waits."),
     "S2d": Example(
-        "rules/unwound.xml",
-        "The topic of hello was broken last, so it goes on before that of tour.",
+        "rules/unwound.xml", "The topic of tour was broken, and trains has not begun: tour goes on."
     ),
     "S2e": Example(ORDER, "tour asked for the speaker at 0.00 s, trains at 0.60 s."),
     "S2f": Example(ORDER, "tea and tour ask at once; the scenario names tea first."),
@@ -159,6 +158,7 @@ EXAMPLES: dict[str, Example] = {
     "F2": Example(
         "rules/unwound.xml",
         "lights reacts to another event than hello, so it may break into the topic of hello.",
+        "It is dark",
     ),
     "F3": Example(
         "rules/unwound.xml",

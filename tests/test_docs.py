@@ -337,7 +337,7 @@ def test_every_example_of_a_rule_shows_it(name: str) -> None:
 
 def test_every_rule_of_the_page_has_an_example_and_is_explained_in_its_words() -> None:
     rules = rulebook.rules()
-    assert {*rules, "F6"} == {*rulebook.EXAMPLES, "F6"}, "each rule needs an example"
+    assert set(rules) == set(rulebook.EXAMPLES), "each rule needs an example"
     assert set(RULES) <= set(rules), "each rule that records name is in the page"
     page = (ROOT / "docs" / "mediation.md").read_text(encoding="utf-8")
     named = set(re.findall(r"^- \*\*([A-Z]\d+)", page, re.MULTILINE))
