@@ -6,7 +6,11 @@ BIN := $(VENV)/bin
 .PHONY: demo test check bench schemas build clean
 
 demo: $(VENV)/.runtime
-	$(BIN)/prima run documents/scenarios/follow-during-navigation.xml
+	@mkdir -p build
+	@$(BIN)/prima demo -o build/demo.html
+	@echo
+	@echo 'To call prima: $(BIN)/prima --help'
+	@echo 'or, once in each shell: . $(BIN)/activate; then: prima --help'
 
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto

@@ -69,11 +69,14 @@ class Transcript:
         """The rows of the table."""
         return _made_of(self.name, self.records) if self.made is None else self.made
 
-    def table(self, why: bool = False) -> str:
-        """The table as text; with ``why``, each row with the rule that put it there."""
+    def table(self, why: bool = False, columns: int = 80) -> str:
+        """The table as text, of at most so many columns where names of applications let it.
+
+        With ``why``, each row has the rule that put it there.
+        """
         from prima.transcript.table import format_rows
 
-        return format_rows(self.rows(), why)
+        return format_rows(self.rows(), why, columns)
 
     def summary(self) -> Summary:
         """What can be counted in it.

@@ -393,13 +393,21 @@ def load_scenario(path: str | Path) -> Loaded:
     return _load(_path(path), read_file(path))
 
 
-def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> Loaded:
+def stage(
+    fas: Iterable[str],
+    eas: Iterable[str],
+    says: Iterable[str] = (),
+    world: str | None = None,
+    robot: str | None = None,
+) -> Loaded:
     """Put applications on a robot in an empty room, with a user in front of it.
 
     Args:
         fas: paths of the robot's own applications.
         eas: paths of the place's.
         says: what the user says to the questions, one after the other.
+        world: path of another world; the robot is at its first place.
+        robot: path of another robot's profile.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
@@ -417,11 +425,12 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(says, 1)
     ]
+    world = world or str(demo / "worlds" / "room.xml")
+    robot = robot or str(demo / "robots" / "papero.xml")
     text = (
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
-        f' world="{escape(str(demo / "worlds" / "room.xml"))}"'
-        f' robot="{escape(str(demo / "robots" / "papero.xml"))}">'
-        f'<robot at="middle"/><person x="1" y="0"/>{"".join(applications + answers)}</scenario>'
+        f' world="{escape(world)}" robot="{escape(robot)}">'
+        f"{_standing(world)}{''.join(applications + answers)}</scenario>"
     )
     try:
         loaded = _load(_path("stage.xml"), text.encode())
@@ -436,6 +445,28 @@ def stage(fas: Iterable[str], eas: Iterable[str], says: Iterable[str] = ()) -> L
             what = "the robot's own (FA)" if document.kind == "fa" else "a place's (EA)"
             raise UsageError(f"--{kind} {path}: this is {what}; write --{document.kind} {path}.")
     return loaded
+
+
+def _standing(world: str) -> str:
+    """The robot at a world's first place, and the user a metre in front of it.
+
+    Raises:
+        DocumentError: the world is wrong.
+        UsageError: it cannot be read, or has no place.
+    """
+    from html import escape
+    from math import cos, radians, sin
+
+    from prima.sim.scenario import read_world
+
+    there = read_world(world, read_file(world))
+    if not there.places:
+        raise UsageError(f"{world}: this world has no place for the robot; write a <place> in it.")
+    name, (x, y) = next(iter(there.places.items()))
+    angle = radians(there.headings[name])
+    return (
+        f'<robot at="{escape(name)}"/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
+    )
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:

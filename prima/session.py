@@ -101,6 +101,8 @@ class Session:
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound, absence)
         self.failures: list[str] = []
+        self.unheard = ""
+        """What the user said last that nobody took."""
         """Applications that ended by an error, as ``NAME: what``."""
         self._serial = 0
         self._promoted = 0
@@ -346,7 +348,10 @@ class Session:
                 return
         if question is None and self._breaks_in(value, said):
             return
-        if self._follow_links(value.text, said) or question is None or question.silent:
+        if self._follow_links(value.text, said):
+            return
+        if question is None or question.silent:
+            self.unheard = value.text
             return
         if asked is None or not asked.cued("hotword"):
             self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text, **told})

@@ -167,7 +167,10 @@ def test_a_reaction_that_stays_in_the_state_is_told(tmp_path: Path) -> None:
             '<var name="x"/>',
         ),
     )
-    assert ways(graph, "a") == {"a stay": ["touch.head, if x"]}
+    assert ways(graph, "a") == {
+        "a stay": ["touch.head, if x"],
+        "ends the application": ["c, throws d"],
+    }
     assert "stays" in cards.draw(graph) and "n1 -.->" in text.mermaid(graph)
     voice = drawn(
         tmp_path,
@@ -177,6 +180,62 @@ def test_a_reaction_that_stays_in_the_state_is_told(tmp_path: Path) -> None:
         "a.vxml",
     )
     assert ways(voice, "a") == {"a stay": ["touch"], "ends the application": ["at its end"]}
+
+
+def test_a_throw_leads_where_its_handler_goes(tmp_path: Path) -> None:
+    graph = drawn(
+        tmp_path,
+        app(
+            '<on event="far"><goto next="#c"/></on>'
+            '<form id="a"><field name="size" type="number"><prompt>?</prompt><filled>'
+            '<if cond="size &gt; 9"><throw event="big.one"/><else/><throw event="far"/></if>'
+            '</filled><on event="big"><goto next="#b"/></on></field>'
+            '<on event="big"><goto next="#c"/></on></form>'
+            '<form id="b"><block><throw event="big"/></block><on event="big" count="2">'
+            '<goto next="#a"/></on><on event="big" cond="x"><throw event="far"/></on></form>'
+            '<form id="c"><on event="touch"><throw event="t"/></on>'
+            '<on event="t"><speak>Hm.</speak></on></form>',
+            '<var name="x"/>',
+        ),
+    )
+    assert "answered, if size > 9, throws big.one" in ways(graph, "a")["b"]
+    assert not any("throws big.one" in told for told in ways(graph, "a")["c"]), "the item's first"
+    assert "answered, otherwise, throws far" in ways(graph, "a")["c"], "the document's"
+    assert "then, throws big, 2nd time" in ways(graph, "b")["a"]
+    assert "then, throws big, if x, throws far" in ways(graph, "b")["c"]
+    assert ways(graph, "b")["ends the application"] == ["then, throws big"], "before the 2nd time"
+    assert "touch, throws t" in ways(graph, "c")["c stay"]
+
+
+def test_a_throw_in_voicexml_leads_where_its_handler_goes(tmp_path: Path) -> None:
+    graph = drawn(
+        tmp_path,
+        vxml(
+            '<catch event="far"><goto next="#c"/></catch><error><throw event="inner"/></error>'
+            '<form id="a"><field name="q" type="boolean"><prompt>?</prompt><filled><if cond="q">'
+            '<throw event="big.one"/><else/><throw event="far"/></if></filled>'
+            '<catch event="big"><goto next="#b"/></catch></field></form>'
+            '<form id="b"><block><throw event="odd"/></block><catch event="inner">'
+            '<goto next="#a"/></catch></form>'
+            '<form id="c"><block><throw event="help"/><throw event="odd"/></block>'
+            "<catch>Hm.</catch></form>"
+        ),
+        "a.vxml",
+    )
+    assert "answered yes, throws big.one" in ways(graph, "a")["b"]
+    assert "answered no, throws far" in ways(graph, "a")["c"]
+    assert "then, throws odd" in ways(graph, "b")["ends the application"]
+    assert "error, throws inner" in ways(graph, "b")["a"], "a dialog takes what its document throws"
+    assert "then, throws help" in ways(graph, "c")["c stay"], "a general catch takes it"
+
+
+def test_throws_that_go_round_end(tmp_path: Path) -> None:
+    names = [f"e{number}" for number in range(12)]
+    ways_on = "".join(f'<if cond="x"><throw event="{name}"/></if>' for name in names)
+    handlers = "".join(f'<on event="{name}">{ways_on}</on>' for name in names)
+    body = f'<form id="a"><block><throw event="e0"/></block>{handlers}</form>'
+    graph = drawn(tmp_path, app(body, '<var name="x"/>'))
+    assert ways(graph, "a") == {}
 
 
 def test_what_holds_everywhere_is_one_card_and_reaches_its_targets(tmp_path: Path) -> None:

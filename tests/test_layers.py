@@ -27,7 +27,7 @@ LAYERS = [
     {"export", "loading", "pool", "web"},
     {"api"},
     {"certificate", "examples", "graph", "lsp", "new", "report", "study", "talk", "testing"},
-    {"batch"},
+    {"batch", "rulebook"},
     {"cli", "__init__", "pytest_plugin", "reference", "pictures"},
     {"__main__"},
 ]
@@ -94,11 +94,12 @@ INSIDE = {
     "graph": [
         {"layout", "model"},
         {"run", "svg", "words"},
+        {"thrown"},
         {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
         {"worldmap"},
         {"__init__"},
     ],
-    "report": [{"lanes", "walk"}, {"view"}, {"page"}, {"__init__"}],
+    "report": [{"lanes", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
     "testing": [
         {"watching", "golden"},
         {"checking", "coverage", "finding"},

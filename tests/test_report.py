@@ -396,6 +396,23 @@ def test_report_writes_a_page(folder: Path) -> None:
     assert piped.stdout == (folder / "r.html").read_text(encoding="utf-8") and not piped.stderr
 
 
+def test_a_scenario_is_run_and_reported_with_its_map(folder: Path) -> None:
+    done = prima("report", SCENARIO, "-o", "run.html", cwd=folder)
+    assert done.returncode == 0 and "run.html:" in done.stderr
+    page = (folder / "run.html").read_text(encoding="utf-8")
+    assert "Places as the simulation had them" in page
+
+
+def test_scenarios_and_transcripts_are_compared_in_one_page(folder: Path) -> None:
+    both = prima("report", SCENARIO, "--policy", "prima", "--policy", "fifo", cwd=folder)
+    assert both.returncode == 0 and "Two runs compared" in both.stdout
+    assert both.stdout.count("Places as the simulation had them") == 2
+    mixed = prima("report", "b.jsonl", SCENARIO, cwd=folder)
+    assert mixed.stdout.count("Places as the simulation had them") == 1
+    known = prima("report", "b.jsonl", SCENARIO, "--scenario", SCENARIO, cwd=folder)
+    assert known.stdout.count("Places as the simulation had them") == 2
+
+
 def test_diff_writes_a_page(folder: Path) -> None:
     done = prima("diff", "a.jsonl", "b.jsonl", "--format", "html", "-o", "d.html", cwd=folder)
     assert done.returncode == 1 and "d.html:" in done.stderr
@@ -412,7 +429,11 @@ def test_a_cut_transcript_is_reported_and_told(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ([], "Name a transcript"),
+        ([], "Name a scenario, or a transcript"),
+        (["a.jsonl", "--policy", "fifo", "-o", "r.html"], "this is a transcript"),
+        ([SCENARIO, "--policy", "fif", "-o", "r.html"], "fifo"),
+        ([SCENARIO, "--scenario", SCENARIO, "-o", "r.html"], "brings its own map"),
+        ([SCENARIO, SCENARIO, "--policy", "fifo", "--policy", "none"], "These are 4 runs"),
         (["none.jsonl"], "No such file"),
         (["a.jsonl", "-o", "a.jsonl"], "write elsewhere"),
         (["a.jsonl", "-o", "nowhere/r.html"], "cannot be written"),

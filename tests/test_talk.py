@@ -729,19 +729,126 @@ def test_ctrl_c_ends_with_130_and_what_was_saved_is_intact(tmp_path: Path) -> No
             assert any("Ouch" in row.what for row in api.rehearse(saved).rows())
 
 
-def test_rows_come_above_the_line_that_is_typed(tmp_path: Path) -> None:
-    path = room(
-        tmp_path,
-        '<form id="f"><block><send event="tick" delay="2s"/></block>'
-        '<on event="tick"><speak>Tick.</speak></on></form>',
-    )
-    terminal = Terminal(str(path), folder=tmp_path, NO_COLOR="1")
+TICKS = (
+    '<form id="f"><block><send event="tick" delay="2s"/></block>'
+    '<on event="tick"><speak>Tick.</speak></on></form>'
+)
+
+
+def test_time_stands_still_while_a_line_is_typed(tmp_path: Path) -> None:
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
     terminal.until("> ")
     terminal.type("/hel")
     terminal.until("/hel")
-    terminal.until('"Tick."')
-    terminal.until("> /hel")  # what was typed is there again
+    with pytest.raises(AssertionError):
+        terminal.until('"Tick."', seconds=4)
+    terminal.type("p walk\r")
+    terminal.until("walks to a place or thing")
+    terminal.until('"Tick."')  # it goes on
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+
+
+def test_a_question_waits_for_who_types_the_answer(tmp_path: Path) -> None:
+    path = room(tmp_path, ASKS.replace("<prompt>", '<prompt timeout="2s">'))
+    terminal = Terminal(str(path), folder=tmp_path, NO_COLOR="1")
+    terminal.until('"Well?"')
+    terminal.type("y")
+    terminal.until("y")
+    time.sleep(5)
+    terminal.type("es\r")
+    assert "Nothing heard" not in terminal.until('"Thanks."')
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+
+
+def test_rows_come_above_the_line_that_is_typed(tmp_path: Path) -> None:
+    from prima.cli.terminal import Keyboard
+
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
+    terminal.until("> ")
+    terminal.type("/note a\r/hel")  # the note's row comes while the next line is typed
+    terminal.until("> /hel")
     terminal.type("p walk\r")
     terminal.until("walks to a place or thing")
     terminal.type("/quit\r")
     assert terminal.end() == 0
+    assert Keyboard("> ").begun() is False
+
+
+@pytest.mark.parametrize("begun", [(), (1, 2, 3)])
+def test_a_clock_leaves_out_what_was_typed(
+    begun: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from prima.cli import terminal
+
+    moment = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: moment[0])
+
+    class Hand(terminal.Piped):
+        """Types at some of the clock's looks, and is done at the sixth."""
+
+        looks = 0
+
+        def begun(self) -> bool:
+            return self.looks in begun
+
+        def line(self, wait: float | None) -> str | None:
+            self.looks += 1
+            moment[0] += wait or 0
+            if self.looks == 6:
+                return "yes"
+            raise TimeoutError
+
+    clock, hand = terminal.Clock(), Hand()
+    assert clock.line(hand, 10_000) == "yes"
+    assert clock.now == 600 - 100 * len(begun)
+
+
+def test_what_nobody_listens_to_is_told(tmp_path: Path) -> None:
+    talk, paper = start(room(tmp_path, TICKS))
+    talk.line("Hello?")
+    assert 'Nobody listens: "Hello?" is lost.' in paper.told
+    talk.line("/undo")
+    talk.line("/wait 1s")
+    assert sum("Nobody listens" in told for told in paper.told) == 1, "it is not told again"
+    long = ASKS.replace("<prompt>Well?", '<prompt bargein="false">How are you all today, friends?')
+    asks, paper = start(room(tmp_path, long), real=True)
+    asks.pass_time(100)
+    asks.line("Now")
+    asks.pass_time(2000)
+    assert "ea is still asking: it listens when it has spoken." in paper.told[-1]
+    answered, paper = start(room(tmp_path, ASKS))
+    answered.line("Yes.")
+    assert not any("Nobody listens" in told for told in paper.told)
+
+
+def test_applications_are_talked_to_in_another_world_and_on_another_robot(tmp_path: Path) -> None:
+    (tmp_path / "arm.xml").write_text(
+        (DOCUMENTS / "robots" / "papero.xml")
+        .read_text(encoding="utf-8")
+        .replace('id="papero"', 'id="arm"'),
+        encoding="utf-8",
+    )
+    path = room(tmp_path, '<form id="f"><block><topological-move to="lab"/><exit/></block></form>')
+    world = DOCUMENTS / "worlds" / "office.xml"
+    words = ["--ea", "ea.xml", "--world", str(world), "--robot", "arm.xml"]
+    saved = tmp_path / "visit.xml"
+    done = prima(tmp_path, b"/wait 60s\n", *words, "--save", "visit.xml")
+    assert b"reaches lab" in done.stdout, done.stderr
+    text = saved.read_text(encoding="utf-8")
+    assert "office.xml" in text and "arm.xml" in text
+    assert any(row.what == "reaches lab" for row in api.rehearse(saved).rows())
+    (tmp_path / "void.xml").write_text(
+        '<world xmlns="urn:prima:world:1" version="1.0" id="void"/>', encoding="utf-8"
+    )
+    for more, told in (
+        (["--world", "nowhere.xml"], "No such file"),
+        (["--world", "ea.xml"], "ea.xml"),
+        (["--world", "void.xml"], "has no place for the robot"),
+        (["--robot", str(world)], "office.xml"),
+    ):
+        refused = prima(tmp_path, b"", "--ea", "ea.xml", *more)
+        assert refused.returncode in (1, 2) and told in refused.stderr.decode(), refused.stderr
+    refused = prima(tmp_path, b"", str(path), "--world", str(world))
+    assert refused.returncode == 2 and b"A scenario names its own world" in refused.stderr

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from html import escape
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -353,6 +354,42 @@ def test_states_of_voicexml() -> None:
     assert [change.state for change in states.changes["follow"]][-1] == "sleep"
 
 
+LOOKED = {
+    # What came instead stands in the window, though what is nearest came long before it.
+    '<expect says="Going up" on="reply.lift" within="2s"/>': ["reply.lift", "Going up", "Floor 3"],
+    '<expect does="gesture" on="touch" within="1s"/>': ["touches", "do not push", "Gesture"],
+    # It waits for something that never comes: both ends of the run.
+    '<expect says="x" on="sound"/>': ["starts desk", "Which floor", "ends desk"],
+    '<expect says="zzzzz"/>': ["starts desk", "ends desk"],
+    '<never event="touch"/>': ["touches"],
+    '<expect says="zzzzz" at="50s"/>': ["ends desk"],
+    '<expect logs="floor 3" times="2"/>': ["floor 3", "starts desk", "ends desk"],
+}
+
+
+@pytest.mark.parametrize(("expected", "rows"), LOOKED.items())
+def test_a_failure_shows_the_rows_where_it_looked(
+    expected: str, rows: list[str], tmp_path: Path
+) -> None:
+    path = write(tmp_path, expected)
+    text = prima("test", path, cwd=tmp_path).stdout
+    data = json.loads(prima("test", path, "--format", "json", cwd=tmp_path).stdout)
+    (failure,) = data["scenarios"][0]["failures"]
+    for row in rows:
+        assert any(row in line for line in failure["rows"]), (row, failure["rows"])
+    assert "\n".join(failure["rows"]) in text
+    assert len(failure["rows"]) <= 16
+
+
+def test_rows_between_those_shown_are_dots(tmp_path: Path) -> None:
+    found = outcome(tmp_path, '<expect says="Which floor" on="reply.lift" within="1s"/>')
+    lines = found.failures[0].rows.splitlines()
+    at = lines.index("       ...")
+    shown = [int(line.split()[0]) for line in lines[1:] if line.strip("* ")[:1].isdigit()]
+    assert 0 < at < len(lines) - 1 and shown == sorted(set(shown))
+    assert any(after - before > 1 for before, after in pairwise(shown))
+
+
 # Expected tables -------------------------------------------------------------------
 
 
@@ -362,19 +399,26 @@ def table_of(path: Path) -> str:
 
 def test_a_table_is_compared_by_text_or_by_behavior(tmp_path: Path) -> None:
     path = write(tmp_path, "")
-    table = table_of(path)
-    assert difference(table, table, "text") == ""
-    rows = api.rehearse(path).rows()
-    for row in rows[3:]:
+    run = api.rehearse(path)
+    table, rows = run.table(), run.rows()
+    assert difference(table, rows, "text") == ""
+    late = run.rows()
+    for row in late[3:]:
         row.time += 0.2
-    later = format_rows(rows)
+    later = format_rows(late)
     assert later != table
-    assert difference(later, table, "behavior") == ""
-    assert difference(later, table, "text").startswith("--- expected")
+    assert difference(later, rows, "behavior") == ""
+    assert difference(later, rows, "text").startswith("--- expected")
     other = table.replace("Going up.", "Going down.")
-    assert "(was: " in difference(other, table, "behavior")
-    assert difference("no table at all\n", table, "text").startswith("--- expected")
-    assert difference("", table, "behavior")
+    assert "(was: " in difference(other, rows, "behavior")
+    assert difference("no table at all\n", rows, "text").startswith("--- expected")
+    assert difference("", rows, "behavior")
+
+
+@pytest.mark.parametrize("columns", [60, 80, 116, 300])
+def test_a_table_may_be_as_wide_as_it_was_written(columns: int) -> None:
+    run = api.rehearse(api.documents_folder() / "scenarios" / "follow-during-navigation-ja.xml")
+    assert difference(run.table(columns=columns), run.rows(), "text") == ""
 
 
 def test_update_shows_asks_and_never_writes_a_failed_run(tmp_path: Path) -> None:

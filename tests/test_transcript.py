@@ -14,7 +14,7 @@ from prima.sim import voice
 from prima.transcript.diff import compare, format_difference, summary_line
 from prima.transcript.lines import ORDER, finished, line
 from prima.transcript.record import FIELDS
-from prima.transcript.table import Row, format_rows, width
+from prima.transcript.table import Row, format_rows, read_table, width
 
 ROOT = Path(__file__).parent.parent
 DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
@@ -117,6 +117,57 @@ def test_the_table_is_aligned_for_wide_scripts_and_obeys_no_control_characters()
     lines = format_rows(made).splitlines()
     assert "\x1b" not in format_rows(made)
     assert width(lines[1]) == width(lines[2])
+
+
+LONG = (
+    'resumes Active Sensing Human, saying "Where are you? I have been looking for you"',
+    "木戸出です。会議がまだ終わりませんので、お約束の時間に５分ほど遅れます。「はい」とどうぞ。",
+    "http://service.example/a/very/long/address/that/has/no/space/and/goes/on?and=on&and=on",
+    "e\u0301" * 90,
+    "\U0001f600" * 45,
+)
+
+
+@pytest.mark.parametrize("columns", [70, 80, 81, 100, 200])
+@pytest.mark.parametrize("why", [False, True])
+def test_the_table_fits_its_columns_and_breaks_no_word(columns: int, why: bool) -> None:
+    made = rows(*LONG)
+    for row in made:
+        row.event, row.rule = True, "S2c"
+    lines = format_rows(made, why, columns).splitlines()
+    assert max(map(width, lines)) <= columns
+    event = lines[0].index("Event")
+    left = lines[0].index("Behavior")
+    firsts = [line for line in lines[1:] if line[:left].strip()]
+    assert all(width(line[: line.index(" o")]) + 1 <= event + 1 for line in firsts)
+    assert all(line.startswith(" " * left) for line in lines[1:] if line not in firsts)
+    pieces = [line[left:event].strip() for line in lines[1:]]
+    words = {word for piece in pieces for word in piece.split()}
+    assert set(LONG[0].split()) <= words, "words are whole"
+    assert not any(piece.startswith(("。", "、", "」", "\u0301")) for piece in pieces)
+
+
+@pytest.mark.parametrize("columns", [60, 80, 100, 200])
+def test_a_table_is_read_back_as_it_was(columns: int) -> None:
+    made = rows(*LONG, "short")
+    made[1].event = True
+    back = read_table(format_rows(made, columns=columns))
+    assert [(row.app, row.event) for row in back] == [(row.app, row.event) for row in made]
+    assert [row.what for row in back[:3]] == list(LONG[:3])
+    assert [row.what for row in back[4:]] == [LONG[4], "short"]
+
+
+def test_columns_stay_aligned_in_long_runs_and_beside_long_names() -> None:
+    made = rows("a", "b")
+    made[1].time, made[1].number, made[1].event = 123456.78, 123456, True
+    made[0].event = True
+    head, *lines = format_rows(made).splitlines()
+    assert {line.index(" o") + 1 for line in lines} == {head.index("Event")}
+    assert [row.number for row in read_table(format_rows(made))] == [0, 1]
+    made[0].app = "an-application-with-a-name-that-is-long-beyond-all-reason"
+    made[0].what = LONG[0]
+    assert "\n" + " " * 84 + "Human" not in format_rows(made)
+    assert width(format_rows(made).splitlines()[0]) > 80, "the behaviour keeps its room"
 
 
 @pytest.mark.parametrize(

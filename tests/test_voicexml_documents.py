@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from prima import loading
-from prima.errors import DocumentError
+from prima.errors import DocumentError, Problem
 from prima.messages import Ended, Heard
 from prima.voicexml.document import broken, join, read_page
 from tests.robot import Bench
@@ -1721,6 +1721,96 @@ def test_a_command_in_a_handler_and_in_an_if() -> None:
         "<exit/></catch>" + block('<throw event="odd"/>')
     )
     assert started(call) == ["turn"]
+
+
+def problems_of(body: str) -> list[Problem]:
+    """What is wrong with a document."""
+    try:
+        return list(read_page("d.vxml", "d.vxml", vxml(body).encode()).problems)
+    except DocumentError as error:
+        return error.problems
+
+
+def spans(call: Call) -> dict[str, tuple[float, float]]:
+    """When each Command begins and ends, by its words or its name."""
+    call.play()
+    begins = {r["behavior"]: r for r in call.phases("start") if r["command"] != "iu"}
+    ends = {r["behavior"]: r["time"] for r in call.phases("end")}
+    return {r.get("text") or r["command"]: (r["time"], ends[key]) for key, r in begins.items()}
+
+
+def test_branches_run_at_once_and_what_follows_waits_for_all() -> None:  # U3
+    found = spans(
+        Call(
+            f"<form {P}><block>One. <p:par><p:speak>Two is <value expr='1 + 1'/>.</p:speak><p:seq>"
+            "<p:gesture name='nod'/><p:turn angle='5'/></p:seq></p:par> Three.</block></form>"
+        )
+    )
+    assert found["Two is 2."][0] == found["gesture"][0] == found["One."][1]
+    assert found["turn"][0] == found["gesture"][1]
+    assert found["Three."][0] == max(found["Two is 2."][1], found["turn"][1])
+
+
+def test_a_unit_around_commands_is_one_behavior() -> None:  # U4
+    call = Call(
+        f"<form {P}><block><p:iu longest='8s' restartable='true'><p:gesture name='nod'/><p:par>"
+        "<p:speak>Mind the step.</p:speak><p:move-head pan='5'/></p:par></p:iu></block></form>"
+    )
+    found = spans(call)
+    [unit] = [r for r in call.phases("request") if r["command"] == "iu"]
+    assert set(unit["devices"]) >= {"speaker", "neck"}
+    inside = [r for r in call.phases("start") if r.get("unit")]
+    assert inside[0]["command"] == "gesture" and len(inside) == 3
+    assert found["Mind the step."][0] == found["move-head"][0] == found["gesture"][1]
+
+
+def test_arranged_commands_in_a_prompt_come_before_the_question() -> None:
+    call = Call(
+        f"<form {P}><field name='f'><prompt>Look. <p:par><p:turn angle='5'/>"
+        "<p:speak>There.</p:speak></p:par>Well?</prompt><option>yes</option></field></form>"
+    )
+    assert started(call)[:4] == ["Look.", "turn", "There.", "Well?"]
+
+
+def test_arranged_commands_may_stand_in_handlers_conditions_and_loops() -> None:
+    call = Call(
+        f"<form {P}><block><foreach item='i' array='[1, 2]'><if cond='i == 2'>"
+        "<p:par><p:turn angle-expr='i'/><p:speak>Now</p:speak></p:par></if></foreach></block></form>"
+    )
+    assert started(call) == ["turn", "Now"]
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "told"),
+    [
+        ("<p:iu><p:topological-move to='a'/></p:iu>", "not-in-unit", "leaves the user"),
+        ("<p:iu><p:par><p:tracking-human/></p:par></p:iu>", "not-in-unit", "feedback loop"),
+        ("<p:par/>", "empty", "holds no Command"),
+        ("<p:par><prompt>Hm.</prompt></p:par>", "misplaced-element", "Write what is said as"),
+        ("<p:par><p:par/></p:par>", "misplaced-element", "cannot stand in <p:par>"),
+        ("<p:par>Hm.</p:par>", "stray-text", "Write it into a <p:speak>"),
+        ("<p:iu longer='2s'><p:speak>a</p:speak></p:iu>", "unknown-attribute", '"longest"'),
+        ("<p:iu longest='2'><p:speak>a</p:speak></p:iu>", "bad-value", "2"),
+        ("<p:seq><p:turn angel='2'/></p:seq>", "unknown-attribute", '"angle"'),
+        ("<iu><p:turn angle='2'/></iu>", "unknown-element", "Write <p:iu> around Commands"),
+        ("<p:iuu/>", "unknown-element", '"iu"'),
+    ],
+)
+def test_wrong_arrangements_are_told(body: str, code: str, told: str) -> None:
+    problems = problems_of(f"<form {P}><block>{body}</block></form>")
+    [problem] = [one for one in problems if one.code == code]
+    assert problem.severity == "error"
+    assert told in f"{problem.message} {problem.remedy}"
+
+
+def test_branches_that_share_a_device_are_told_and_units_stand_around_commands_alone() -> None:
+    body = (
+        "<p:par><p:speak>a</p:speak><p:seq><p:turn angle='1'/><p:speak>b</p:speak></p:seq></p:par>"
+    )
+    [problem] = problems_of(f"<form {P}><block>{body}</block></form>")
+    assert (problem.code, problem.severity) == ("shared-device", "warning")
+    around = problems_of(f"<form {P}><p:iu><field name='f'/></p:iu></form>")
+    assert "it is around Commands" in around[0].message
 
 
 def test_a_wrong_argument_is_an_event_when_it_is_asked_for() -> None:

@@ -18,6 +18,7 @@ from prima.cli.common import SourceLines, escape_for_people, tell
 from prima.errors import DocumentError, RunError, UsageError, did_you_mean
 
 COMMANDS = {
+    "demo": "Run two applications on one robot; see the report.",
     "new": "Start a document that is commented, valid, and runs.",
     "validate": "Check documents; certify what one can do to another.",
     "run": "Run a scenario in simulation and print its transcript.",
@@ -25,11 +26,11 @@ COMMANDS = {
     "test": "Check what scenarios expect; cover documents.",
     "show": "Print a transcript as a table.",
     "diff": "Compare two runs by behaviour.",
-    "report": "Show a run, or two, as a page for the browser.",
+    "report": "Show a run, or compare two, as a page for the browser.",
     "graph": "Draw an application's states, or a run's trees and streams.",
     "replay": "Run a transcript's inbound events again.",
     "export": "Write a transcript for ELAN, Praat, a player, Foxglove, a table.",
-    "explain": "Explain a problem's code, or a transcript's row.",
+    "explain": "Explain a rule, a problem's code, or a transcript's row.",
     "study": "Measure situations under every policy.",
     "documents": "Copy the documents that come with PRIMA.",
     "schemas": "Copy the schemas of documents, for editors.",
@@ -78,6 +79,7 @@ def cli() -> None:
     """Mediate robot applications written as XML documents.
 
     \b
+    prima demo
     prima validate documents/fa/follow.xml
     prima run documents/scenarios/follow-during-navigation.xml
     """

@@ -74,6 +74,13 @@ def coloured() -> bool:
     return sys.stdout.isatty() and "NO_COLOR" not in os.environ
 
 
+def columns() -> int:
+    """How wide a table on stdout may be: as the terminal, or 80 columns where there is none."""
+    import shutil
+
+    return shutil.get_terminal_size((80, 24)).columns if sys.stdout.isatty() else 80
+
+
 def clean(text: str) -> str:
     """Text of a stranger's without control characters, which a terminal would obey."""
     return "".join(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
 
 import click
 from click.exceptions import Exit
@@ -15,15 +14,12 @@ from prima.cli.common import (
     check_output,
     coloured,
     or_stdout,
-    start_watchdog,
     suggesting,
     tell_cut,
     write_for_programs,
 )
+from prima.cli.runs import run_of
 from prima.errors import UsageError
-
-if TYPE_CHECKING:
-    from prima.api import Transcript
 
 
 @click.command()
@@ -72,13 +68,14 @@ def diff(
     if output is not None:
         check_output(output, "page", one, other)
     whole = form == "html"
-    old, new = _transcript(one, first, whole), _transcript(other, second, whole)
+    before_run, after_run = run_of(one, first, whole), run_of(other, second, whole)
+    old, new = before_run.transcript, after_run.transcript
     difference = api.diff(old, new)
     if form == "html":
         from prima.cli.report import write_page
         from prima.report import make
 
-        write_page(make([old, new]), output)
+        write_page(make([old, new], [before_run.scenario, after_run.scenario]), output)
     elif form == "json":
         write_for_programs()
         sys.stdout.writelines(difference_json(difference))
@@ -104,33 +101,3 @@ def _runs(
     if after is None:
         return [(before, policy) for policy in policies]
     return [(before, None), (after, None)]
-
-
-def _transcript(path: str, policy: str | None, whole: bool) -> Transcript:
-    """A transcript, or that of a scenario's run; if not the whole, what is compared of it.
-
-    Raises:
-        RunError: the run ended by a limit.
-    """
-    from prima import api
-    from prima.errors import TOO_MUCH, RunError
-
-    if policy is None and not _is_markup(path):
-        return api.read(path, partial=True) if whole else api.skim(path)
-    start_watchdog()
-    made = api.rehearse(path, policy)
-    made.name = f"{path} ({policy})" if policy else path
-    if made.outcome == "limit":
-        raise RunError(f"{path}: {TOO_MUCH}")
-    return made
-
-
-def _is_markup(path: str) -> bool:
-    """Whether a file is XML, as far as its name and its beginning tell."""
-    if path.endswith(".jsonl"):
-        return False
-    try:
-        with open(path, "rb") as stream:
-            return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
-    except (OSError, ValueError):
-        return False

@@ -8,23 +8,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import format_option, print_json, put, tell_cut
-from prima.errors import UsageError
+from prima.cli.common import columns, format_option, print_json, put, tell_cut
+from prima.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem as Completion
 
-LINE = 100
-"""Letters of a line of the list of codes."""
-
 
 def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[Completion]:
-    """Codes that begin so, or else files."""
+    """Rules and codes that begin so, or else files."""
     from click.shell_completion import CompletionItem
 
     from prima.codes import CODES
+    from prima.rulebook import rules
 
-    found = [CompletionItem(code) for code in CODES if begun and code.startswith(begun)]
+    names = [*rules(), *CODES]
+    found = [CompletionItem(name) for name in names if begun and name.startswith(begun)]
     return found or [CompletionItem(begun, type="file")]
 
 
@@ -33,23 +32,32 @@ def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> 
 @click.argument("row", type=int, required=False)
 @format_option
 def explain(what: str | None, row: int | None, form: str) -> None:
-    """Explain a problem's CODE, or why a ROW of a transcript came where it did.
+    """Explain a RULE of mediation, a problem's CODE, or why a ROW of a transcript came.
 
+    A rule comes with a run that shows it: a picture, rows of its table, and how to run it.
     A code comes with a wrong example, what prima validate says of it, and a right one.
-    Without CODE, all codes are listed with a line each.
+    Without argument, all rules and codes are listed with a line each.
 
     \b
     prima explain
+    prima explain F2
     prima explain undeclared-variable
     prima explain mediated.jsonl 16
     """
     from prima.codes import CODES
+    from prima.rulebook import named
 
     if what is None:
         _list(form)
-    elif not os.path.exists(what) and (row is None or what in CODES):
-        if row is not None:
-            raise UsageError(f"{what} is a code, which has no rows: prima explain {what}.")
+        return
+    rule = named(what)
+    known = bool(rule) or what in CODES
+    if row is not None and known and not os.path.exists(what):
+        kind = "rule" if rule else "code"
+        raise UsageError(f"{what} is a {kind}, which has no rows: prima explain {what}.")
+    if row is None and rule:
+        _rule(rule, form)
+    elif row is None and (known or not os.path.exists(what)):
         _code(what, form)
     elif row is None:
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
@@ -66,22 +74,56 @@ def explain(what: str | None, row: int | None, form: str) -> None:
 
 
 def _list(form: str) -> None:
-    """Every code with the first sentence of its explanation."""
+    """Every rule and every code with the first sentence of its explanation."""
     from prima.codes import CODES
+    from prima.rulebook import rules
 
     if form == "json":
-        print_json([{"code": code, "explanation": text} for code, text in CODES.items()])
+        listed = [
+            {"code": rule.name, "kind": "rule", "explanation": rule.text}
+            for rule in rules().values()
+        ]
+        listed += [
+            {"code": code, "kind": "problem", "explanation": text} for code, text in CODES.items()
+        ]
+        print_json(listed)
         return
-    width = max(map(len, CODES))
-    for code in sorted(CODES):
-        first = CODES[code].partition(". ")[0].rstrip(".")
-        put(f"{code:{width}}  {shorten(first, LINE - width - 2, placeholder=' ...')}")
+    put("Rules of mediation:")
+    _lines({rule.name: rule.brief for rule in rules().values()})
+    put("\nCodes of problems:")
+    _lines({code: CODES[code].partition(". ")[0].rstrip(".") for code in sorted(CODES)})
+
+
+def _lines(told: dict[str, str]) -> None:
+    """A line for each name."""
+    width, line = max(map(len, told)), columns()
+    for name, text in told.items():
+        put(f"{name:{width}}  {shorten(text, line - width - 2, placeholder=' ...')}")
+
+
+def _rule(name: str, form: str) -> None:
+    """A rule with its example."""
+    from prima.rulebook import data, shown
+
+    if form == "json":
+        print_json(data(name))
+    else:
+        put(shown(name, columns()))
 
 
 def _code(code: str, form: str) -> None:
-    """A code with its examples."""
-    from prima.examples import data, shown
+    """A code with its examples.
 
+    Raises:
+        UsageError: there is no such code, nor a rule or a file of that name.
+    """
+    from prima.codes import CODES
+    from prima.examples import data, shown
+    from prima.rulebook import suggestion
+
+    if code not in CODES:
+        hint = suggestion(code) or did_you_mean(code, CODES) or "prima explain lists them all."
+        raise UsageError(f'There is no rule, code or file "{code}". {hint}')
     if form == "json":
         print_json(data(code))
     else:

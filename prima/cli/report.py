@@ -3,50 +3,111 @@
 from __future__ import annotations
 
 import sys
+from itertools import product
+from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import check_output, start_watchdog, tell, tell_cut, write_for_programs
+from prima.cli.common import (
+    POLICIES,
+    POLICY_NAMES,
+    check_output,
+    start_watchdog,
+    suggesting,
+    tell,
+    tell_cut,
+    write_for_programs,
+)
+from prima.cli.runs import Run, is_markup, run_of
 from prima.errors import UsageError
+
+if TYPE_CHECKING:
+    from prima.loading import Loaded
 
 
 @click.command()
-@click.argument("transcripts", metavar="TRANSCRIPT...", nargs=-1, type=click.Path())
+@click.argument("runs", metavar="TRANSCRIPT|SCENARIO...", nargs=-1, type=click.Path())
 @click.option("-o", "--output", type=click.Path(), help="Write the page here.")
+@click.option(
+    "--policy",
+    "policies",
+    multiple=True,
+    shell_complete=suggesting(*POLICY_NAMES),
+    help=f"Run a scenario under this policy; twice to compare two runs: {POLICIES}.",
+)
 @click.option(
     "--scenario",
     "scenarios",
     multiple=True,
     type=click.Path(),
-    help="The scenario that was run: shows its map, and the user's way. Twice for two.",
+    help="The scenario of a transcript: shows its map, and the user's way. Twice for two.",
 )
-def report(transcripts: tuple[str, ...], output: str | None, scenarios: tuple[str, ...]) -> None:
+def report(
+    runs: tuple[str, ...],
+    output: str | None,
+    policies: tuple[str, ...],
+    scenarios: tuple[str, ...],
+) -> None:
     """Show a run as a page for the browser, or compare two.
 
-    The page holds a timeline, the map with robot and user, and the transcript with the
-    reasons of every row. It needs nothing beside it, and no network.
+    A scenario is run for it; a transcript is shown as it is. The page holds a timeline,
+    the map with robot and user, and the transcript with the reasons of every row. It
+    needs nothing beside it, and no network.
 
     \b
-    prima report mediated.jsonl -o report.html
+    prima report documents/scenarios/navigate-alone.xml -o navigate.html
+    prima report visit.xml --policy prima --policy fifo -o both.html
     prima report mediated.jsonl fifo.jsonl -o both.html
     prima report fifo.jsonl --scenario documents/scenarios/navigate-alone.xml -o fifo.html
     """
-    from prima import api
     from prima.report import make
 
-    if not transcripts:
-        raise UsageError("Name a transcript, as prima run -o writes it.")
+    if not runs:
+        raise UsageError("Name a scenario, or a transcript, as prima run -o writes it.")
+    wanted = list(product(runs, policies or (None,)))
+    if len(wanted) > 2:
+        raise UsageError(
+            f"These are {len(wanted)} runs, and a report shows one run or compares two;"
+            " name one or two."
+        )
     if output is None and sys.stdout.isatty():
         raise UsageError("Say where the page goes: -o report.html.")
     output = None if output == "-" else output
     if output is not None:
-        check_output(output, "page", *transcripts, *scenarios)
-    if scenarios:
-        start_watchdog()
-    loaded = [api.load_scenario(path) for path in scenarios]
-    read = [api.read(path, partial=True) for path in transcripts]
-    write_page(make(read, loaded), output)
-    tell_cut(*read)
+        check_output(output, "page", *runs, *scenarios)
+    maps = _maps(runs, scenarios)
+    shown = [run_of(path, policy) for path, policy in wanted]
+    transcripts = [run.transcript for run in shown]
+    write_page(make(transcripts, _scenarios(shown, maps)), output)
+    tell_cut(*transcripts)
+
+
+def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
+    """The scenarios of transcripts.
+
+    Raises:
+        DocumentError: one is wrong.
+        UsageError: they are not as many as the transcripts, nor one for all.
+    """
+    from prima import api
+
+    if not scenarios:
+        return []
+    transcripts = [path for path in runs if not is_markup(path)]
+    if not transcripts:
+        raise UsageError(
+            "--scenario is for a transcript; a scenario that is run brings its own map."
+        )
+    if len(scenarios) not in (1, len(transcripts)):
+        raise UsageError("Name one --scenario for all transcripts, or one for each.")
+    start_watchdog()
+    return [api.load_scenario(path) for path in scenarios]
+
+
+def _scenarios(shown: list[Run], maps: list[Loaded]) -> list[Loaded | None]:
+    """The scenario of each run: its own, or else the next of those named."""
+    left = iter(maps if len(maps) > 1 else maps * len(shown))
+    return [run.scenario or next(left, None) for run in shown]
 
 
 def write_page(page: str, output: str | None) -> None:

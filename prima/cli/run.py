@@ -13,6 +13,7 @@ from prima.cli.common import (
     POLICIES,
     POLICY_NAMES,
     check_output,
+    columns,
     format_option,
     limit_option,
     put,
@@ -185,7 +186,7 @@ def _run_one(
         transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, False, hosts)
     else:
         transcript = api.rehearse(loaded, policy, bound, hosts=hosts)
-        put(transcript.table(why))
+        put(transcript.table(why, columns()))
     if transcript.unfinished:
         tell(f"{_stopped(transcript)} {'; '.join(transcript.unfinished)}.")
     if transcript.failures:

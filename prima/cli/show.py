@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import put, tell_cut, why_option
+from prima.cli.common import columns, put, tell_cut, why_option
 
 
 @click.command()
@@ -19,5 +19,5 @@ def show(transcript: str, why: bool) -> None:
     from prima import api
 
     made = api.read(transcript, partial=True)
-    put(made.table(why))
+    put(made.table(why, columns()))
     tell_cut(made)

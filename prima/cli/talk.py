@@ -14,6 +14,7 @@ from prima.cli.common import (
     POLICY_NAMES,
     clean,
     coloured,
+    columns,
     format_option,
     limit_option,
     put,
@@ -24,7 +25,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
-from prima.cli.terminal import Keyboard, Piped, Typist, edit_lines, ending_well
+from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
 
 if TYPE_CHECKING:
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
     from prima.talk import Conversation, Game
     from prima.transcript.table import Row
 
-WIDE = 60
-"""Columns of the behaviour where no terminal says how many there are."""
 COLOURS = {"U": "cyan", "E": "yellow"}
 """Colours of rows, by who does it."""
 
@@ -43,6 +42,8 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 @click.argument("scenario", type=click.Path(), required=False)
 @click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
 @click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@click.option("--world", type=click.Path(), help="Let --fa and --ea run in this world.")
+@click.option("--robot", type=click.Path(), help="Let --fa and --ea run on this robot.")
 @click.option(
     "--step", is_flag=True, help="Let time wait for you: the default unless in a terminal."
 )
@@ -72,6 +73,8 @@ def talk(
     scenario: str | None,
     fas: tuple[str, ...],
     eas: tuple[str, ...],
+    world: str | None,
+    robot: str | None,
     step: bool,
     real_time: bool,
     target: str | None,
@@ -85,14 +88,15 @@ def talk(
     """Play the user of a run: type what he says and does, and see what the robot makes of it.
 
     A line is said; /touch head, /walk 3 0.5, /message from Ann: I'm late and others are
-    done; /help names them all. An empty line lets time go on, and the end of input ends the
-    session. /save FILE or --save FILE keeps it as a scenario, for prima run.
+    done; /help names them all. Time stands still while you type. An empty line lets it go
+    on, and the end of input ends the session. /save FILE or --save FILE keeps it as a scenario, for prima run.
 
     Exit code 3 if an application ended by an error; 1 if a line from a file or pipe was wrong.
 
     \b
     prima talk documents/scenarios/touched-on-the-way.xml
     prima talk --fa documents/fa/follow.xml --ea documents/ea/guide.xml --save visit.xml
+    prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
     from prima import api
@@ -101,9 +105,14 @@ def talk(
     raise_limits(limits)
     if (scenario is None) == (not fas and not eas):
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if scenario is not None and (world or robot):
+        raise UsageError("A scenario names its own world and robot; leave out --world and --robot.")
     if step and real_time:
         raise UsageError("Write --step or --real-time, not both.")
-    loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas)
+    if scenario is not None:
+        loaded = api.load_scenario(scenario)
+    else:
+        loaded = api.stage(fas, eas, (), world, robot)
     for problem in loaded.problems:
         if problem.severity != "note":
             tell(str(problem))
@@ -185,37 +194,27 @@ class Screen:
     """Prints rows, answers and messages; above the line that is being typed, if there is one."""
 
     def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
-        from prima.transcript.table import width
-
         self.interactive = interactive
         self.typist: Typist | None = None
         self._why = why
         self._json = json
-        self._apps = max([3, *(width(name) for name in game.names.applications)])
+        self._apps = game.names.applications
         self._headed = False
 
     def rows(self, rows: list[Row]) -> None:
         """Show rows as they happen."""
-        from prima.transcript.table import format_head, format_row
+        from prima.transcript.table import format_head, format_row, layout
 
         if self._json:
             return
-        column = self._column()
-        lines = [] if self._headed else [format_head(self._apps, column, self._why)]
+        shape = layout(self._apps, columns(), self._why)
+        lines = [] if self._headed else [format_head(shape)]
         self._headed = True
         for row in rows:
-            text = "\n".join(format_row(row, self._apps, column, self._why))
+            text = "\n".join(format_row(row, shape))
             colour = COLOURS.get(row.actor) if coloured() else None
             lines.append(click.style(clean(text), fg=colour) if colour else clean(text))
         self._print("\n".join(lines), styled=True)
-
-    def _column(self) -> int:
-        if not self.interactive:
-            return WIDE
-        import shutil
-
-        rest = 35 + self._apps + (6 if self._why else 0)
-        return min(max(shutil.get_terminal_size((100, 24)).columns - rest, 24), 76)
 
     def show(self, text: str) -> None:
         """Show what was asked for: among records, that is a message."""
@@ -291,19 +290,15 @@ def _step_by_step(conversation: Conversation, screen: Screen) -> None:
 
 
 def _real_time(conversation: Conversation, typist: Typist) -> None:
-    """Time goes on by itself while somebody types."""
-    import time
-
+    """Time goes on by itself, but while somebody types."""
     game = conversation.game
-    start = time.monotonic()
+    clock = Clock()
     while not conversation.done:
-        now = round((time.monotonic() - start) * 1000)
-        due = conversation.pass_time(now)
+        due = conversation.pass_time(clock.now)
         if conversation.done:
             return
-        wait = None if due is None else max(due - now, 0) / 1000
         try:
-            text = typist.line(wait)
+            text = clock.line(typist, due)
         except TimeoutError:
             continue
         except UnicodeDecodeError:
@@ -312,9 +307,9 @@ def _real_time(conversation: Conversation, typist: Typist) -> None:
             continue
         if text is None:
             return
-        now = round((time.monotonic() - start) * 1000)
+        now = clock.now
         conversation.pass_time(now)
         conversation.line(text)
         if game.clock < now:  # it has gone back
-            start = time.monotonic() - game.clock / 1000
+            clock.back(game.clock)
         typist.ready()

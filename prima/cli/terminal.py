@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Protocol
 
+GLANCE = 0.1
+"""How often (s) it is looked whether a line has been begun."""
 LONGEST_BYTES = 8004
 """What is kept of a line: more than a line may have."""
 
@@ -23,6 +26,9 @@ class Typist(Protocol):
             TimeoutError: there is none within so many seconds.
             UnicodeDecodeError: it is not UTF-8.
         """
+
+    def begun(self) -> bool:
+        """Whether a line has been begun and is not at its end, as far as one can tell."""
 
     def ready(self) -> None:
         """The last line has been carried out: the next one may be typed."""
@@ -66,6 +72,10 @@ class Piped:
             begun = len(self._held) - self._held.rfind(b"\n") - 1
             self._held += piece.rstrip(b"\n")[: max(LONGEST_BYTES - begun, 0)]
             self._held += b"\n" if ends else b""
+
+    def begun(self) -> bool:
+        """Lines of a pipe come whole."""
+        return False
 
     def ready(self) -> None:
         """Nothing waits to be asked."""
@@ -128,6 +138,10 @@ class Keyboard:
             raise got
         return got
 
+    def begun(self) -> bool:
+        """See :class:`Typist`."""
+        return self._typing and bool(_typed())
+
     def ready(self) -> None:
         """See :class:`Typist`."""
         self._typing = True
@@ -144,6 +158,41 @@ class Keyboard:
         if self._typing:
             sys.stdout.write(self._prompt + _typed())
             sys.stdout.flush()
+
+
+class Clock:
+    """Time that goes on by itself, but stands still while a line is being typed."""
+
+    def __init__(self) -> None:
+        self._start = time.monotonic()
+
+    @property
+    def now(self) -> int:
+        """How much time has passed (ms)."""
+        return round((time.monotonic() - self._start) * 1000)
+
+    def back(self, now: int) -> None:
+        """Go back to a time (ms)."""
+        self._start = time.monotonic() - now / 1000
+
+    def line(self, typist: Typist, until: int | None) -> str | None:
+        """The next line; time stands still while it is typed.
+
+        Raises:
+            TimeoutError: no line has been begun by a time (ms).
+            UnicodeDecodeError: it is not UTF-8.
+        """
+        while True:
+            before, begun = self.now, typist.begun()
+            left = GLANCE if until is None or begun else max((until - before) / 1000, 0)
+            try:
+                return typist.line(min(left, GLANCE))
+            except TimeoutError:
+                if not begun and until is not None and self.now >= until:
+                    raise
+            finally:
+                if begun:
+                    self.back(before)
 
 
 @contextmanager

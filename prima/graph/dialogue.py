@@ -7,6 +7,7 @@ from pathlib import PurePath
 
 from prima.commands import TABLE_4_2
 from prima.graph.model import Graph, Node, clean, settle
+from prima.graph.thrown import Taker, Throws, chosen
 from prima.graph.words import (
     ASKED,
     condition,
@@ -45,6 +46,8 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
+from prima.interpreter.events import DEFAULTS
+from prima.interpreter.selection import takes
 
 ANY = ":any"
 """The key of what holds in all states; no form can have it as its id."""
@@ -63,6 +66,9 @@ class _Reader:
         self.graph = Graph(f"The states of {clean(document.id)}")
         self.here = ANY
         self.hints: dict[str, list[str]] = {}
+        self.scopes: list[Sequence[Handler]] = []
+        """The handlers that may take what is thrown, innermost first."""
+        self.throws = Throws()
         for form in document.forms.values():
             self._form(form)
         self._everywhere()
@@ -77,7 +83,9 @@ class _Reader:
         self._links(form.links)
         items = all_items(form.items)
         asked = [item for item in items if isinstance(item, Field)]
+        around = _around(form.items)
         for item in items:
+            self.scopes = [*around[id(item)], form.handlers, self.document.handlers]
             conditions = [condition(item.cond.code, "", False)] if item.cond else []
             if isinstance(item, Block):
                 self._content(item.content, "then", conditions)
@@ -90,6 +98,7 @@ class _Reader:
                 self._filleds(item.filled, base, item.name, item.answers.type == "boolean")
             where = "" if len(asked) < 2 or not isinstance(item, Field) else f"{item.name}: "
             self._handlers(item.handlers, where)
+        self.scopes = [form.handlers, self.document.handlers]
         for filled in form.filled:
             names = ", ".join(filled.names) or "all"
             self._content(filled.content, f"{names} answered", [])
@@ -128,6 +137,7 @@ class _Reader:
         """What the document itself handles and listens for, in all its states."""
         self.here = ANY
         self.hints = _hints(self.document, None)
+        self.scopes = [self.document.handlers]
         self._handlers(self.document.handlers)
         self._links(self.document.links)
         if self.graph.out(ANY):
@@ -176,6 +186,7 @@ class _Reader:
                     self.graph.edge(self.here, "", "return", told + thrown)
                     return True
                 case Throw():
+                    self._throw(act.event, told)
                     return True
                 case If():
                     over, left = self._branches(act, base, conditions, name, truth)
@@ -210,11 +221,58 @@ class _Reader:
         elif act.form:
             self._to(act.form, "go", told)
 
+    def _throw(self, event: str | Expression, told: str) -> None:
+        """Note where the handlers lead that take what is thrown; a computed event is not known."""
+        if isinstance(event, Expression):
+            return
+        with self.throws.following(event) as followed:
+            if not followed:
+                return
+            if self.here == ANY:
+                self._throw_in_states(event, told)
+            self._taken(event, told)
+
+    def _throw_in_states(self, event: str, told: str) -> None:
+        """What the document's handlers throw is taken by a state's own handlers first."""
+        for form in self.document.forms.values():
+            if any(takes(name, event) for handler in form.handlers for name in handler.events):
+                self.here, self.scopes = form.id, [form.handlers]
+                self._taken(event, told, ends=False)
+        self.here, self.scopes = ANY, [self.document.handlers]
+
+    def _taken(self, event: str, told: str, ends: bool = True) -> None:
+        found, always = chosen(
+            Taker(handler, handler.count, handler.cond.code if handler.cond else "")
+            for scope in self.scopes
+            for handler in scope
+            if any(takes(name, event) for name in handler.events)
+        )
+        told = f"{told}, throws {event}"
+        for one in found:
+            self._content(one.handler.content, one.told(told), [])
+            if self.here != ANY and _stays(one.handler):
+                self.graph.edge(self.here, self.here, "stay", one.told(told))
+        if ends and not always and not any(takes(name, event) for name in DEFAULTS):
+            self.graph.edge(self.here, "", "exit", told)
+
     def _to(self, form: str, kind: str, told: str) -> None:
         if form in self.document.forms:
             self.graph.edge(self.here, form, kind, told)
         else:
             self.graph.edge(self.here, "", "missing", told, form)
+
+
+def _around(items: Sequence[Item], outer: Sequence[Sequence[Handler]] = ()) -> _Scopes:
+    """The handlers of each item and of the units around it, innermost first, by its identity."""
+    found: _Scopes = {}
+    for item in items:
+        found[id(item)] = [item.handlers, *outer]
+        if isinstance(item, Unit):
+            found |= _around(item.items, found[id(item)])
+    return found
+
+
+_Scopes = dict[int, list[Sequence[Handler]]]
 
 
 def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:

@@ -10,6 +10,7 @@ from prima.commands import TABLE_4_2
 from prima.errors import DocumentError
 from prima.graph.model import Graph, clean, settle
 from prima.graph.model import Node as Box
+from prima.graph.thrown import Taker, Throws, chosen
 from prima.graph.words import (
     ASKED,
     condition,
@@ -20,6 +21,7 @@ from prima.graph.words import (
     quoted,
     sayings,
 )
+from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE
@@ -28,6 +30,8 @@ MOST_PAGES = 100
 """Documents of one application that are read."""
 ASKING = ("field", "initial", "record", "menu")
 ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
+GOING_ON = (*sorted(ASKED), "cancel", "maxspeechtimeout")
+"""Events after which the dialog goes on where no handler takes them (5.2.5)."""
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 TEXT = (
     "p",
@@ -58,6 +62,9 @@ class _Reader:
         self.first = self.page = document.page
         self.here = ""
         self.hints: dict[str, list[str]] = {}
+        self.scopes: list[Node] = []
+        """What may hold handlers of what is thrown, innermost first."""
+        self.throws = Throws()
         everywhere: dict[str, list[str]] = {}
         self._declare(self.first)
         done: set[str] = set()
@@ -139,7 +146,9 @@ class _Reader:
             self._choices(dialog)
         asked = dialog.all(*ASKING)
         for item in dialog.all(*ITEMS):
+            self.scopes = [item, dialog, *self._outer()]
             self._item(item, len(asked) > 1)
+        self.scopes = [dialog, *self._outer()]
         for filled in dialog.all("filled"):
             names = ", ".join(filled.get("namelist").split()) or "all"
             self._content(filled, f"{names} answered", [])
@@ -186,6 +195,7 @@ class _Reader:
         """What a document handles and listens for in all its dialogs, or in its leaves' too."""
         page = self.page
         self.here = f"{page.uri}#:any"
+        self.scopes = self._outer()
         self._handlers(page.root.all(*HANDLERS))
         self._links(page.root.all("link"))
         for name, dialog in page.dialogs.items():
@@ -215,13 +225,49 @@ class _Reader:
 
     def _handlers(self, handlers: Iterable[Node], where: str = "") -> None:
         for node in handlers:
-            events = node.get("event").split() if node.tag == "catch" else [node.tag]
-            count = node.get("count", "1")
-            times = int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
-            told = handled(events or [""], times, node.get("cond").strip(), self.hints)
+            events = _events(node)
+            told = handled(events, _count(node), node.get("cond").strip(), self.hints)
             self._content(node, where + told, [])
             if not self.here.endswith("#:any") and node.tag == "catch" and _stays(node, events):
                 self.graph.edge(self.here, self.here, "stay", told)
+
+    def _outer(self) -> list[Node]:
+        """The document and its root document, which may hold handlers."""
+        root = self.pages.get(self.page.application or "")
+        return [self.page.root, *([root.root] if root else [])]
+
+    def _throw(self, event: str, told: str) -> None:
+        """Note where the handlers lead that take what is thrown; a computed event is not known."""
+        with self.throws.following(event) as followed:
+            if not event or not followed:
+                return
+            if self.here.endswith("#:any"):
+                self._throw_in_dialogs(event, told)
+            self._taken(event, told)
+
+    def _throw_in_dialogs(self, event: str, told: str) -> None:
+        """What a document's handlers throw is taken by a dialog's own handlers first."""
+        here, scopes = self.here, self.scopes
+        for name, dialog in self.page.dialogs.items():
+            if any(takes(one, event) for node in dialog.all(*HANDLERS) for one in _events(node)):
+                self.here, self.scopes = self._key(self.page, name), [dialog]
+                self._taken(event, told, ends=False)
+        self.here, self.scopes = here, scopes
+
+    def _taken(self, event: str, told: str, ends: bool = True) -> None:
+        found, always = chosen(
+            Taker(node, _count(node), node.get("cond").strip())
+            for scope in self.scopes
+            for node in scope.all(*HANDLERS)
+            if any(takes(name, event) for name in _events(node))
+        )
+        told = f"{told}, throws {event}"
+        for one in found:
+            self._content(one.handler, one.told(told), [])
+            if not self.here.endswith("#:any") and _stays(one.handler, _events(one.handler)):
+                self.graph.edge(self.here, self.here, "stay", one.told(told))
+        if ends and not always and not any(takes(name, event) for name in GOING_ON):
+            self.graph.edge(self.here, "", "exit", told)
 
     def _content(
         self, node: Node, base: str, conditions: list[str], name: str = "", truth: bool = False
@@ -254,6 +300,7 @@ class _Reader:
                     self.graph.edge(self.here, "", "return", told + thrown)
                     return True
                 case "throw":
+                    self._throw(act.get("event"), told)
                     return True
                 case "if":
                     over, left = self._branches(act, base, conditions, name, truth)
@@ -311,6 +358,19 @@ def _divided(node: Node) -> Iterator[tuple[str | None, list[Node]]]:
         else:
             part.append(child)
     yield cond, part
+
+
+def _events(handler: Node) -> list[str]:
+    """The events that a handler takes; the empty name is for all."""
+    if handler.tag != "catch":
+        return [handler.tag]
+    return [name if name != "." else "" for name in handler.get("event").split()] or [""]
+
+
+def _count(handler: Node) -> int:
+    """From which time on a handler takes its events."""
+    count = handler.get("count", "1")
+    return int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
 
 
 def _stays(handler: Node, events: list[str]) -> bool:

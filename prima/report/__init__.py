@@ -19,12 +19,12 @@ MOST_ROWS = 20_000
 """Rows of a transcript that a page shows."""
 
 
-def make(transcripts: Sequence[Transcript], scenarios: Sequence[Loaded] = ()) -> str:
+def make(transcripts: Sequence[Transcript], scenarios: Sequence[Loaded | None] = ()) -> str:
     """The page of one transcript, or of two with what differs from the first to the second.
 
     Args:
         transcripts: one or two.
-        scenarios: none, the one of all transcripts, or one for each: from them come the
+        scenarios: none, the one of all transcripts, or one for each, or None: from them come the
             map, the user's way and the languages, by making the run again.
 
     Raises:

@@ -12,7 +12,7 @@ from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
-from prima.transcript.table import Row, describe
+from prima.transcript.table import Row, describe, printable
 from prima.transcript.why import Reasons
 from prima.values import read_value
 
@@ -89,6 +89,8 @@ class Conversation:
         for rows in some:
             if rows:
                 self.screen.rows(rows)
+            if text := self.game.unheard():
+                self.screen.tell(_unheard(text, self.game.asking))
             failures = self.game.failures
             for failure in failures[self._failures :]:
                 self.screen.tell(f"prima: {failure.rstrip(': ')}. The session goes on.")
@@ -196,6 +198,7 @@ class Conversation:
 
     def _returned(self) -> None:
         self._failures = len(self.game.failures)
+        self.game.unheard()
         self._told = ""
         self.options = self.game.options()
         rows = self.game.table.rows
@@ -277,6 +280,12 @@ def _beginning(path: Path) -> bytes:
         return b""
     with path.open("rb") as stream:
         return stream.read(200)
+
+
+def _unheard(text: str, asking: str) -> str:
+    """That nobody has listened, and when somebody will."""
+    later = f" {asking} is still asking: it listens when it has spoken." if asking else ""
+    return f'Nobody listens: "{printable(text)}" is lost.{later}'
 
 
 def _nothing(name: str, rest: str) -> None:

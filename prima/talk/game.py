@@ -132,6 +132,18 @@ class Game:
         """Applications that have ended by an error, as ``NAME: what``."""
         return self.rehearsal.session.failures
 
+    def unheard(self) -> str:
+        """What the user has said that nobody took; it is told once."""
+        session = self.rehearsal.session
+        text, session.unheard = session.unheard, ""
+        return text
+
+    @property
+    def asking(self) -> str:
+        """The application that is asking a question and does not listen yet."""
+        question = self.rehearsal.session.mediator.question()
+        return question.app.name if question and not question.listening else ""
+
     @property
     def asks(self) -> Behavior | None:
         """The question that listens, if one does."""

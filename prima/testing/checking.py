@@ -13,11 +13,15 @@ from prima.interpreter.selection import takes
 from prima.messages import Record
 from prima.sim.scenario import Expectation, Scenario
 from prima.testing.watching import Change, States
-from prima.transcript.table import Row, describe, format_rows
+from prima.transcript.table import Row, describe, format_head, format_row, shape_of
 from prima.values import read_value, shown
 
 AROUND = 2
 """Rows that are shown before and after the one that matters."""
+MOST_ROWS = 4
+"""Rows that are shown of each end of a long time."""
+GAP = "       ..."
+"""Stands for rows that are not shown."""
 MOST_TOLD = 5
 """Times that a message lists."""
 MOST_COMPARED = 500
@@ -153,11 +157,13 @@ class Checker:
         inside = [fact for fact in fitting if window.holds(fact)]
         if one.never:
             if inside:
-                self._fail(one, f"{_must(one, window)} It does {self._at(inside)}.", inside[0].time)
+                self._fail(
+                    one, f"{_must(one, window)} It does {self._at(inside)}.", window, inside[0]
+                )
         elif one.times is not None and len(inside) != one.times:
             told = f"It does {_times(len(inside))}"
             told += f", {self._at(inside)}." if inside else "."
-            self._fail(one, f"{_must(one, window)} {told}", self._when(inside, window))
+            self._fail(one, f"{_must(one, window)} {told}", window, next(reversed(inside), None))
         elif not inside:
             self._miss(one, window, fitting)
         else:
@@ -204,7 +210,7 @@ class Checker:
         if len(fired) < one.count:
             often = "is never there" if not fired else f"comes only {_times(len(fired))}"
             why = f"What it waits for {often}: {told}."
-            self._fail(one, f"{_must(one, window)} {why}", fired[-1].time if fired else 0)
+            self._fail(one, f"{_must(one, window)} {why}", window, next(reversed(fired), None))
             return False
         fact = fired[one.count - 1]
         window.opens, window.behind = fact.time, fact.number
@@ -232,10 +238,10 @@ class Checker:
         if one.never and held:
             app, time = held[0]
             told = f"{app} is in it from {_seconds(time)} on."
-            self._fail(one, f"{_must(one, window)} {told}", max(time, window.opens))
+            self._fail(one, f"{_must(one, window)} {told}", window, max(time, window.opens))
         elif not one.never and not held:
             told = " ".join(self._instead(app, window.opens) for app in apps[:MOST_TOLD])
-            self._fail(one, f"{_must(one, window)} {told}".strip(), window.opens)
+            self._fail(one, f"{_must(one, window)} {told}".strip(), window, window.opens)
 
     def _instead(self, app: str, time: int) -> str:
         """Where an application is at a time."""
@@ -249,10 +255,18 @@ class Checker:
 
     # Telling ----------------------------------------------------------------------
 
-    def _fail(self, one: Expectation, message: str, time: int) -> None:
+    def _fail(
+        self, one: Expectation, message: str, window: Window, near: Fact | int | None = None
+    ) -> None:
+        """Tell a failure, with the rows where it was looked for, and those around what was found.
+
+        ``near`` is what was found, or its time (ms).
+        """
         name = next(name for name in one.node.attributes if name in one.words)
         place = one.node.attribute_place(name, value=False)
-        self.failures.append(Failure(place, message, around(self.run.rows, time)))
+        time = near.time if isinstance(near, Fact) else near
+        looked = None if one.never and near is not None else window
+        self.failures.append(Failure(place, message, around(self.run.rows, looked, time)))
 
     def _at(self, facts: list[Fact]) -> str:
         """When things happened, with the rows."""
@@ -271,9 +285,6 @@ class Checker:
                 return f" (row {row.number})"
         return ""
 
-    def _when(self, facts: list[Fact], window: Window) -> int:
-        return facts[-1].time if facts else window.opens
-
     def _miss(self, one: Expectation, window: Window, fitting: list[Fact]) -> None:
         """Nothing was found: tell what came nearest."""
         late = next((fact for fact in fitting if window.late(fact)), None)
@@ -286,7 +297,7 @@ class Checker:
             told = f"It does {self._at([early])}, too early."
         else:
             near, told = self._nearest(one)
-        self._fail(one, f"{_must(one, window)} {told}", near.time if near else window.opens)
+        self._fail(one, f"{_must(one, window)} {told}", window, near)
 
     def _nearest(self, one: Expectation) -> tuple[Fact | None, str]:
         """What is nearest to what never happens: said by another, or with other words."""
@@ -311,12 +322,38 @@ class Checker:
         return found, f'It never does. Nearest: {who} {name} "{text}" {self._at([found])}.'
 
 
-def around(rows: list[Row], time: int) -> str:
-    """The rows of the table around a time (ms)."""
-    if not rows:
+def around(rows: list[Row], looked: Window | None, near: int | None) -> str:
+    """The rows of the table in a window, and around a time (ms); three dots stand for others."""
+    chosen: set[int] = set()
+    if looked is not None:
+        chosen |= _within(rows, looked)
+    if near is not None:
+        at = max((index for index, row in enumerate(rows) if row.time * 1000 <= near), default=0)
+        chosen |= set(range(at - AROUND, at + AROUND + 1))
+    kept = sorted(chosen & set(range(len(rows))))
+    if not kept:
         return ""
-    at = max((index for index, row in enumerate(rows) if row.time * 1000 <= time), default=0)
-    return format_rows(rows[max(at - AROUND, 0) : at + AROUND + 1])
+    shape = shape_of([rows[index] for index in kept])
+    lines = [format_head(shape)]
+    for before, index in zip([kept[0] - 1, *kept], kept, strict=False):
+        lines += [GAP] if index > before + 1 else []
+        lines += format_row(rows[index], shape)
+    return "\n".join(lines) + "\n"
+
+
+def _within(rows: list[Row], window: Window) -> set[int]:
+    """The rows of a window with the one before it and the one after it; of many, both ends."""
+    closes = float("inf") if window.closes is None else window.closes
+    inside = [
+        index for index, row in enumerate(rows) if window.opens <= round(row.time * 1000) <= closes
+    ]
+    if not inside:
+        last = sum(row.time * 1000 < window.opens for row in rows)
+        return {last - 1, last}
+    found = [inside[0] - 1, *inside, inside[-1] + 1]
+    if len(found) > 2 * MOST_ROWS:
+        found = [*found[:MOST_ROWS], *found[-MOST_ROWS:]]
+    return set(found)
 
 
 # Matching -------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from pathlib import Path
 from prima.errors import DocumentError, UsageError
 from prima.loading import read_file
 from prima.transcript.diff import Difference, compare, format_difference
-from prima.transcript.table import read_table
+from prima.transcript.table import Row, format_rows, read_table, width
 
 LONGEST_DIFFERENCE = 200
 """Lines of a difference that are shown."""
@@ -33,14 +33,17 @@ def read_golden(path: Path) -> str | None:
         raise UsageError(f"{path}: this is no transcript's table: it is not UTF-8.") from None
 
 
-def difference(golden: str, table: str, by: str) -> str:
+def difference(golden: str, run: list[Row], by: str) -> str:
     """How a run's table differs from the expected one; empty where it does not.
+
+    How wide the expected table is does not matter: the run's is made as wide.
 
     Args:
         golden: the expected table.
-        table: the run's.
+        run: the run's rows.
         by: ``text``, or ``behavior``: times may then be off by less than half a second.
     """
+    table = format_rows(run, columns=width(golden.partition("\n")[0]))
     if golden == table:
         return ""
     try:

@@ -18,6 +18,7 @@ from prima.testing.checking import Failure, check, make_run
 from prima.testing.coverage import Coverage, covered
 from prima.testing.golden import difference, golden_of, read_golden
 from prima.testing.watching import Marks, States, watching
+from prima.transcript.table import Row
 
 Status = Literal["passed", "failed", "error", "invalid"]
 STATUSES: tuple[Status, ...] = ("passed", "failed", "error", "invalid")
@@ -101,7 +102,8 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
     if made.failures:
         made.status = "failed"
     own = choice.policy in (None, scenario.policy)
-    _compare(transcript.table(), choice.compare, own, made)
+    made.table = transcript.table() if own else ""
+    _compare(rows, choice.compare, own, made)
     unexpected = _unexpected(transcript.failures, loaded)
     if transcript.outcome == "limit":
         unexpected.append(Failure(scenario.node.place, TOO_MUCH[0].upper() + TOO_MUCH[1:]))
@@ -110,16 +112,15 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
         made.failures += unexpected
 
 
-def _compare(table: str, by: str, own: bool, made: Result) -> None:
+def _compare(rows: list[Row], by: str, own: bool, made: Result) -> None:
     """Compare with the expected table, which is that of the scenario's own policy."""
     golden = read_golden(made.file)
-    made.table = table if own else ""
     if golden is None:
         return
     if not own:
         made.golden = "skipped"
         return
-    made.difference = difference(golden, table, by)
+    made.difference = difference(golden, rows, by)
     made.golden = "differs" if made.difference else "same"
     if made.difference:
         made.status = "failed"

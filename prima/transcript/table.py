@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from prima.commands import TABLE_4_2
 from prima.deferred import dataclass
@@ -14,6 +15,16 @@ LONGEST_SHOWN = 5000
 """Letters of a row that are printed."""
 SMALL = frozenset({"a", "an", "and", "at", "by", "for", "of", "on", "the", "to", "with"})
 """Words of a title that have no capital."""
+COLUMNS = 80
+"""Of a table that is not shown on a terminal, or on one that does not say how wide it is."""
+NARROWEST = 24
+"""Columns of the behaviour, however long the names of applications are."""
+CLOSING = frozenset(
+    "\u3001\u3002\uff0c\uff0e\uff01\uff1f\u300d\u300f\uff09\u30fc\u3083\u3085\u3087\u3063\u30e3\u30e5\u30e7\u30c3,.!?)\"'"
+)
+"""Letters that begin no line of a text that is broken anywhere."""
+MOST_KEPT = 3
+"""How many such letters are looked at."""
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
@@ -406,14 +417,16 @@ def _next(left: list[int], index: int) -> int:
 
 def width(text: str) -> int:
     """How many columns of a terminal a text takes."""
-    return sum(
-        0
-        if unicodedata.combining(letter)
-        else 2
-        if unicodedata.east_asian_width(letter) in "WF"
-        else 1
-        for letter in text
-    )
+    if text.isascii():
+        return len(text)
+    return sum(map(_columns, text))
+
+
+def _columns(letter: str) -> int:
+    """How many columns a letter takes: none if it changes the one before it."""
+    if unicodedata.category(letter) in ("Mn", "Me", "Cf"):
+        return 0
+    return 2 if unicodedata.east_asian_width(letter) in "WF" else 1
 
 
 def _pad(text: str, columns: int) -> str:
@@ -427,35 +440,78 @@ def printable(text: str) -> str:
     return "".join(" " if unicodedata.category(letter) == "Cc" else letter for letter in text)
 
 
-def format_rows(rows: list[Row], why: bool = False) -> str:
-    """The table as text: star and bracket, number, who, application, behaviour, event."""
-    apps = max([3, *(width(row.app) for row in rows)])
-    column = min(max([8, *(width(printable(row.what)) for row in rows)]), 76)
-    lines = [format_head(apps, column, why)]
+class Layout(NamedTuple):
+    """How wide the table's columns are, in columns of a terminal."""
+
+    apps: int
+    behavior: int
+    numbers: int = 4
+    times: int = 7
+    why: bool = False
+
+    @property
+    def left(self) -> int:
+        """Columns before the behaviour."""
+        return 4 + 2 + self.numbers + 1 + self.times + 2 + 3 + 2 + self.apps + 2
+
+
+def layout(apps: Iterable[str], columns: int = COLUMNS, why: bool = False) -> Layout:
+    """A layout for applications' names that takes no more than so many columns.
+
+    Names of applications are not broken. If they leave too little room for the behaviour,
+    the table is wider.
+    """
+    made = Layout(max([3, *map(width, apps)]), 0, why=why)
+    return made._replace(behavior=max(columns - made.left - (14 if why else 7), NARROWEST))
+
+
+def format_rows(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> str:
+    """The table as text: star and bracket, number, who, application, behaviour, event.
+
+    It is as wide as its longest row needs, and at most so many columns; longer rows go on in
+    further lines.
+    """
+    shape = shape_of(rows, why, columns)
+    lines = [format_head(shape)]
     for row in rows:
-        lines += format_row(row, apps, column, why)
+        lines += format_row(row, shape)
     return "\n".join(lines) + "\n"
 
 
-def format_head(apps: int, column: int, why: bool = False) -> str:
-    """The table's head, for columns of applications and behaviours as wide as given."""
-    head = f"       No.  Time    Who  {_pad('App', apps)}  {_pad('Behavior', column)}  Event"
-    return head + ("  Rule" if why else "")
+def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Layout:
+    """The layout of these rows: as wide as the longest needs, and at most so many columns."""
+    made = layout((row.app for row in rows), columns, why)
+    if rows:
+        numbers = max(made.numbers, len(str(rows[-1].number)))
+        times = max(made.times, len(f"{rows[-1].time:.2f}"))
+        more = numbers + times - made.numbers - made.times
+        room = max(made.behavior - more, NARROWEST)
+        made = made._replace(numbers=numbers, times=times, behavior=room)
+    longest = max([8, *(width(printable(row.what)) for row in rows)])
+    return made._replace(behavior=min(longest, made.behavior))
 
 
-def format_row(row: Row, apps: int, column: int, why: bool = False) -> list[str]:
+def format_head(shape: Layout) -> str:
+    """The table's head."""
+    head = f"{'No.':>{6 + shape.numbers}}  {_pad('Time', shape.times - 1)}  Who"
+    head += f"  {_pad('App', shape.apps)}  {_pad('Behavior', shape.behavior)}  Event"
+    return head + ("  Rule" if shape.why else "")
+
+
+def format_row(row: Row, shape: Layout) -> list[str]:
     """The lines of one row under such a head."""
     mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
-    left = f"  {mark}  {row.number:>4} {row.time:>7.2f}  {row.actor:<3}  {_pad(row.app, apps)}  "
-    pieces = _wrap(printable(row.what), column)
+    left = f"  {mark}  {row.number:>{shape.numbers}} {row.time:>{shape.times}.2f}"
+    left += f"  {row.actor:<3}  {_pad(row.app, shape.apps)}  "
+    pieces = _wrap(printable(row.what), shape.behavior)
     event = "o" if row.event else " "
-    tail = f"  {event}      {row.rule}" if why else f"  {event}"
-    first = (left + _pad(pieces[0], column) + tail).rstrip()
+    tail = f"  {event}      {row.rule}" if shape.why else f"  {event}"
+    first = (left + _pad(pieces[0], shape.behavior) + tail).rstrip()
     return [first, *(" " * width(left) + piece for piece in pieces[1:])]
 
 
 def _wrap(text: str, columns: int) -> list[str]:
-    """Break a text at spaces, or anywhere in a script without them."""
+    """Break a text at spaces; a word that is longer than a line, as in Japanese, anywhere."""
     lines, current = [], ""
     if len(text) > LONGEST_SHOWN:
         text = text[:LONGEST_SHOWN] + "..."
@@ -466,14 +522,26 @@ def _wrap(text: str, columns: int) -> list[str]:
             continue
         if current:
             lines.append(current)
-        while width(word) > columns:
-            cut = columns
-            while width(word[:cut]) > columns:
-                cut -= 1
-            lines.append(word[:cut])
-            word = word[cut:]
-        current = word
+        *pieces, current = _cut(word, columns)
+        lines += pieces
     return [*lines, current]
+
+
+def _cut(word: str, columns: int) -> list[str]:
+    """A word in pieces that fit; none begins with what closes a sentence or changes a letter."""
+    pieces = []
+    while width(word) > columns:
+        end = taken = 0
+        while taken + _columns(word[end]) <= columns:
+            taken += _columns(word[end])
+            end += 1
+        for _ in range(min(MOST_KEPT, end - 1)):
+            if word[end] not in CLOSING and _columns(word[end]):
+                break
+            end -= 1
+        pieces.append(word[:end])
+        word = word[end:]
+    return [*pieces, word]
 
 
 def read_table(text: str) -> list[Row]:
@@ -488,17 +556,42 @@ def read_table(text: str) -> list[Row]:
         raise ValueError("it has no head")
     who, app, what, event = (head.index(word) for word in ("Who", "App", "Behavior", "Event"))
     rows: list[Row] = []
-    for line in lines[lines.index(head) + 1 :]:
+    last = ""
+    for line in map(_spread, lines[lines.index(head) + 1 :]):
         number = line[:who].split()
         if not line.strip():
             continue
         if not number and rows:
-            rows[-1].what += " " + line.strip()
+            rows[-1].what += "" if _is_cut(last, event - what - 2) else " "
+            last = _gathered(line[what:])
+            rows[-1].what += last
             continue
-        row = Row(float(number[-1]), line[who:app].strip(), line[app:what].strip(), "")
-        row.what, row.event = line[what:event].strip(), line[event : event + 1] == "o"
+        row = Row(float(number[-1]), line[who:app].strip(), _gathered(line[app:what]), "")
+        last = row.what = _gathered(line[what:event])
+        row.event = line[event : event + 1] == "o"
         row.number = len(rows)
         rows.append(row)
     for row in rows:
         row.resumed = row.what.startswith("resumes ")
     return rows
+
+
+def _spread(line: str) -> str:
+    """A line in which every letter takes as many places as columns, filled with zeros."""
+    if line.isascii():
+        return line
+    made = ""
+    for letter in line:
+        taken = _columns(letter)
+        if taken:
+            made += letter + "\0" * (taken - 1)
+    return made
+
+
+def _gathered(text: str) -> str:
+    return text.replace("\0", "").strip()
+
+
+def _is_cut(piece: str, columns: int) -> bool:
+    """Whether a line ends within a word: it is one long word, and full."""
+    return " " not in piece and width(piece) >= columns - 2 * MOST_KEPT - 1

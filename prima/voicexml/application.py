@@ -25,11 +25,11 @@ from prima.messages import (
     Request,
     Say,
     Send,
-    Step,
     Transferred,
     Understood,
 )
 from prima.messages import Heard as Spoken
+from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
 from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
@@ -74,7 +74,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._patient = False
         """Whether what is played now is played to its end, even with the answer there."""
         self._open: Sequence[Command] = ()
-        self._queue: Sequence[Command] = ()
+        self._queue: Sequence[Queued] = ()
         """Commands whose end is waited for."""
         """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
@@ -187,7 +187,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         """Which of the Commands that are waited for comes before one of them, if any does."""
         for one, after in pairwise(self._queue):
             if after is command:
-                return one
+                return one if isinstance(one, Command) else None
         return None
 
     def breaks_in(
@@ -228,7 +228,7 @@ class VoiceInterpreter(Bounds["Engine"]):
     # What the machine asks for --------------------------------------------------------
 
     def wait(
-        self, commands: list[Command], open_to_answers: Sequence[Command] = ()
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
         """Ask for Commands, one after another, and wait for the end of the last.
 
@@ -236,15 +236,12 @@ class VoiceInterpreter(Bounds["Engine"]):
             commands: the Commands.
             open_to_answers: those during which the question behind them may be answered.
         """
-        steps = [
-            Step(command, (index - 1,) if index else ()) for index, command in enumerate(commands)
-        ]
         self._run = next(self._runs)
         self._state += 1
         cause, self._cause = self._cause, None
         content = self._machine.content
         self._marked, content.mark = content.mark, None
-        self.actions.append(Request(self._run, steps, self._state, cause))
+        self.actions.append(Request(self._run, steps_of(commands), self._state, cause))
         self._open, self._queue = open_to_answers, commands
         resume = yield
         self._run, self._open, self._queue = 0, (), ()
@@ -278,7 +275,9 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._asked = self._answer = self._late = self.deadline = None
         self._calling = False
 
-    def answer_or_input(self, commands: list[Command]) -> Generator[None, Resume, Answer | Resume]:
+    def answer_or_input(
+        self, commands: Sequence[Queued]
+    ) -> Generator[None, Resume, Answer | Resume]:
         """Wait for an answer or, with Commands, for the end of the last, whichever is first.
 
         An event ends the wait as well.
@@ -287,7 +286,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         return self._answer or resume
 
     def pass_time(
-        self, queued: list[Command], audio: list[Command]
+        self, queued: Sequence[Queued], audio: Sequence[Queued]
     ) -> Generator[None, Resume, None]:
         """Play what is queued, and then fetch audio until the answer is there (6.1.1)."""
         for commands, self._patient in ((queued, True), (audio, False)):

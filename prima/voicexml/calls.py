@@ -12,6 +12,7 @@ from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.values import milliseconds
+from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, Thrown, thrown_outside
 
@@ -101,8 +102,8 @@ class Calls:
         if not queue:
             return
         open_to_answers: list[Command] = []
-        if call.listens and queue[-1].type == "speak":
-            last = queue.pop()
+        last = take_last_said(queue) if call.listens else None
+        if last is not None:
             question = self._question(context, call, "1ms", last)
             question.args["bargein"] = bool(last.hook)
             open_to_answers = self.owner.open_to_answers(queue, question)

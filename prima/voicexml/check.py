@@ -22,6 +22,7 @@ from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.names import IDENTIFIER, RESERVED
 from prima.values import NUMBER, read_value
+from prima.voicexml.arranging import ARRANGING, check_arranged
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import (
     ALTERNATIVES,
@@ -43,7 +44,9 @@ HABITS = {
     "say": "Write <prompt>.",
     "on": 'Write <catch event="...">.',
     "send": "Write <submit>.",
-    "iu": "VoiceXML has no units; an application of PRIMA's own language has.",
+    "iu": f'Write <p:iu> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
+    "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
+    "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
 }
 """What to write for elements of other languages."""
 HOLDERS = {
@@ -369,14 +372,25 @@ RULES: dict[str, Callable[[Node, list[Problem]], None]] = {
 
 
 def _check_command(node: Node, parent: Node, problems: list[Problem]) -> None:
-    if node.tag not in COMMANDS:
-        message, hint = f"PRIMA has no Command <{node.tag}>.", did_you_mean(node.tag, COMMANDS)
+    if node.tag not in (*COMMANDS, *ARRANGING):
+        known = [*COMMANDS, *ARRANGING]
+        message, hint = f"PRIMA has no Command <{node.tag}>.", did_you_mean(node.tag, known)
         problems.append(Problem(node.place, "error", "unknown-element", message, hint))
         return
     if parent.key not in SPEAKING and VOICEXML.child(parent.key, "assign") is None:
         message = f"A Command cannot stand in <{parent.tag}>."
+        if node.tag in ARRANGING:
+            message = f"<p:{node.tag}> cannot stand in <{parent.tag}>: it is around Commands."
         remedy = "It may stand in a prompt or among executable content."
         problems.append(Problem(node.place, "error", "misplaced-element", message, remedy))
+    if node.tag in ARRANGING:
+        for command in check_arranged(node, problems):
+            _check_arguments(command, problems)
+    else:
+        _check_arguments(node, problems)
+
+
+def _check_arguments(node: Node, problems: list[Problem]) -> None:
     row = TABLE_4_2.get(node.tag)
     known = set(row.arguments) if row is not None else {"type"}
     for name in node.attributes:

@@ -63,7 +63,7 @@ class Content(Speaker):
             self.owner.note_bargein(context)
             self.owner.count_step(item)
             if item.namespace == PRIMA_NAMESPACE:
-                self.owner.queue.append(self.command(item, context, local))
+                self.enqueue(item, context, local)
             elif item.tag == "prompt":
                 self.prompt(item, context, local)
             else:

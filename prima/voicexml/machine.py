@@ -12,6 +12,7 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
 from prima.values import milliseconds
+from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
 from prima.voicexml.events import Events, thrown_of
@@ -50,7 +51,7 @@ class Machine:
         self.pages: dict[str, Page] = {owner.document.page.uri: owner.document.page}
         self.resources: dict[str, bytes | Thrown] = {}
         """What grammars are made of and no file is: its bytes, or why it cannot be had."""
-        self.queue: list[Command] = []
+        self.queue: list[Queued] = []
         """Prompts and Commands that are played on reaching a wait (4.1.8)."""
         self.asking: Node | None = None
         """The last prompt queued: its timeout and bargein count."""
@@ -122,7 +123,7 @@ class Machine:
                 said = command.type == "speak"
                 command.hook = said and (own or self.setting(context, "bargein")) != "false"
 
-    def unqueue(self) -> list[Command]:
+    def unqueue(self) -> list[Queued]:
         """What is queued, to be said in a wait that no question is part of."""
         queue, self.queue, self.asking = self.queue, [], None
         return queue
@@ -377,7 +378,7 @@ class Machine:
             raise thrown_outside(resume)
 
     def _wait(
-        self, commands: list[Command], open_to_answers: Sequence[Command] = ()
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
         self.queue = []
@@ -391,7 +392,7 @@ class Machine:
         yield from gathered(self, lambda: self.inputs.activate(context))
         if item.tag == "record":
             self.items_of.recorder.check(item)
-        asked = self.queue.pop() if self.queue and self.queue[-1].type == "speak" else None
+        asked = take_last_said(self.queue)
         question = self._question(context, item, asked)
         if item.tag == "record":
             self.items_of.recorder.prepare(item, question)
@@ -401,7 +402,7 @@ class Machine:
         yield from self._answered(context, item, resume)
 
     @staticmethod
-    def open_to_answers(queue: list[Command], question: Command) -> list[Command]:
+    def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
         """Of what is queued before a question that during which it may be answered (4.1.5).
 
         Those are the last prompts: an answer ends the wait, and what may not be broken in on is
@@ -411,7 +412,7 @@ class Machine:
         longest = tuple(cue for cue in question.cues if cue.kind == "longest")
         for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
             command = queue[index]
-            if not command.hook:
+            if isinstance(command, Arranged) or not command.hook:
                 break
             marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
             earlier = (Cue(0, "earlier"),) if marked else ()

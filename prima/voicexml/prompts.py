@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -12,8 +13,9 @@ from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.markup.tree import Node
 from prima.markup.uris import join
-from prima.messages import Command, Cue, Json
+from prima.messages import Command, Cue, Group, Json, Step
 from prima.values import shown
+from prima.voicexml.arranging import ARRANGING, Arranged, Queued, said_last
 from prima.voicexml.check import alternatives
 from prima.voicexml.cues import (
     MAX_CUES,
@@ -118,6 +120,10 @@ class Speech:
         """Here ends what takes a set time, unless it has been split meanwhile."""
         if opened == self.takes:
             self.parts.append(Cue(0, "end"))
+
+
+Maker = Callable[[Node], Command]
+"""Makes a Command of its element."""
 
 
 class Speaker:
@@ -232,7 +238,7 @@ class Speaker:
         will be said next.
         """
         queue = self.owner.queue
-        last = queue[-1] if queue and queue[-1].type == "speak" else None
+        last = said_last(queue)
         if last is not None and text:
             cue_up(last, (*self.ahead, *cues))
             self.ahead = ()
@@ -242,7 +248,7 @@ class Speaker:
             self.ahead += later(cues, 0)
 
     def question_cues(
-        self, asked: Command | None, before: list[Command], hotword: bool
+        self, asked: Command | None, before: Sequence[Queued], hotword: bool
     ) -> tuple[Cue, ...]:
         """The cues of a question: those of the prompt that it is, and what counts for it."""
         marked = any(cue.kind == "mark" for one in before for cue in one.cues)
@@ -289,7 +295,7 @@ class Speaker:
         lang = item.get("xml:lang")
         if item.namespace == PRIMA_NAMESPACE:
             self.flush(speech)
-            self.owner.queue.append(self.command(item, context, local, speech.lang))
+            self.enqueue(item, context, local, speech.lang)
         elif lang and lang != speech.lang:
             self.flush(speech)
             before, speech.lang = speech.lang, lang
@@ -414,6 +420,42 @@ class Speaker:
         return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------
+
+    def enqueue(self, node: Node, context: Context, local: Scope, lang: str = "") -> None:
+        """Queue a Command of PRIMA's namespace, or several that are arranged."""
+        if node.tag not in ARRANGING:
+            self.owner.queue.append(self.command(node, context, local, lang))
+            return
+        steps: list[Step] = []
+        self.arrange([node], (), steps, lambda one: self.command(one, context, local, lang))
+        if steps:
+            self.owner.queue.append(Arranged(steps, source(node)))
+
+    def arrange(
+        self, nodes: list[Node], after: tuple[int, ...], steps: list[Step], make: Maker
+    ) -> tuple[int, ...]:
+        """Add Commands one after another; gives what whatever follows has to wait for (U3)."""
+        for node in nodes:
+            self.owner.count_step(node)
+            if node.tag == "par":
+                ends: list[int] = []
+                for branch in node.nodes:
+                    ends += self.arrange([branch], after, steps, make)
+                after = tuple(dict.fromkeys(ends)) or after
+            elif node.tag == "seq":
+                after = self.arrange(node.nodes, after, steps, make)
+            else:
+                what = self.unit(node, make) if node.tag == "iu" else make(node)
+                steps.append(Step(what, after))
+                after = (len(steps) - 1,)
+        return after
+
+    def unit(self, node: Node, make: Maker) -> Group:
+        """Commands that are one unit (U4)."""
+        steps: list[Step] = []
+        self.arrange(node.nodes, (), steps, make)
+        longest = milliseconds(node.get("longest")) if "longest" in node.attributes else None
+        return Group(steps, longest, source(node), node.get("restartable") == "true")
 
     def command(self, node: Node, context: Context, local: Scope, lang: str = "") -> Command:
         """A Command of PRIMA's namespace among executable content."""

@@ -1,0 +1,138 @@
+"""A part of a run over time, in letters: a lane for each application, events above, floor below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from prima.messages import Record
+from prima.report.lanes import Bar, make_lanes
+from prima.transcript.table import Row, printable
+
+STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
+"""Seconds from one mark of the axis to the next."""
+TAKEN = "\0"
+"""A space within a bar, which nothing else fills."""
+LEGEND = "[...] it runs   : suspended   - waits, by the rule named   v an event"
+
+
+@dataclass
+class Axis:
+    """Where a time stands: seconds ``begin`` to ``end`` in columns after ``left``."""
+
+    begin: float
+    end: float
+    left: int
+    columns: int
+
+    def at(self, time: float) -> int:
+        """The column of a time, cut to the part that is shown."""
+        share = (time - self.begin) / max(self.end - self.begin, 0.001)
+        return round(min(max(share, 0.0), 1.0) * (self.columns - 1))
+
+    def shows(self, bar: Bar) -> bool:
+        """Whether something of it is in the part that is shown."""
+        return bar.end >= self.begin and bar.begin <= self.end
+
+
+@dataclass
+class Lane:
+    """Lines of letters; what overlaps goes to the next line."""
+
+    axis: Axis
+    lines: list[list[str]] = field(default_factory=list)
+
+    def put(self, at: int, text: str) -> None:
+        """Write a text at a column of the first line that has room for it."""
+        text = text[: self.axis.columns - at]
+        room = slice(at, at + len(text) + 1)
+        line = next((line for line in self.lines if not "".join(line[room]).strip()), None)
+        if line is None:
+            line = [" "] * self.axis.columns
+            self.lines.append(line)
+        line[at : at + len(text)] = list(text)
+
+    def fill(self, at: int, text: str) -> None:
+        """Write a text into what is free of the first line."""
+        if not self.lines:
+            self.lines.append([" "] * self.axis.columns)
+        line = self.lines[0]
+        for column, letter in enumerate(text, at):
+            if column < len(line) and line[column] == " ":
+                line[column] = letter
+
+    def text(self, name: str) -> list[str]:
+        """The lines with the lane's name before the first."""
+        names = [name, *([""] * len(self.lines))]
+        return [
+            f"{names[index]:<{self.axis.left}}{''.join(line)}".replace(TAKEN, " ").rstrip()
+            for index, line in enumerate(self.lines)
+        ]
+
+
+def draw(
+    records: Sequence[Record], rows: Sequence[Row], begin: float, end: float, columns: int
+) -> str:
+    """The part of a run from ``begin`` to ``end`` (s), at most so many columns wide."""
+    lanes = make_lanes(records, rows)
+    left = max([8, *map(len, lanes.apps)]) + 2
+    axis = Axis(begin, end, left, max(columns - left, 20))
+    lines = _events(rows, axis)
+    for app in lanes.apps:
+        lane = Lane(axis)
+        for bar in _of(app, lanes.behaviors, axis):
+            lane.put(axis.at(bar.begin), _bar(bar, axis))
+        for bar in _of(app, lanes.held, axis):
+            width = axis.at(bar.end) - axis.at(bar.begin)
+            rule = bar.text.rpartition("(")[2].rstrip(")")
+            lane.fill(axis.at(bar.begin), f"{rule:->{width}}" if width > len(rule) else "")
+        for bar in _of(app, lanes.away, axis):
+            lane.fill(axis.at(bar.begin), ":" * (axis.at(bar.end) - axis.at(bar.begin)))
+        lines += lane.text(app)
+    floor = Lane(axis)
+    for bar in (bar for bar in lanes.floor if axis.shows(bar)):
+        floor.put(axis.at(bar.begin), _bar(bar, axis))
+    lines += floor.text("floor")
+    return "\n".join([*lines, *_axis(axis), LEGEND])
+
+
+def _of(app: str, bars: Iterable[Bar], axis: Axis) -> list[Bar]:
+    return [bar for bar in bars if bar.app == app and axis.shows(bar)]
+
+
+def _bar(bar: Bar, axis: Axis) -> str:
+    """A bar as long as it lasts, with as much of its text as there is room for."""
+    width = max(axis.at(bar.end) - axis.at(bar.begin), 2)
+    text = printable(bar.text or bar.name).strip('"')
+    shown = f"{text[: width - 2]:<{width - 2}}"
+    return f"[{shown}]".replace(" ", TAKEN)
+
+
+def _events(rows: Iterable[Row], axis: Axis) -> list[str]:
+    """What the user and the surroundings do."""
+    lane = Lane(axis)
+    for row in rows:
+        if row.actor != "R" and axis.begin <= row.time <= axis.end:
+            at = axis.at(row.time)
+            text = f"v {printable(row.what)}"
+            room = axis.columns - at
+            near = len(text) > room
+            lane.put(max(at - len(text) + 1, 0) if near else at, _before(text) if near else text)
+    return lane.text("events")
+
+
+def _before(text: str) -> str:
+    """An event near the right end: its mark stands behind the words."""
+    return f"{text[2:]} v"
+
+
+def _axis(axis: Axis) -> list[str]:
+    """Seconds."""
+    span = axis.end - axis.begin
+    step = next((one for one in STEPS if span / one <= 8), STEPS[-1])
+    lane = Lane(axis)
+    first = -int(-axis.begin // step) * step
+    for second in range(first, int(axis.end) + 1, step):
+        if axis.at(second) + len(str(second)) <= axis.columns:
+            lane.fill(axis.at(second), str(second))
+    return lane.text("seconds")

@@ -1,0 +1,403 @@
+"""Every rule of mediation for ``prima explain RULE``: its sentence, and a run that shows it.
+
+The sentences are those of docs/mediation.md, which comes with the package; nothing repeats
+them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+from prima import api
+from prima.errors import UsageError, did_you_mean
+from prima.report import strip
+from prima.transcript.table import Row, format_rows
+
+PAGE = "mediation.md"
+HEADING = re.compile(r"^## (?P<title>.+)$")
+RULE = re.compile(r"^- \*\*(?P<name>[A-Z]\d+)(?P<title>[^*]*)\*\* (?P<text>.+)$")
+PART = re.compile(r"^  - \*\*(?P<name>[a-z])\*\* (?P<text>.+)$")
+POLICY = re.compile(r"^\| `(?P<name>[a-z]+)`.* \| (?P<text>.+) \|$")
+LINK = re.compile(r"\[([^\]]+)\]\([^)]+\)")
+DECIDED = "*Decided.* "
+AROUND = 3
+"""Rows that are shown before and after the one to look at."""
+LINE_END = "\n"
+BEFORE, AFTER = 3.0, 7.0
+"""Seconds of the picture before and after that row."""
+WHOLE = 12.0
+"""A run no longer than this (s) is shown whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule: its name, the section of the page, its sentences without marks, and in brief."""
+
+    name: str
+    section: str
+    text: str
+    brief: str
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A run that shows a rule.
+
+    ``scenario`` is a path within the documents that come with PRIMA; ``look`` says what to
+    see there. ``row`` is a part of the row to look at; without, it is the first that the rule
+    put there.
+    """
+
+    scenario: str
+    look: str
+    row: str = ""
+    policy: str = ""
+
+
+DEMO, WAY = "scenarios/follow-during-navigation.xml", "scenarios/touched-on-the-way.xml"
+TOUR, TEA = "tutorial/interleaved.xml", "tutorial/channel.xml"
+TREES, ORDER = "tutorial/trees.xml", "rules/order.xml"
+EXAMPLES: dict[str, Example] = {
+    "U1": Example(TOUR, "Each Command of tour is one AB, with a row of its own.", "Welcome"),
+    "U2": Example(
+        WAY,
+        "The move is a chain of loops: the reaction comes between two of them, and the move starts"
+        " afresh after it.",
+        "resumes Topological Move",
+    ),
+    "U3": Example(
+        TOUR,
+        "Pointing and speaking are branches and start together; the last sentence waits for both.",
+        "Point by Hand",
+    ),
+    "U4": Example(
+        "scenarios/emotions-alone.xml",
+        "A gesture and its words are one AB; no reaction divides it.",
+    ),
+    "U5": Example(
+        "scenarios/picture-alone.xml",
+        "From the question to the picture nothing else gets speaker or camera.",
+    ),
+    "U6": Example(
+        TOUR, "The touch comes within a sentence, and the sentence is finished.", "touches"
+    ),
+    "O1": Example(
+        TOUR, "tour's Commands follow one another; the reaction of hello is a new tree.", "very new"
+    ),
+    "O2": Example(
+        DEMO,
+        "Stop Moving is wanted now: the tracking of its own application is cancelled.",
+        "May I stop",
+    ),
+    "O3": Example(
+        DEMO,
+        "The user is found, the application goes to another state, and its search ends.",
+        "I found you",
+    ),
+    "O4": Example(
+        TREES, "The sentence stands behind the move in the document, and comes after it.", "Here we"
+    ),
+    "S1": Example(
+        TOUR, "hello waits until the sentence that runs frees the speaker.", '"Yes, friend?"'
+    ),
+    "S2": Example(
+        TOUR,
+        "hello and tour want the speaker in one instant; hello is a reaction.",
+        '"Yes, friend?"',
+    ),
+    "S2a": Example(
+        DEMO, "The reaction speaks, which has high priority; the move's next loop has low priority."
+    ),
+    "S2b": Example(TOUR, "hello reacts to the touch, so it goes before the rest of tour."),
+    "S2c": Example(ORDER, "The conversation goes on with its next question; tour waits."),
+    "S2d": Example(
+        "rules/unwound.xml", "The topic of tour was broken, and trains has not begun: tour goes on."
+    ),
+    "S2e": Example(ORDER, "tour asked for the speaker at 0.00 s, trains at 0.60 s."),
+    "S2f": Example(ORDER, "tea and tour ask at once; the scenario names tea first."),
+    "S3": Example(
+        "rules/held.xml",
+        "The reaction needs neck and speaker. The neck is free at 0.50 s, and is kept for it.",
+        '"Hello."',
+    ),
+    "S4": Example(TOUR, "The arm points while the speaker speaks.", "Point by Hand"),
+    "S5": Example(
+        "rules/topic.xml", "Run it twice: the transcripts are the same, byte for byte.", "forty two"
+    ),
+    "C1": Example(
+        TOUR, "The stream of hello ends with its last AB; the floor is given back.", "Point by Hand"
+    ),
+    "C2": Example(
+        TOUR, "tour goes on with what it had not started, and says nothing twice.", "Point by Hand"
+    ),
+    "C3": Example(
+        TREES,
+        "What walk asks for in the window of the answer belongs to the same stream.",
+        '"Yes."',
+    ),
+    "C4": Example(ORDER, 'The answer "No." ends the question, and opens a window.', "With milk"),
+    "C5": Example(
+        TOUR,
+        "A touch comes from the user, so what answers it is a reaction; goto does not change that.",
+        "touches",
+    ),
+    "C6": Example(
+        "scenarios/emotions-alone.xml",
+        "The application watches its sensors: its condition raises an event of its own.",
+        "battery.low",
+    ),
+    "F1": Example(
+        TOUR, "hello takes the floor; all of tour waits, arm and speaker.", "Yes, friend"
+    ),
+    "F2": Example(
+        "rules/unwound.xml",
+        "lights reacts to another event than hello, so it may break into the topic of hello.",
+        "It is dark",
+    ),
+    "F3": Example(
+        "rules/unwound.xml",
+        "When the stream of lights ends, the floor falls back to that of hello.",
+        "Gesture",
+    ),
+    "F4": Example(
+        ORDER, "No reaction began, so nobody has the floor: S2 alone decides.", "Welcome, visitor"
+    ),
+    "F5": Example(
+        WAY, "The next loop of the move is held back, so the robot is stopped.", "What's the matter"
+    ),
+    "F6": Example(
+        "rules/topic.xml",
+        "trains wants to speak at 0.60 s. It is no reaction, so it waits for both halves of the"
+        " sentence.",
+        "forty two",
+    ),
+    "K1": Example(
+        "rules/leaving.xml",
+        "errand wants to drive away at 0.60 s; it waits until the conversation of tea is over.",
+    ),
+    "K2": Example(
+        TEA, "Driving has low priority, so the question of tea goes before it.", "With milk"
+    ),
+    "K3": Example(
+        DEMO,
+        "The message is told though the user stands elsewhere; under prima+x4 the robot turns to"
+        " them first.",
+        "I've just got a message",
+    ),
+    "V1": Example(DEMO, "The question that listens takes the answer.", "Prof. Kidode's room"),
+    "V2": Example(
+        TEA, "The touch comes within a question; the reaction waits for the answer.", "One moment"
+    ),
+    "V3": Example(
+        ORDER,
+        "The answer ends the question; only then is it selected who speaks next.",
+        "With milk",
+    ),
+    "V4": Example(DEMO, "The search has found the user, and raises human.found once.", "finds"),
+    "E1": Example("rules/device.xml", "tour's arm fails; trains goes on.", "fails: the device"),
+    "E2": Example("rules/device.xml", "tour ends, and trains gets the speaker.", "ends tour"),
+    "E3": Example("rules/refused.xml", "The Command is refused, and its application is told."),
+    "E4": Example(
+        "scenarios/leaving-the-museum.xml",
+        "Tracking Human goes on for ever; whoever waits for it is reported.",
+    ),
+    "E5": Example(
+        "rules/stopped.xml", "Everything ends at 2.00 s, and goes on at 4.00 s.", "pressed"
+    ),
+    "X1": Example(
+        "scenarios/situations/s07.xml",
+        "The robot goes back to where it was before the topic is resumed.",
+        "[inserted, X1]",
+        "prima+x1",
+    ),
+    "X2": Example(
+        "scenarios/situations/s10.xml",
+        "What is marked restartable is broken off, and starts again afterwards.",
+        "breaks off",
+        "prima+x2",
+    ),
+    "X3": Example(
+        "scenarios/situations/s05.xml",
+        "The application waits for its server, and nobody else changes the topic meanwhile.",
+        policy="prima+x3",
+    ),
+    "X4": Example(
+        DEMO, "The robot turns to the user before it speaks.", "[inserted, X4]", "prima+x4"
+    ),
+    "X5": Example("scenarios/dance-while-guiding.xml", "The robot dances on its way."),
+    "X6": Example(
+        "scenarios/navigate-by-laser.xml", "A robot without arms points with its laser.", "aser"
+    ),
+    "fifo": Example(
+        TOUR, "The reaction waits for all that was asked for earlier.", "Yes, friend", "fifo"
+    ),
+    "fair": Example(TOUR, "The applications take turns, sentence by sentence.", "Yes, fr", "fair"),
+    "fixed": Example(TOUR, "hello was declared first, and always goes first.", "Yes, fr", "fixed"),
+    "none": Example(TOUR, "The two speak at once.", "loses", "none"),
+}
+"""Each rule's example."""
+
+
+def page() -> Path:
+    """The page of the documentation that has the rules; it comes with the package."""
+    inside = Path(__file__).parent / PAGE
+    return inside if inside.is_file() else Path(__file__).parent.parent / "docs" / PAGE
+
+
+@cache
+def rules() -> dict[str, Rule]:
+    """All rules by name, in the page's order; the baseline policies last."""
+    found: dict[str, Rule] = {}
+    section, last = "", ""
+    for line in page().read_text(encoding="utf-8").splitlines():
+        if heading := HEADING.match(line):
+            section = heading["title"]
+        elif rule := RULE.match(line):
+            last = rule["name"]
+            found[last] = _rule(last, section, f"{rule['title']} {rule['text']}".strip())
+        elif (part := PART.match(line)) and last:
+            whole, name, text = found[last], last + part["name"], _plain(part["text"])
+            ended = f"{whole.text.partition(LINE_END)[0]} {text.rstrip(';.')}."
+            found[name] = Rule(name, section, ended, _brief(text))
+            added = f"{whole.text}{LINE_END}{part['name']}: {text}"
+            found[last] = Rule(last, whole.section, added, whole.brief)
+        elif section == "Baseline policies" and (policy := POLICY.match(line)):
+            text = _plain(policy["text"])
+            text = f"{text[:1].upper()}{text[1:]}."
+            found[policy["name"]] = Rule(policy["name"], section, text, _brief(text))
+    return found
+
+
+def _rule(name: str, section: str, text: str) -> Rule:
+    """A rule of the page; where it says that the thesis does not have it, so does the section."""
+    own = _plain(text.removeprefix(DECIDED))
+    section = f"{section}, decided" if text.startswith(DECIDED) else section
+    return Rule(name, section, own, _brief(own))
+
+
+def _brief(text: str) -> str:
+    """The first sentence of a rule, for a list."""
+    return text.partition(". ")[0].partition(" [")[0].rstrip(".:;")
+
+
+def _plain(text: str) -> str:
+    """A line of the page without its marks."""
+    return LINK.sub(r"\1", text).replace("**", "").replace("*", "").replace("`", "")
+
+
+def named(word: str) -> str:
+    """A rule's name as the page writes it; empty where there is no such rule."""
+    return next((name for name in rules() if name.lower() == word.lower()), "")
+
+
+def suggestion(word: str) -> str:
+    """Which rules there are for a word that looks like a rule's name; empty if it does not."""
+    if not re.fullmatch(r"[A-Za-z]\d+[a-z]?", word):
+        return ""
+    alike = [name for name in rules() if name[0] == word[0].upper() and name[1:2].isdigit()]
+    return f"Rules with {word[0].upper()} are {', '.join(alike)}." if alike else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """An example's run: the rows around the one to look at, its number, and a picture."""
+
+    rows: list[Row]
+    number: int
+    picture: str
+
+
+def run_of(name: str, columns: int = 80) -> Run:
+    """Run a rule's example, and find where it shows the rule.
+
+    Raises:
+        UsageError: there is no such rule, or the run does not show it.
+    """
+    example = _example(name)
+    made = api.rehearse(api.documents_folder() / example.scenario, example.policy or None)
+    rows = made.rows()
+    number = _looked_at(name, example, rows, made.records)
+    end = made.records[-1]["time"]
+    time = rows[number].time
+    span = (0.0, end) if end <= WHOLE else (max(time - BEFORE, 0.0), min(time + AFTER, end))
+    picture = strip.draw(made.records, rows, *span, columns)
+    return Run(rows[max(number - AROUND, 0) : number + AROUND + 1], number, picture)
+
+
+def _example(name: str) -> Example:
+    if name not in EXAMPLES:
+        hint = did_you_mean(name, EXAMPLES) or "prima explain lists them."
+        raise UsageError(f'There is no rule "{name}". {hint}')
+    return EXAMPLES[name]
+
+
+def _looked_at(name: str, example: Example, rows: list[Row], records: list[Any]) -> int:
+    """The number of the row to look at."""
+    found = (row.number for row in rows if example.row in row.what)
+    number = next(found if example.row else _decided(name, rows, records), None)
+    if number is None:
+        raise UsageError(f"{example.scenario} does not show the rule {name}.")
+    return number
+
+
+def _decided(name: str, rows: list[Row], records: list[Any]) -> Iterator[int]:
+    """The rows of what a rule decided: put there by it, or held back by it before."""
+    yield from (row.number for row in rows if row.rule == name)
+    for record in (one for one in records if one.get("rule") == name):
+        behavior = (record.get("behavior") or record.get("winner") or "").partition(".")[0]
+        for row in rows:
+            if row.behavior.partition(".")[0] == behavior and row.time >= record["time"]:
+                yield row.number
+
+
+def command(name: str) -> str:
+    """The command that runs a rule's example."""
+    example = _example(name)
+    policy = f" --policy {example.policy}" if example.policy else ""
+    return f"prima run documents/{example.scenario}{policy} --why"
+
+
+def shown(name: str, columns: int = 80) -> str:
+    """A rule as text: its sentences, a picture, rows of the example, and how to run it.
+
+    Raises:
+        UsageError: there is no such rule.
+    """
+    rule, run = rules()[name], run_of(name, columns)
+    lines: list[str] = []
+    for piece in f"{name} ({rule.section}): {rule.text}".split("\n"):
+        lines += wrap(piece, columns, break_long_words=False, break_on_hyphens=False)
+    look = wrap(f"Row {run.number}: {_example(name).look}", columns)
+    table = format_rows(run.rows, True, columns).rstrip("\n")
+    tried = [f"    {command(name)}"]
+    if not Path("documents", _example(name).scenario).is_file():
+        tried.insert(0, "    prima documents documents")
+    return "\n".join([*lines, "", run.picture, "", *look, "", table, "", "Try it:", *tried])
+
+
+def data(name: str) -> dict[str, Any]:
+    """A rule for a machine to read.
+
+    Raises:
+        UsageError: there is no such rule.
+    """
+    rule, run, example = rules()[name], run_of(name), _example(name)
+    return {
+        "rule": name,
+        "section": rule.section,
+        "text": rule.text,
+        "example": {
+            "scenario": example.scenario,
+            "policy": example.policy or None,
+            "row": run.number,
+            "look": example.look,
+            "picture": run.picture,
+            "command": command(name),
+        },
+    }
