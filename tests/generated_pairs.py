@@ -102,6 +102,8 @@ class _Dialogue(_Author):
 
     def document(self) -> str:
         body = "".join(self.form(name) for name in self.forms)
+        back = '<on event="touch"><return/></on>' if self.maybe(0.5) else ""
+        body += f'<form id="sub"><block>{self.act()}<return/></block>{back}</form>'
         body += self.handlers(0.2) + TIMER.format(self.content())
         return f"{HEAD.format(self.kind, self.name)}{body}</prima>"
 
@@ -115,7 +117,9 @@ class _Dialogue(_Author):
         kind = self.random.random()
         if kind < 0.3:
             return self.field(name)
-        if kind < 0.45:
+        if kind < 0.37:
+            return f'<subdialog name="{name}" src="#sub"/>'
+        if kind < 0.48:
             inner = f"<block>{self.calm()}</block>" + (
                 self.field(f"u{name}") if self.maybe(0.5) else ""
             )

@@ -147,8 +147,8 @@ def test_what_leaves_loops_and_holds_is_told(tmp_path: Path) -> None:
     assert (starved.rule, starved.devices) == ("E4", ("locomotion",))
     assert [lasts for _, lasts in found.holds] == [9000]
     text = format_certificate(found)
-    assert "for 9 s at" in text and "It waits while mine is in a conversation" in text
-    assert "tracking-human goes on until its goal is reached; mine waits with equal" in text
+    assert "a hold, for 9 s, with x3" in text and "It waits while mine is in a conversation" in text
+    assert "tracking-human goes on until its goal is reached\n    waiting: equal ones on" in text
 
 
 def test_robots_that_lack_something_are_told(tmp_path: Path) -> None:
@@ -356,6 +356,16 @@ def test_a_question_that_gives_up_has_an_end(tmp_path: Path) -> None:
     (delay,) = certified(tmp_path, body).delays
     assert delay.known
     assert delay.lasts == 3 * (lasting("Well?") + 5000)
+
+
+def test_what_a_subdialog_comes_back_to_is_waited_for(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><subdialog name="s" src="#g"/><block><speak>And then this.</speak></block></form>'
+        '<form id="g"><on event="touch"><speak>Oh!</speak><return/></on></form>'
+    )
+    (delay,) = certified(tmp_path, body).delays
+    parts = [lasting("Oh!"), lasting("And then this.")]
+    assert delay.known and delay.lasts >= max(parts) + sum(parts)
 
 
 def test_links_with_no_word_in_common_hear_different_things(tmp_path: Path) -> None:

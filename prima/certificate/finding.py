@@ -107,16 +107,17 @@ def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy |
     told = [one for one in told if one.lasts]
     if not told:
         return None
-    timers = [timer for state in _doings(theirs) for timer in state.timers]
+    later = [gap for state in _doings(theirs) for gap in state.unknown]
     return Busy(
         sum(one.lasts for one in told),
         [gap for one in told for gap in one.endless],
-        [*(gap for one in told for gap in one.unknown), *timers],
+        [*(gap for one in told for gap in one.unknown), *later],
     )
 
 
 def _doings(theirs: Outline) -> Iterable[State]:
-    return [*theirs.states.values(), *(one.does for one in theirs.reactions)]
+    does = [one.does for one in theirs.reactions]
+    return [*theirs.states.values(), *does, *theirs.wakes]
 
 
 def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline, same: list[Reaction]) -> None:
@@ -154,7 +155,11 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
 
 def _floors(theirs: Outline) -> set[str]:
     """The states that may hold the floor: those that reactions lead to, or go on beside."""
-    starts = [name for one in theirs.reactions for name in (*one.does.goes, *one.does.calls)]
+    begun = [*(one.does for one in theirs.reactions), *theirs.wakes]
+    starts = [name for one in begun for name in (*one.goes, *one.calls)]
+    starts += [one.stays for one in theirs.reactions if one.stays]
+    if any(one.stays == "" for one in theirs.reactions):
+        return set(theirs.states)
     return {state.name for state in closure(theirs, starts)}
 
 

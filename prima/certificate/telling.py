@@ -30,9 +30,9 @@ def format_certificate(one: Certificate) -> str:
     lines += [f"  {price.what} at {price.place}" for price in one.leaves] or ["  nowhere"]
     if one.leaves:
         lines.append(f"  It waits while {one.fa} is in a conversation with the user (K1, K2).")
-    lines += ["", f"What of {one.fa} may starve"]
-    lines += [_starving(starved, one.fa) for starved in one.starves]
-    lines += [f"  for {lasts / 1000:g} s at {place}: all but reactions, with x3 (a hold)"
+    lines += ["", f"What of {one.fa} may starve, but for reactions"]
+    lines += [line for starved in one.starves for line in _starving(starved, one)]
+    lines += [f"  {place}: a hold, for {lasts / 1000:g} s, with x3\n    waiting: all"
               for place, lasts in one.holds]  # fmt: skip
     lines += _others(one)
     lines += ["", f"Robots that can run {one.ea}"]
@@ -94,16 +94,16 @@ def _reasons(gaps: Iterable[Gap], why: str, indent: int = 2) -> list[str]:
     return lines
 
 
-def _starving(starved: Starving, name: str) -> str:
+def _starving(starved: Starving, one: Certificate) -> list[str]:
     kinds = []
     if starved.everything:
-        kinds.append("all but reactions, where it has the floor (F2)")
+        kinds.append(f"all, where {one.ea} has the floor (F2)")
     if starved.devices:
         rule = f" ({starved.rule})" if starved.rule else ""
-        kinds.append(f"equal Commands on {_list(starved.devices)}{rule}")
+        kinds.append(f"equal ones on {_list(starved.devices)}{rule}")
     if starved.leaving:
-        kinds.append("Commands that leave the user (K1)")
-    return f"  {starved.place}: {starved.what}; {name} waits with {' and '.join(kinds)}"
+        kinds.append("those that leave the user (K1)")
+    return [f"  {starved.place}: {starved.what}", *(f"    waiting: {kind}" for kind in kinds)]
 
 
 def _others(one: Certificate) -> list[str]:

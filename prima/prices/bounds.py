@@ -34,15 +34,22 @@ class Loop:
 
 
 def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
-    """All states that some lead to without a wait, themselves included."""
-    found: dict[str, State] = {}
-    left = [name for name in starts if name in outline.states]
-    while left:
-        name = left.pop()
-        if name not in found:
-            found[name] = state = outline.states[name]
-            left += [one for one in (*state.goes, *state.calls) if one in outline.states]
-    return list(found.values())
+    """All states that some lead to without a wait, themselves included.
+
+    What a subdialog leads to comes back to whoever may have called it.
+    """
+    found = {name for name in starts if name in outline.states}
+    called = {
+        name: {one for callee in state.calls for one in (callee, *_reach(outline, callee))}
+        for name, state in outline.states.items()
+        if state.calls
+    }
+    while True:
+        more = {to for name in found for to in _reach(outline, name)}
+        more |= {name for name, inner in called.items() if inner & (found | more)}
+        if more <= found:
+            return [state for name, state in outline.states.items() if name in found]
+        found |= more
 
 
 def _after(outline: Outline, reaction: Reaction) -> list[State]:
@@ -61,7 +68,7 @@ def busy_after(outline: Outline, reaction: Reaction) -> Busy:
 def busy_at_all(outline: Outline) -> Busy:
     """How long an application is busy in one go at most, whatever begins it."""
     does = [reaction.does for reaction in outline.reactions]
-    return _busy(outline, [*outline.states.values(), *does])
+    return _busy(outline, [*outline.states.values(), *does, *outline.wakes])
 
 
 def _busy(outline: Outline, states: list[State]) -> Busy:
@@ -79,7 +86,7 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
             if part.loops
         ]
         found.unknown += [Gap(one.place, one.unknown) for one in state.parts if one.unknown]
-        found.unknown += state.timers
+        found.unknown += state.unknown
     return found
 
 
@@ -129,7 +136,7 @@ def _cycles(outline: Outline) -> list[list[State]]:
 def _reach(outline: Outline, name: str) -> set[str]:
     """The states that one leads to in one step or more."""
     found: set[str] = set()
-    left = [name]
+    left = [name] if name in outline.states else []
     while left:
         state = outline.states[left.pop()]
         for to in (*state.goes, *state.calls):

@@ -15,6 +15,7 @@ from prima.interpreter.elements import (
     Document,
     Expression,
     Field,
+    Foreach,
     Form,
     Goto,
     Handler,
@@ -43,6 +44,7 @@ from prima.sim.voice import duration
 UNKNOWN_LETTERS = 20
 """How much an expression in a text is taken to say."""
 ASKED_AGAIN = "the question is asked again until the user answers"
+OFTEN = "an expression says how often it is done"
 SAYS = "an expression gives its text"
 QUESTION = TABLE_4_2["q-and-a"]
 DEFAULT_TIMEOUT = int(QUESTION.arguments["timeout"].default or 0)
@@ -196,7 +198,15 @@ class _Reader:
         for form in document.forms.values():
             holding: list[Form | Item] = [form, *all_items(form.items)]
             holds += [(one.node.attribute_place("stream"), one.hold) for one in holding if one.hold]
-        return Outline(self.parts, states, reactions, holds, [])
+        return Outline(self.parts, states, reactions, self._wakes(), holds, [])
+
+    def _wakes(self) -> list[State]:
+        """What is done about its own delayed events."""
+        return [
+            self._content(State(one.events[0], one.node), [one.content], form)
+            for form, one in _handlers(self.document)
+            if any(name in self.sent for name in one.events)
+        ]
 
     def _hearing(self, event: str, form: Form | None) -> tuple[Act, ...]:
         """What is done about an event that a link throws."""
@@ -262,15 +272,17 @@ class _Reader:
                 state.repeats.append(Gap(place, "items of the form are visited again"))
             case Assign() if form and act.name in {one.name for one in all_items(form.items)}:
                 state.repeats.append(Gap(place, "an item of the form may be visited again"))
+            case Foreach() if self.steps(act.content):
+                state.unknown.append(Gap(place, OFTEN))
             case SendOut() if act.event:
-                state.timers.append(Gap(place, f"its own event {act.event} makes it go on later"))
+                state.unknown.append(Gap(place, f"its own event {act.event} makes it go on later"))
 
     # Events -----------------------------------------------------------------------------
 
     def _reaction(self, handler: Handler, form: Form | None, firsts: Firsts) -> Reaction:
         does = self._content(State(handler.events[0], handler.node), [handler.content], form)
         begins = firsts.of(handler.content, form)
-        stays = None if is_left(handler.content) else _name(form)
+        stays = None if is_left(handler.content, back=False) else _name(form)
         return Reaction(handler.events, handler.node, begins, does, stays)
 
     def _outside(self, handler: Handler) -> bool:

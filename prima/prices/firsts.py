@@ -152,13 +152,15 @@ def _all_handlers(document: Document, form: Form | None) -> list[Handler]:
     return found
 
 
-def is_left(content: Sequence[Act]) -> bool:
-    """Whether content leaves its state in each case."""
+def is_left(content: Sequence[Act], back: bool = True) -> bool:
+    """Whether content leaves its state in each case; ``back`` if a return counts as that."""
     for act in content:
-        if isinstance(act, Exit | Return) or (isinstance(act, Goto) and not act.item):
+        if isinstance(act, Exit) or (isinstance(act, Goto) and not act.item):
             return True
+        if isinstance(act, Return):
+            return back
         complete = isinstance(act, If) and act.branches[-1][0] is None
-        if isinstance(act, If) and complete and all(is_left(one) for _, one in act.branches):
+        if isinstance(act, If) and complete and all(is_left(one, back) for _, one in act.branches):
             return True
     return False
 

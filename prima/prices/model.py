@@ -70,8 +70,8 @@ class State:
     """The states of subdialogs: they come back."""
     repeats: list[Gap] = field(default_factory=list)
     """What in it may be done again and again without a wait for an event."""
-    timers: list[Gap] = field(default_factory=list)
-    """Delayed events that go on with it later."""
+    unknown: list[Gap] = field(default_factory=list)
+    """Why it may take longer than its parts: delayed events, content of arrays."""
 
 
 @dataclass(slots=True)
@@ -96,6 +96,8 @@ class Outline:
     parts: list[Price]
     states: dict[str, State]
     reactions: list[Reaction]
+    wakes: list[State]
+    """What is done about the application's own delayed events: no reactions."""
     holds: list[tuple[Place, int]]
     gaps: list[Gap]
 

@@ -8,7 +8,7 @@ from prima.commands import TABLE_4_2
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.prices.commands import command_price
-from prima.prices.dialogue import ASKED_AGAIN, QUESTION
+from prima.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
 from prima.prices.model import Gap, Outline, Price, Reaction, State
 from prima.prices.pages import TARGETS, Pages
 from prima.prices.speech import Reader, Said, utterances
@@ -88,12 +88,12 @@ class _Reader:
                 node,
                 self._first(node) or parts,
                 state,
-                None if _leaves(node.content) else "",
+                None if _leaves(node.content) and not _returns(node) else "",
             )
             for node, state in self.caught
             if (names := [name for name in _names(node) if _foreign(name)])
         ]
-        return Outline(parts, self.states, reactions, [], self.pages.gaps)
+        return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
 
     def _first(self, handler: Node) -> list[Price]:
         """What a handler does first, where that is the same in each case; else nothing."""
@@ -159,6 +159,8 @@ class _Reader:
             for name in target.dialogs if target.page else ():
                 leads = state.calls if node.tag == "subdialog" else state.goes
                 leads[self._key(target.page, name)] = node  # type: ignore[arg-type]
+        if node.tag == "foreach":
+            state.unknown.append(Gap(node.place, OFTEN))
         if node.tag == "clear" or (node.tag == "goto" and _to_item(node)):
             state.repeats.append(Gap(node.place, "items of the dialog are visited again"))
 
@@ -348,6 +350,10 @@ def _leaves(content: Iterable[Node | str]) -> bool:
         if node.tag == "if" and _complete(node):
             return True
     return False
+
+
+def _returns(node: Node) -> bool:
+    return any(one.tag == "return" for one in node.walk())
 
 
 def _complete(node: Node) -> bool:
