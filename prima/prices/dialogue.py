@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from prima.commands import TABLE_4_2
 from prima.errors import Place
@@ -20,13 +20,11 @@ from prima.interpreter.elements import (
     Goto,
     Handler,
     Item,
-    Return,
     Run,
     SendOut,
     StepTemplate,
     Subdialog,
     Text,
-    Throw,
     Unit,
     all_acts,
     all_items,
@@ -35,6 +33,15 @@ from prima.interpreter.events import takes
 from prima.interpreter.units import reach_of
 from prima.markup.tree import Node
 from prima.prices.commands import command_price
+from prima.prices.contents import (
+    again,
+    contents_of,
+    handlers_of,
+    inside,
+    own_contents,
+    sent_by,
+    thrown_by,
+)
 from prima.prices.firsts import Firsts, asks_at_most, is_left
 from prima.prices.model import SPEECH, Gap, Outline, Price, Reaction, State, devices_of
 from prima.prices.texts import Constants, words_of
@@ -69,8 +76,8 @@ class _Reader:
         self.inside: set[int] = set()
         """What stands in a unit."""
         self.constants = Constants(document)
-        self.sent = _sent(document)
-        self.thrown = _thrown(document)
+        self.sent = sent_by(document)
+        self.thrown = thrown_by(document)
         for form in document.forms.values():
             for item in all_items(form.items):
                 self._item(item, form)
@@ -86,7 +93,7 @@ class _Reader:
         elif isinstance(item, Unit):
             for inner in item.items:
                 self._item(inner, form)
-            self.inside |= {one.node.index for one in _inside(item)}
+            self.inside |= {one.node.index for one in inside(item)}
             self.of_items[item.node.index] = self.unit(item, form)
 
     # Times ------------------------------------------------------------------------------
@@ -156,20 +163,20 @@ class _Reader:
 
     def unit(self, unit: Unit, form: Form) -> Price:
         """A unit around form items: its longest duration, and what runs then to its end (U5)."""
-        inner = [price for one in _inside(unit) for price in self._within(one, unit)]
+        inner = [price for one in inside(unit) for price in self._within(one, unit)]
         reached = reach_of(self.document, form, unit).commands
         inner += [self.command(one.command) for one in reached if not one.inside]
         once = all(isinstance(item, Block) and not item.handlers for item in unit.items)
         last = max((one.lasts for one in inner), default=0)
         lasts = unit.longest + last
-        if once and not unit.handlers and not any(_again(item) for item in unit.items):
+        if once and not unit.handlers and not any(again(item) for item in unit.items):
             lasts = min(lasts, sum(one.lasts for one in inner))
         return _unit(unit.node, unit.devices | devices_of(inner), lasts, inner)
 
     def _within(self, part: Item | Handler, unit: Unit) -> list[Price]:
         own = self.of_items.get(part.node.index) if part is not unit else None
         return ([own] if own else []) + [
-            price for content in _contents(part) for price in self.steps(content)
+            price for content in contents_of(part) for price in self.steps(content)
         ]
 
     # States -----------------------------------------------------------------------------
@@ -180,7 +187,7 @@ class _Reader:
         states = {form.id: self._state(form) for form in document.forms.values()}
         reactions = [
             self._reaction(handler, form, firsts)
-            for form, handler in _handlers(document)
+            for form, handler in handlers_of(document)
             if self._outside(handler)
         ]
         for scope in (None, *document.forms.values()):
@@ -204,7 +211,7 @@ class _Reader:
         """What is done about its own delayed events."""
         return [
             self._content(State(one.events[0], one.node), [one.content], form)
-            for form, one in _handlers(self.document)
+            for form, one in handlers_of(self.document)
             if any(name in self.sent for name in one.events)
         ]
 
@@ -224,7 +231,7 @@ class _Reader:
         for item in all_items(form.items):
             handlers += item.handlers
             self._add_item(state, item, form)
-            contents += [] if item.node.index in self.inside else _own_contents(item)
+            contents += [] if item.node.index in self.inside else own_contents(item)
         contents += [one.content for one in handlers if self._inner(one)]
         return self._content(state, contents, form)
 
@@ -242,7 +249,7 @@ class _Reader:
                 state.repeats.append(Gap(item.node.place, ASKED_AGAIN))
         elif isinstance(item, Unit):
             for inner in all_items(item.items):
-                self._content(state, [*_own_contents(inner)], form, inside=True)
+                self._content(state, [*own_contents(inner)], form, inside=True)
 
     def _content(
         self,
@@ -324,57 +331,3 @@ def _is_inner(name: str) -> bool:
 
 def _name(form: Form | None) -> str:
     return form.id if form is not None else ""
-
-
-def _handlers(document: Document) -> Iterator[tuple[Form | None, Handler]]:
-    """All handlers, each with its form; those of Commands are of their own events."""
-    yield from ((None, one) for one in document.handlers)
-    for form in document.forms.values():
-        yield from ((form, one) for one in form.handlers)
-        for item in all_items(form.items):
-            yield from ((form, one) for one in item.handlers)
-
-
-def _own_contents(item: Item) -> list[Sequence[Act]]:
-    """The content of an item without its handlers."""
-    if isinstance(item, Block):
-        return [item.content]
-    return [part.content for part in item.filled] if isinstance(item, Field | Subdialog) else []
-
-
-def _contents(part: Item | Handler) -> list[Sequence[Act]]:
-    return [part.content] if isinstance(part, Handler) else _own_contents(part)
-
-
-def _inside(unit: Unit) -> list[Item | Handler]:
-    """What a unit holds: its items, and the handlers of both."""
-    found: list[Item | Handler] = [*unit.handlers]
-    for item in unit.items:
-        found += [item, *item.handlers]
-        if isinstance(item, Unit):
-            found += _inside(item)
-    return found
-
-
-def _again(item: Item) -> bool:
-    """Whether content may be gone through more than once."""
-    acts = [act for content in _own_contents(item) for act in all_acts(content)]
-    return any(not isinstance(act, Run) for act in acts)
-
-
-def _sent(document: Document) -> set[str]:
-    """The events that the application sends to itself."""
-    acts = [act for _, content, _ in document.contents() for act in all_acts(content)]
-    return {act.event for act in acts if isinstance(act, SendOut) and act.event}
-
-
-def _thrown(document: Document) -> set[str]:
-    """The events that the application throws itself."""
-    acts = [act for _, content, _ in document.contents() for act in all_acts(content)]
-    thrown = {
-        str(act.event) for act in acts if isinstance(act, Throw) and isinstance(act.event, str)
-    }
-    returned = {act.event for act in acts if isinstance(act, Return)}
-    links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
-    linked = {link.event for link in links}
-    return {name for name in thrown | returned | linked if name}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from prima.commands import TABLE_4_2
 from prima.interpreter.selection import takes
@@ -12,6 +12,17 @@ from prima.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
 from prima.prices.model import Gap, Outline, Price, Reaction, State
 from prima.prices.pages import TARGETS, Pages
 from prima.prices.speech import Reader, Said, utterances
+from prima.prices.tags import (
+    ITEMS,
+    holders,
+    is_foreign,
+    leaves,
+    names_of,
+    returns,
+    says,
+    thrown_by,
+    to_item,
+)
 from prima.sim.scenario import Profile
 from prima.sim.voice import duration
 from prima.values import milliseconds
@@ -24,17 +35,10 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 SPEAKER = frozenset({"speaker"})
 ASKING = ("field", "initial", "record", "menu")
-ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
-HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
-"""Elements whose text is said, or that hold such."""
 TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
 """How long a question of a call listens at most, before it is asked again."""
-LEAVING = ("goto", "submit", "exit", "return", "disconnect")
 SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
-SERVICES = "error.service"
-OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
-"""VoiceXML's own events: what a document does about them is no reaction."""
 
 
 def outline(document: VoiceDocument, profile: Profile) -> Outline:
@@ -49,7 +53,7 @@ class _Reader:
         self.page = document.page
         self.said: dict[int, list[Price]] = {}
         """What elements say, and the Commands among it, by the elements' identities."""
-        self.thrown = {name for page in self.pages for name in _thrown(page.root)}
+        self.thrown = {name for page in self.pages for name in thrown_by(page.root)}
         self.parts: list[Price] = []
         self.states: dict[str, State] = {}
         self.caught: list[tuple[Node, State]] = []
@@ -62,7 +66,7 @@ class _Reader:
         """What the elements of a document say."""
         self.page = page
         for node in [*page.root.all(*HANDLERS), *page.dialogs.values()]:
-            for holder in _holders(node):
+            for holder in holders(node):
                 self.said[id(holder)] = list(self._own(holder))
 
     def _read(self, page: Page) -> None:
@@ -88,10 +92,10 @@ class _Reader:
                 node,
                 self._first(node) or parts,
                 state,
-                None if _leaves(node.content) and not _returns(node) else "",
+                None if leaves(node.content) and not returns(node) else "",
             )
             for node, state in self.caught
-            if (names := [name for name in _names(node) if _foreign(name)])
+            if (names := [name for name in names_of(node) if is_foreign(name)])
         ]
         return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
 
@@ -132,7 +136,7 @@ class _Reader:
 
     def _walk(self, node: Node) -> Iterator[Node]:
         """An element and what is in it, without handlers that only wait for events from outside."""
-        if node.tag == "catch" and all(self._is_outside(name) for name in _names(node)):
+        if node.tag == "catch" and all(self._is_outside(name) for name in names_of(node)):
             return
         yield node
         for inner in node.nodes:
@@ -140,7 +144,7 @@ class _Reader:
 
     def _is_outside(self, name: str) -> bool:
         own = any(takes(name, one) for one in self.thrown) or "" in self.thrown
-        return bool(name) and _foreign(name) and not own
+        return bool(name) and is_foreign(name) and not own
 
     def _item(self, state: State, item: Node, dialog: Node) -> None:
         """What a form item asks."""
@@ -161,19 +165,19 @@ class _Reader:
                 leads[self._key(target.page, name)] = node  # type: ignore[arg-type]
         if node.tag == "foreach":
             state.unknown.append(Gap(node.place, OFTEN))
-        if node.tag == "clear" or (node.tag == "goto" and _to_item(node)):
+        if node.tag == "clear" or (node.tag == "goto" and to_item(node)):
             state.repeats.append(Gap(node.place, "items of the dialog are visited again"))
 
     def _catch(self, node: Node, around: State) -> None:
         """A handler: what it does belongs to a reaction where its event comes from outside."""
         does = State(node.get("event") or node.tag, node)
-        for holder in _holders(node):
+        for holder in holders(node):
             does.parts += self.said[id(holder)]
         self.parts += does.parts
         for inner in node.walk():
             self._lead(does, inner)
         # VoiceXML always asks on: a reaction that stays goes on with its dialog.
-        if around.name and not _leaves(node.content):
+        if around.name and not leaves(node.content):
             does.goes.setdefault(around.name, node)
         self.caught.append((node, does))
 
@@ -182,7 +186,7 @@ class _Reader:
         scope = [one for node in self._scopes(item, dialog) for one in node.all(*HANDLERS)]
         return all(
             any(
-                event in _names(one) and not one.get("cond") and _leaves(one.content)
+                event in names_of(one) and not one.get("cond") and leaves(one.content)
                 for one in scope
             )
             for event in ("noinput", "nomatch")
@@ -218,7 +222,7 @@ class _Reader:
         for param in node.all("param"):
             args[param.get("name")] = param.attributes.get("value")
         pieces = [one for one in node.content if isinstance(one, str) or one.tag != "param"]
-        said = self._read_aloud(node, pieces, None) if _says(pieces) else None
+        said = self._read_aloud(node, pieces, None) if says(pieces) else None
         yield command_price(node, name, args, said, self.profile)
 
     def _read_aloud(
@@ -259,11 +263,11 @@ class _Reader:
             one for one in own if not one.node.get("cond") and one.node.get("count", "1") == "1"
         ]
         for node in [dialog] if not first else self._handlers(item, dialog):
-            for holder in _holders(node):
+            for holder in holders(node):
                 yield from (one for one in self.said[id(holder)] if one.what == "speak")
         if not first:
             for node in self._handlers(item, dialog):
-                for holder in _holders(node):
+                for holder in holders(node):
                     yield from (one for one in self.said[id(holder)] if one.what == "speak")
         words = WORDS.get(self.page.lang.partition("-")[0].lower(), {})
         longest = max(words.values(), key=len, default="")
@@ -301,67 +305,3 @@ class _Reader:
         longest = milliseconds(item.get("maxtime"), 0) if kind == "bridge" else 1
         lasts = max(min(connect, LISTENING_MS) + said, min(longest or LISTENING_MS, LISTENING_MS))
         yield Price(item, "call", QUESTION.devices, lasts, engages=True, listens=True)
-
-
-def _holders(node: Node) -> Iterator[Node]:
-    """An element and all in it that may say something themselves."""
-    if node.tag in HOLDING:
-        yield node
-        for inner in node.nodes:
-            yield from _holders(inner)
-
-
-def _says(pieces: Iterable[Node | str]) -> bool:
-    return any(isinstance(one, Node) or one.strip() for one in pieces)
-
-
-def _names(handler: Node) -> list[str]:
-    """The events that a handler names; of one that names none, those that it takes."""
-    if handler.tag != "catch":
-        return [handler.tag]
-    return [name.rstrip(".") for name in handler.get("event").split()] or [""]
-
-
-def _foreign(name: str) -> bool:
-    """Whether an event may come from the user or the surroundings."""
-    return takes(SERVICES, name) or not any(takes(one, name) for one in OWN)
-
-
-def _thrown(root: Node) -> Iterator[str]:
-    """The events that a document throws itself; the empty name for those of expressions."""
-    for node in root.walk():
-        if node.tag in ("throw", "link", "choice", "return"):
-            if node.get("event"):
-                yield node.get("event")
-            elif node.get("eventexpr"):
-                yield ""
-
-
-def _to_item(node: Node) -> bool:
-    return bool(node.attributes.keys() & {"nextitem", "expritem"})
-
-
-def _leaves(content: Iterable[Node | str]) -> bool:
-    """Whether content leaves its dialog in each case."""
-    nodes = [one for one in content if isinstance(one, Node)]
-    for node in nodes:
-        if node.tag in LEAVING and not _to_item(node):
-            return True
-        if node.tag == "if" and _complete(node):
-            return True
-    return False
-
-
-def _returns(node: Node) -> bool:
-    return any(one.tag == "return" for one in node.walk())
-
-
-def _complete(node: Node) -> bool:
-    """Whether each branch of an ``if`` leaves its dialog, one of them being ``else``."""
-    branches: list[list[Node | str]] = [[]]
-    for one in node.content:
-        if isinstance(one, Node) and one.tag in ("elseif", "else"):
-            branches.append([])
-        else:
-            branches[-1].append(one)
-    return any(one.tag == "else" for one in node.nodes) and all(map(_leaves, branches))
