@@ -104,6 +104,10 @@ CODES: dict[str, str] = {
     " conversation stays open meanwhile, so that nobody else can drive the robot anywhere (rule K1).",
     "leaves-question": "The robot drives away from the user in the middle of a question, and then asks it"
     " again where he is not (thesis 3.3, the Communication Channel).",
+    "told-twice": "An event may come while a state says or asks something, and its handler leads back"
+    " to the beginning of that state, at once or by way of others: the same is told a second time"
+    " (rule O3). Where a question is asked on the way back, or the handler keeps what the event tells,"
+    " that is meant.",
     "unknown-event": "A handler names an event that nothing raises, most likely a slip. Events of one's own"
     " come from throw, send, link, watch, a return, or a scenario.",
     "unheard-event": "An event is raised, and no handler takes it. It is lost; one that is thrown ends the"

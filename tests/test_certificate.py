@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from prima import api
-from prima.certificate import Certificate, certificate_data, certificates, format_certificate
-from prima.loading import read_application, read_file
-from prima.prices import Price, prices, reactions
+from prima.certificate import (
+    Certificate,
+    certificate_data,
+    certificates,
+    certify,
+    format_certificate,
+)
+from prima.loading import load_scenario, read_application, read_file
+from prima.messages import Record
+from prima.prices import Price, outline, prices
 from prima.sim.scenario import read_robot
 from prima.sim.voice import duration
+from tests.certified import faults
+from tests.generated_pairs import pair
 
 ROOT = Path(__file__).parent.parent
 ROBOT = ROOT / "documents" / "robots" / "papero.xml"
 PROFILE = read_robot(str(ROBOT), read_file(ROBOT))
+SITUATIONS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
+FAS = sorted(ROOT.glob("documents/fa/*.xml"))
+EAS = sorted(ROOT.glob("documents/ea/*ml"))
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{}" id="{}" xml:lang="en">'
 FA = (
     '<form id="sleep"><on event="touch"><goto next="#yes"/></on></form>'
@@ -74,17 +90,20 @@ def test_a_unit_costs_the_sum_of_its_parts_and_branches_their_longest(tmp_path: 
     assert price.lasts == max(lasting("One and two."), 1500)
 
 
-def test_a_unit_costs_no_more_than_its_longest_duration(tmp_path: Path) -> None:
-    (price,) = priced(
-        tmp_path, block(f'<iu longest="2s"><speak>{"a long word " * 20}</speak></iu>')
-    )
-    assert price.lasts == 2000
+def test_a_unit_costs_its_longest_duration_and_what_runs_then(tmp_path: Path) -> None:
+    words = "a long word " * 20
+    said = f"<speak>{words}</speak>"
+    (price,) = priced(tmp_path, block(f'<iu longest="2s">{said * 2}</iu>'))
+    assert price.lasts == 2000 + lasting(words)
+    (price,) = priced(tmp_path, block(f'<iu longest="2s">{said}</iu>'))
+    assert price.lasts == lasting(words)
 
 
 def test_a_question_costs_its_prompt_and_its_timeout(tmp_path: Path) -> None:
     field = '<form id="f"><field name="a" type="boolean"><prompt timeout="4s">Well?</prompt></field></form>'
     (price,) = priced(tmp_path, field)
     assert price.what == "question" and price.lasts == lasting("Well?") + 4000
+    assert price.listens and price.engages
     (price,) = priced(tmp_path, field.replace(' timeout="4s"', ""))
     assert price.lasts == lasting("Well?") + 5000
 
@@ -95,7 +114,7 @@ def test_a_question_in_a_unit_costs_the_units_longest(tmp_path: Path) -> None:
         "</field></iu></form>"
     )
     (price,) = priced(tmp_path, body)
-    assert (price.what, price.lasts) == ("unit", 20_000)
+    assert (price.what, price.lasts) == ("unit", 20_000 + lasting("Well?") + 5000)
 
 
 def test_a_loop_costs_one_loop(tmp_path: Path) -> None:
@@ -104,9 +123,11 @@ def test_a_loop_costs_one_loop(tmp_path: Path) -> None:
 
 
 def test_reactions_are_what_follows_events_from_outside(tmp_path: Path) -> None:
-    body = FA.replace("</on>", '</on><on event="own.timer"><speak>Late.</speak></on>')
+    body = FA.replace("</on>", '</on><on event="end.speak"><speak>Late.</speak></on>')
     document, _ = read_application("a.xml", (HEAD.format("fa", "a") + body + "</prima>").encode())
-    assert reactions(document) == {"touch": {"speaker"}}  # type: ignore[arg-type]
+    (reaction,) = outline(document, PROFILE).reactions
+    assert reaction.events == ("touch",)
+    assert [price.devices for price in reaction.firsts] == [{"speaker"}]
 
 
 def certified(folder: Path, body: str, own: str = FA) -> Certificate:
@@ -124,16 +145,18 @@ def test_the_longest_wait_is_for_the_longest_part_on_the_same_devices(tmp_path: 
 
 def test_what_leaves_loops_and_holds_is_told(tmp_path: Path) -> None:
     body = (
-        '<form id="f" stream="hold" hold-for="9s"><block><topological-move to="door"/></block>'
-        '<on event="touch"><exit/></on></form>'
+        '<form id="f" stream="hold" hold-for="9s"><block><topological-move to="door"/>'
+        '<tracking-human/></block><on event="touch"><exit/></on></form>'
     )
-    own = FA.replace("<speak>Yes?</speak>", "<tracking-human/>")
+    own = FA.replace("<speak>Yes?</speak>", "<turn angle='20'/>")
     found = certified(tmp_path, body, own)
     assert [price.what for price in found.leaves] == ["topological-move"]
-    assert [price.what for price in found.loops] == ["topological-move"]
+    (starved,) = found.starves
+    assert (starved.rule, starved.devices) == ("E4", ("locomotion",))
     assert [lasts for _, lasts in found.holds] == [9000]
     text = format_certificate(found)
-    assert "for 9 s at" in text and "It waits while mine is in a conversation" in text
+    assert "a hold, for 9 s, with x3" in text and "It waits while mine is in a conversation" in text
+    assert "tracking-human goes on until its goal is reached\n    waiting: equal ones on" in text
 
 
 def test_robots_that_lack_something_are_told(tmp_path: Path) -> None:
@@ -187,3 +210,284 @@ def test_the_command_line_prints_a_certificate(tmp_path: Path) -> None:
     assert call("--robot", str(ROBOT), ea).returncode == 2
     write(tmp_path, "theirs", "<form/>")
     assert call("--with", fa, ea).returncode == 1
+
+
+# What runs may do --------------------------------------------------------------------------
+
+
+def run(folder: Path, fa: str, ea: str, whens: str, until: str = "60s") -> list[Record]:
+    """The records of a scenario with two applications."""
+    text = (
+        f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="{until}"'
+        f' world="{ROOT}/documents/worlds/room.xml" robot="{ROBOT}"><robot at="middle"/>'
+        f'<person x="1" y="0"/><application src="{Path(fa).name}"/>'
+        f'<application src="{Path(ea).name}" id="theirs"/>{whens}</scenario>'
+    )
+    (folder / "s.xml").write_text(text)
+    return api.rehearse(folder / "s.xml").records
+
+
+TOUCH = '<when at="1s"><touch sensor="head"/></when>'
+VXML = (
+    '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1"'
+    ' xml:lang="en">'
+)
+
+
+def voiced(folder: Path, body: str, own: str = FA, **more: str) -> tuple[Certificate, str, str]:
+    """The certificate of a VoiceXML EA, with further documents; and the paths of both."""
+    fa, ea = write(folder, "mine", own, "fa"), folder / "theirs.vxml"
+    ea.write_text(f"{VXML}{body}</vxml>")
+    for name, text in more.items():
+        (folder / f"{name}.vxml").write_text(f"{VXML}{text}</vxml>")
+    (found,) = certificates([fa], [str(ea)])
+    return found, fa, str(ea)
+
+
+def waited(records: list[Record]) -> float:
+    """How long (s) the FA's answer to the touch has waited."""
+    touched = next(r["time"] for r in records if r.get("event") == "touch.head")
+    said = next(r["time"] for r in records if r["phase"] == "start" and r.get("text") == "Yes?")
+    return float(said - touched)
+
+
+COMMANDS = {
+    "a block": '<form><block><p:gesture name="bow"/></block></form>',
+    "a branch": '<form><block><if cond="true"><p:gesture name="bow"/></if></block></form>',
+    "a prompt": '<form><block><prompt>So <p:gesture name="bow"/> it is.</prompt></block></form>',
+    "a loop": '<form><block><foreach item="x" array="[1]"><p:gesture name="bow"/></foreach></block></form>',
+    "filled": '<form><field name="a" type="boolean"><filled><p:gesture name="bow"/></filled></field></form>',
+    "a handler": '<form><block/></form><catch event="bell"><p:gesture name="bow"/></catch>',
+    "a question": '<form><field name="a" type="boolean"><prompt>Well <p:gesture name="bow"/></prompt></field></form>',
+    "a menu": '<menu><prompt>A <p:gesture name="bow"/></prompt><choice next="#x">x</choice></menu>',
+}
+
+
+@pytest.mark.parametrize("body", COMMANDS.values(), ids=COMMANDS)
+def test_commands_of_the_robot_in_voicexml_are_seen_everywhere(tmp_path: Path, body: str) -> None:
+    found, _, _ = voiced(tmp_path, body)
+    assert {"arm", "neck"} <= {*found.both, *found.only_ea}
+
+
+@pytest.mark.parametrize(
+    "leading",
+    [
+        '<block><goto next="more.vxml"/></block>',
+        '<block><submit next="more.vxml#f"/></block>',
+        '<subdialog name="s" src="more.vxml"/>',
+    ],
+)
+def test_further_documents_of_voicexml_are_read(tmp_path: Path, leading: str) -> None:
+    more = '<form id="f"><block><p:move-head pan="20"/></block></form>'
+    found, _, _ = voiced(tmp_path, f"<form>{leading}</form>", more=more)
+    assert "neck" in found.only_ea and found.gaps == []
+    linked = '<link next="more.vxml"><grammar src="builtin:boolean"/></link><form><block/></form>'
+    assert "neck" in voiced(tmp_path, linked, more=more)[0].only_ea
+
+
+def test_what_cannot_be_read_is_told_with_its_place(tmp_path: Path) -> None:
+    body = '<form><block><if cond="x"><goto expr="where"/></if><submit next="http://a.example/"/></block></form>'
+    found, _, _ = voiced(tmp_path, body)
+    assert [gap.reason for gap in found.gaps] == [
+        "an expression says where it goes on",
+        "the document that http://a.example/ answers is not known",
+    ]
+    assert all(str(gap.place).startswith(str(tmp_path)) for gap in found.gaps)
+    assert not any(delay.known for delay in found.delays)
+    assert "not known: an expression says where it goes on, at" in format_certificate(found)
+
+
+def test_an_expression_that_stays_in_its_document_is_no_gap(tmp_path: Path) -> None:
+    body = """<form id="ab"><block><goto expr="'#a' + 'b'"/></block></form>"""
+    assert voiced(tmp_path, body.replace("'#a' + 'b'", "'#a' + x"))[0].gaps == []
+
+
+def test_a_long_prompt_and_its_question_are_one_wait(tmp_path: Path) -> None:
+    words = "This goes on and on. " * 40
+    prompt = f'<prompt bargein="false" timeout="9s">{words}<break time="3s"/></prompt>'
+    found, fa, ea = voiced(
+        tmp_path, f'<form><field name="a" type="boolean">{prompt}</field></form>'
+    )
+    (delay,) = found.delays
+    assert delay.known and delay.what == "question"
+    took = waited(run(tmp_path, fa, ea, TOUCH, "120s"))
+    assert took > 59 and took * 1000 <= delay.lasts < took * 1000 + 1100
+
+
+def test_a_recording_counts_its_beep_and_its_silence(tmp_path: Path) -> None:
+    body = '<form><record name="r" beep="true" maxtime="6s" finalsilence="2s">Go.</record></form>'
+    found, fa, ea = voiced(tmp_path, body)
+    (delay,) = found.delays
+    assert delay.what == "recording" and delay.listens
+    assert delay.lasts >= lasting("Go.") + 5000 + 2000 + 500
+    assert waited(run(tmp_path, fa, ea, TOUCH)) * 1000 <= delay.lasts
+
+
+def test_a_call_is_waited_for_as_long_as_it_may_last(tmp_path: Path) -> None:
+    body = (
+        '<form><transfer name="t" dest="tel:+1-555" type="bridge" connecttimeout="20s"'
+        ' maxtime="40s"><grammar src="builtin:boolean"/></transfer></form>'
+    )
+    found, fa, ea = voiced(tmp_path, body)
+    (delay,) = found.delays
+    assert (delay.what, delay.lasts) == ("call", 40_000)
+    assert waited(run(tmp_path, fa, ea, TOUCH)) * 1000 <= delay.lasts
+
+
+def test_a_reaction_to_the_same_event_is_waited_for_to_its_end(tmp_path: Path) -> None:
+    body = '<form id="f"><on event="touch.head"><speak>Oh!</speak><speak>That was me.</speak></on></form>'
+    (delay,) = certified(tmp_path, body).delays
+    assert len(delay.after) == 1 and delay.known
+    assert delay.lasts == lasting("That was me.") + lasting("Oh!") + lasting("That was me.")
+    assert "about the same event at" in format_certificate(certified(tmp_path, body))
+
+
+def test_a_reaction_to_the_same_event_may_have_no_end(tmp_path: Path) -> None:
+    field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
+    body = f'<form id="f"><on event="touch"><goto next="#q"/></on></form>{field}'
+    found = certified(tmp_path, body)
+    (delay,) = found.delays
+    assert not delay.known
+    assert [gap.reason for gap in delay.endless] == [
+        "the question is asked again until the user answers"
+    ]
+    assert "touch: without a bound" in format_certificate(found)
+    assert certificate_data(found)["delays"][0]["lasts"] is None
+
+
+def test_a_question_that_gives_up_has_an_end(tmp_path: Path) -> None:
+    leave = '<noinput count="2"><goto next="#f"/></noinput><nomatch><goto next="#f"/></nomatch>'
+    field = (
+        f'<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt>{leave}</field></form>'
+    )
+    body = f'<form id="f"><on event="touch"><goto next="#q"/></on></form>{field}'
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.known
+    assert delay.lasts == 3 * (lasting("Well?") + 5000)
+
+
+def test_what_a_subdialog_comes_back_to_is_waited_for(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><subdialog name="s" src="#g"/><block><speak>And then this.</speak></block></form>'
+        '<form id="g"><on event="touch"><speak>Oh!</speak><return/></on></form>'
+    )
+    (delay,) = certified(tmp_path, body).delays
+    parts = [lasting("Oh!"), lasting("And then this.")]
+    assert delay.known and delay.lasts >= max(parts) + sum(parts)
+
+
+def test_links_with_no_word_in_common_hear_different_things(tmp_path: Path) -> None:
+    link = '<form id="{}"><link event="x"><grammar>{}</grammar></link><on event="x"><speak>A.</speak></on></form>'
+    (delay,) = certified(tmp_path, link.format("f", "stop it"), link.format("f", "go on")).delays
+    assert delay.after == []
+    (delay,) = certified(tmp_path, link.format("f", "stop it"), link.format("f", "stop")).delays
+    assert len(delay.after) == 1
+
+
+def test_other_events_of_the_ea_make_the_wait_longer(tmp_path: Path) -> None:
+    body = '<form id="f"><on event="message"><speak>A message has come.</speak></on></form>'
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.each == lasting("A message has come.")
+
+
+def test_what_drives_waits_for_whole_conversations(tmp_path: Path) -> None:
+    own = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+    field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
+    (delay,) = certified(tmp_path, field, own).delays
+    assert not delay.known and delay.endless and delay.devices == ()
+
+
+@pytest.mark.parametrize("text, known", [("list[at].said", True), ("list[at].said + 1", False)])
+def test_texts_of_constants_are_known(tmp_path: Path, text: str, known: bool) -> None:
+    script = "<script>const list = [{ said: 'Hello there, you.' }, { said: 'Hi.' }];</script>"
+    body = '<var name="at" expr="0"/>' + script + block(f'<speak><value expr="{text}"/></speak>')
+    (price,) = priced(tmp_path, body)
+    assert price.known is known
+    if known:
+        assert price.lasts == lasting("Hello there, you.")
+
+
+@pytest.mark.parametrize("change", ["list.push('a longer one')", "list[0] = 'a longer one'"])
+def test_texts_of_constants_that_change_are_not_known(tmp_path: Path, change: str) -> None:
+    script = f"<script>const list = ['Hi.']; {change};</script>"
+    (price,) = priced(tmp_path, script + block('<speak><value expr="list[0]"/></speak>'))
+    assert not price.known
+
+
+LOOP = '<form id="f"><block><speak>On and on.</speak><goto next="#f"/></block></form>'
+LATER = '<form id="g"><block><gesture name="bow"/><speak>My turn.</speak></block></form>'
+
+
+def test_states_that_follow_one_another_keep_the_speaker_for_ever(tmp_path: Path) -> None:
+    found = certified(tmp_path, LOOP, LATER)
+    (starved,) = found.starves
+    assert (starved.rule, starved.devices) == ("S2c", ("speaker",))
+    records = run(tmp_path, "mine.xml", "theirs.xml", "")
+    assert "My turn." not in [r.get("text") for r in records if r["phase"] == "start"]
+    assert faults(found, records, PROFILE.voices) == []
+    found.starves.clear()
+    assert faults(found, records, PROFILE.voices) != []
+
+
+def test_where_nothing_starves_the_longest_wait_is_told(tmp_path: Path) -> None:
+    found = certified(tmp_path, block("<speak>Once.</speak>"), LATER)
+    assert found.starves == []
+    text = format_certificate(found)
+    assert "nothing: others than reactions wait up to 0.6 s each time theirs is busy" in text
+
+
+# Properties ---------------------------------------------------------------------------------
+
+
+@given(st.integers(0, 10**6))
+@settings(
+    max_examples=int(os.environ.get("PRIMA_EXAMPLES", "300")) * 17 // 100,
+    derandomize=os.environ.get("CI") == "true",
+    deadline=None,
+    database=None,
+)
+def test_no_run_exceeds_what_its_certificate_says(seed: int) -> None:
+    with TemporaryDirectory() as folder:
+        fa, ea, scenario = pair(seed).write(Path(folder))
+        (found,) = certificates([str(fa)], [str(ea)])
+        records = api.rehearse(scenario).records
+        assert faults(found, records, PROFILE.voices) == []
+
+
+@pytest.mark.parametrize("seed", (2, 12, 23))
+def test_certificates_that_are_too_good_are_found_out(seed: int) -> None:
+    """The property can fail: with all waits taken away, runs exceed them."""
+    broken = 0
+    with TemporaryDirectory() as folder:
+        for one in range(seed * 10, seed * 10 + 10):
+            fa, ea, scenario = pair(one).write(Path(folder))
+            (found,) = certificates([str(fa)], [str(ea)])
+            found.delays.clear()
+            broken += bool(faults(found, api.rehearse(scenario).records, PROFILE.voices))
+    assert broken
+
+
+@pytest.mark.parametrize("path", SITUATIONS, ids=lambda path: path.stem)
+def test_the_situations_keep_to_the_certificates(path: Path) -> None:
+    cast = load_scenario(path).cast
+    records = api.rehearse(path).records
+    for fa in cast.documents:
+        for ea in cast.documents:
+            if fa is not ea:
+                found = certify(fa, ea, cast.robot, [])
+                assert faults(found, records, cast.robot.voices) == []
+
+
+@pytest.mark.parametrize("ea", EAS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("fa", FAS, ids=lambda path: path.stem)
+def test_the_demos_have_useful_certificates(fa: Path, ea: Path) -> None:
+    """Reactions wait for a bounded time, but for texts that only a run tells."""
+    (found,) = certificates([str(fa)], [str(ea)])
+    assert found.gaps == []
+    for delay in found.delays:
+        assert not delay.endless and not delay.after
+        assert 0 < delay.lasts < 12_000
+        assert {gap.reason for gap in delay.unknown} <= {
+            "an expression gives its text",
+            "an expression gives a part of what it says",
+        }

@@ -70,7 +70,7 @@ INSIDE = {
         {"expressions", "leads"},
         {"elements", "srgs", "compiling"},
         {"events", "plain", "selection"},
-        {"surroundings", "units"},
+        {"repeats", "surroundings", "units"},
         {"build", "checks", "frame", "sensors"},
         {"reader", "content"},
         {"form", "bounds"},

@@ -18,6 +18,7 @@ import pytest
 from prima import loading
 from prima.diagnostics import excerpt, render, sarif
 from prima.errors import DocumentError, Place, Problem
+from prima.interpreter.reader import read_document
 
 ROOT = Path(__file__).parent.parent
 BAD = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">
@@ -433,3 +434,54 @@ def test_nobody_walks_where_nobody_is(
     found = [one for one in problems if one.message.startswith("Nobody")]
     assert [one.message.partition(" without")[0].partition(": ")[2] for one in found] == told
     assert {(one.severity, one.code) for one in found} <= {("warning", "missing-element")}
+
+
+# What is told a second time (O3) -------------------------------------------------------------
+
+ASKS = """<form id="a"><field name="x" type="boolean"><prompt>Well?</prompt>{}</field>{}</form>"""
+THEN = """<form id="b">{}</form>"""
+BACK = '<block><goto next="#a"/></block>'
+
+
+@pytest.mark.parametrize(
+    "first, then",
+    [
+        (ASKS.format("", '<on event="touch"><goto next="#a"/></on>'), ""),
+        (ASKS.format("", '<on event="touch"><goto next="#b"/></on>'), THEN.format(BACK)),
+        (ASKS.format('<on event="touch"><speak>Oh.</speak><goto next="#a"/></on>', ""), ""),
+        ('<form id="a"><block><speak>Hi.</speak></block><on event="touch"><if cond="true"><goto next="#a"/></if></on></form>', ""),
+        (ASKS.format("", ""), '<on event="message"><goto next="#b"/></on>' + THEN.format(BACK)),
+    ],
+    ids=["at once", "by way of another", "behind a Command", "a sentence", "of the document"],
+)  # fmt: skip
+def test_what_an_event_makes_it_tell_twice_is_warned_of(first: str, then: str) -> None:
+    (problem,) = told_twice_in(first + then)
+    assert problem.severity == "warning" and problem.remedy.startswith("Leave out the <goto>")
+    assert "it is told twice" in problem.message and "(line 1)" in problem.message
+
+
+@pytest.mark.parametrize(
+    "first, then",
+    [
+        (ASKS.format("", '<on event="touch"><gesture name="bow"/></on>'), ""),
+        (ASKS.format("", '<on event="touch"><goto next="#b"/></on>'), THEN.format("")),
+        (ASKS.format("<noinput><goto next='#a'/></noinput>", ""), ""),
+        (ASKS.format("", '<on event="touch"><goto next="#b"/></on>'),
+         THEN.format('<field name="y" type="boolean"><prompt>So?</prompt></field>' + BACK)),
+        (ASKS.replace("<prompt>", '<prompt cond="first">').format("", '<on event="touch"><goto next="#a"/></on>'), ""),
+        (ASKS.format("", '<on event="message"><assign name="n" expr="event.data.text"/><goto next="#a"/></on>'), ""),
+        (ASKS.format("", '<link event="again"><grammar>again</grammar></link><on event="again"><goto next="#a"/></on>'), ""),
+        ('<form id="a"><block><send event="late" delay="9s"/><speak>Hi.</speak></block><on event="late"><goto next="#a"/></on></form>', ""),
+        ('<form id="a"><block><move-head pan="9"/></block><on event="touch"><goto next="#a"/></on></form>', ""),
+    ],
+    ids=["stays", "goes and waits", "own event", "asks between", "cond", "news", "asked for", "timer", "silent"],
+)  # fmt: skip
+def test_what_is_meant_to_be_told_again_is_not_warned_of(first: str, then: str) -> None:
+    assert told_twice_in(first + then) == []
+
+
+def told_twice_in(body: str) -> list[Problem]:
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="x"><var name="first"/><var name="n"/>'
+    _, problems = read_document("x.xml", f"{head}{body}</prima>".encode())
+    assert [one for one in problems if one.severity == "error"] == []
+    return [one for one in problems if one.code == "told-twice"]

@@ -49,6 +49,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
+from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
 from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
@@ -291,6 +292,7 @@ class Checker:
         self._silence()
         self.problems += Events(self.document, self.acts).problems()
         self._after_goto()
+        self.problems += told_twice(self.document)
 
     # States -------------------------------------------------------------------
 

@@ -1,0 +1,125 @@
+"""A certificate for a pair: what a place's application can do to the robot's own one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from prima.certificate.finding import Delay, Starving, delays, starving
+from prima.certificate.telling import certificate_data, format_certificate
+from prima.errors import DocumentError, Place, UsageError
+from prima.interpreter.checks import check_commands, document_commands
+from prima.interpreter.elements import Document
+from prima.loading import documents_folder, read_application, read_file
+from prima.prices import Gap, Outline, Price, outline
+from prima.prices.bounds import Busy, busy_at_all
+from prima.session import AnyDocument
+from prima.sim.scenario import Profile, read_robot
+
+__all__ = [
+    "Certificate",
+    "Delay",
+    "Starving",
+    "certificate_data",
+    "certificates",
+    "certify",
+    "format_certificate",
+]
+
+
+@dataclass(slots=True)
+class Certificate:
+    """What an EA can do to an FA on one robot, under the policy ``prima``. Times are in ms."""
+
+    fa: str
+    ea: str
+    robot: str
+    both: list[str]
+    only_fa: list[str]
+    only_ea: list[str]
+    longest_unit: Price | None
+    delays: list[Delay]
+    leaves: list[Price]
+    others: Busy
+    """How long Commands that are no reactions wait at most, each time that the EA is busy."""
+    holds: list[tuple[Place, int]] = field(default_factory=list)
+    starves: list[Starving] = field(default_factory=list)
+    gaps: list[Gap] = field(default_factory=list)
+    """What the EA's documents do not tell."""
+    lacks: dict[str, list[str]] = field(default_factory=dict)
+    """What the EA asks for and a robot has not, by robot; empty where it has all."""
+
+
+def certify(
+    fa: AnyDocument, ea: AnyDocument, profile: Profile, others: Iterable[Profile]
+) -> Certificate:
+    """Compare two applications on a robot, and the EA with other robots."""
+    own, theirs = outline(fa, profile), outline(ea, profile)
+    units = [price for price in theirs.parts if price.what == "unit"]
+    return Certificate(
+        fa.id,
+        ea.id,
+        profile.id,
+        sorted(own.devices & theirs.devices),
+        sorted(own.devices - theirs.devices),
+        sorted(theirs.devices - own.devices),
+        max(units, key=lambda price: price.lasts, default=None),
+        delays(own, theirs),
+        [price for price in theirs.parts if price.leaves],
+        busy_at_all(theirs),
+        theirs.holds,
+        starving(own, theirs),
+        theirs.gaps,
+        {one.id: _lacks(ea, theirs, one) for one in (profile, *others)},
+    )
+
+
+def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
+    """Commands that a robot cannot do, or devices of theirs that it has not."""
+    if not isinstance(document, Document):
+        rows = profile.commands
+        asked = {part.what for part in told.parts if part.what not in NO_COMMANDS}
+        return sorted(
+            name for name in asked if name not in rows or not rows[name].devices <= profile.devices
+        )
+    problems = check_commands(document, profile.commands, profile.devices)
+    places = {problem.place for problem in problems if problem.code == "unsupported-command"}
+    names = {one.type for one in document_commands(document) if one.node.place in places}
+    return sorted(names) or sorted({problem.message for problem in problems})
+
+
+NO_COMMANDS = ("unit", "question", "recording", "call")
+"""Parts of applications that are called otherwise than the Commands that they are."""
+
+
+def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> list[Certificate]:
+    """Certificates of all pairs of files, on a robot's profile or the demo's.
+
+    Raises:
+        DocumentError: a document is wrong.
+        UsageError: a file cannot be read.
+    """
+    folder = documents_folder() / "robots"
+    chosen = Path(robot) if robot else folder / "papero.xml"
+    profile = read_robot(str(chosen), read_file(chosen))
+    others = [
+        read_robot(str(path), read_file(path))
+        for path in sorted(folder.glob("*.xml"))
+        if path != chosen
+    ]
+    fas, eas = list(fas), list(eas)
+    read = {name: _read(name) for name in {*fas, *eas}}
+    for names, kind, other in ((fas, "fa", "an EA"), (eas, "ea", "an FA")):
+        for name in names:
+            document = read[name]
+            if isinstance(document, Document) and document.kind != kind:
+                raise UsageError(f"{name}: is {other}; --with FA EA compares an FA with an EA.")
+    return [certify(read[fa], read[ea], profile, others) for ea in eas for fa in fas]
+
+
+def _read(path: str) -> AnyDocument:
+    document, problems = read_application(path, read_file(path))
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return document

@@ -1,0 +1,194 @@
+"""What one application can do to another: how long its reactions wait, and what may starve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from prima.errors import Place
+from prima.interpreter.selection import takes
+from prima.prices import Gap, Outline, Price, Reaction, worst
+from prima.prices.bounds import Busy, Loop, busy_after, busy_at_all, closure, loops
+from prima.prices.model import State, devices_of
+
+
+@dataclass(slots=True)
+class Delay:
+    """How long one reaction of an application may wait for the other, and for what of it."""
+
+    event: str
+    devices: tuple[str, ...]
+    """The devices that both need."""
+    lasts: int
+    """The longest wait (ms), as far as it is known."""
+    what: str
+    place: Place | None
+    """The part that lasts longest; None where only the rest makes it wait."""
+    listens: bool = False
+    """Whether the user may speak in it: what they say comes on top."""
+    after: list[Place] = field(default_factory=list)
+    """What it waits for as a whole: the other's reactions to the same event, or all that it does."""
+    each: int | None = 0
+    """How much longer (ms) for each other event that the other reacts to meanwhile; None where
+    that has no bound."""
+    unknown: list[Gap] = field(default_factory=list)
+    endless: list[Gap] = field(default_factory=list)
+
+    @property
+    def known(self) -> bool:
+        """Whether the wait is never longer than ``lasts``."""
+        return not self.unknown and not self.endless
+
+
+@dataclass(frozen=True, slots=True)
+class Starving:
+    """What Commands that are no reactions may wait for without a bound."""
+
+    place: Place
+    what: str
+    rule: str
+    devices: tuple[str, ...]
+    """Commands on these devices wait."""
+    leaving: bool = False
+    """Whether, whatever their devices, those wait that leave the user (K1)."""
+    everything: bool = False
+    """Whether, whatever their devices, all wait: it may hold the floor (F2)."""
+
+
+def related(one: Reaction, other: Reaction) -> bool:
+    """Whether two reactions may be to the same event."""
+    if one.words is not None and other.words is not None and not one.words & other.words:
+        return False  # no utterance is taken by both links
+    pairs = ((name, its) for name in one.events for its in other.events)
+    return any(takes(name, its) or takes(its, name) for name, its in pairs)
+
+
+def delays(own: Outline, theirs: Outline) -> list[Delay]:
+    """How long each reaction of ``own`` may wait for ``theirs``."""
+    mine: dict[str, list[Reaction]] = {}
+    for reaction in own.reactions:
+        for event in reaction.events:
+            if reaction.firsts:
+                one = replace(reaction, events=(event,))
+                mine.setdefault(event, []).append(one)
+    found = [_delay(event, reactions, theirs) for event, reactions in sorted(mine.items())]
+    return [one for one in found if one is not None]
+
+
+def _delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
+    firsts = [price for one in mine for price in one.firsts]
+    needed = devices_of(firsts)
+    fitting = [part for part in theirs.parts if part.devices & needed]
+    longest = worst(fitting, needed)
+    same = [one for one in theirs.reactions if any(related(each, one) for each in mine)]
+    whole = _whole(firsts, theirs, same)
+    if longest is None and whole is None and not theirs.gaps:
+        return None
+    delay = Delay(event, (), 0, "", None, unknown=list(theirs.gaps))
+    if longest is not None:
+        delay.devices = tuple(sorted(longest.devices & needed))
+        delay.lasts, delay.what, delay.place = longest.lasts, longest.what, longest.place
+        delay.listens = any(part.listens for part in fitting)
+        delay.unknown += [Gap(part.place, part.unknown) for part in fitting if part.unknown]
+    delay.each = max((_first(one, needed) for one in theirs.reactions), default=0)
+    if whole is not None:
+        delay.after = [one.node.place for one in same]
+        _wait_for_all(delay, whole, theirs, same)
+    delay.unknown = list(dict.fromkeys(delay.unknown))
+    delay.endless = list(dict.fromkeys(delay.endless))
+    return delay
+
+
+def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy | None:
+    """What of the other is waited for as a whole (F2, K1, K2); None where nothing is."""
+    if any(one.leaves for one in firsts) and any(not one.leaves for one in theirs.parts):
+        return busy_at_all(theirs)
+    told = [busy_after(theirs, one) for one in same]
+    told = [one for one in told if one.lasts]
+    if not told:
+        return None
+    later = [gap for state in _doings(theirs) for gap in state.unknown]
+    return Busy(
+        sum(one.lasts for one in told),
+        [gap for one in told for gap in one.endless],
+        [*(gap for one in told for gap in one.unknown), *later],
+    )
+
+
+def _doings(theirs: Outline) -> Iterable[State]:
+    does = [one.does for one in theirs.reactions]
+    return [*theirs.states.values(), *does, *theirs.wakes]
+
+
+def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline, same: list[Reaction]) -> None:
+    """All that is done in one go, and all that further events bring."""
+    delay.lasts += whole.lasts
+    delay.unknown += whole.unknown
+    delay.endless += whole.endless
+    delay.listens = delay.listens or any(part.listens for part in theirs.parts)
+    others = [busy_after(theirs, one) for one in theirs.reactions]
+    delay.each = max((one.lasts for one in others), default=0)
+    if any(one.endless or one.unknown for one in others):
+        delay.each = None
+
+
+def _first(reaction: Reaction, needed: frozenset[str]) -> int:
+    """How long the first Command of a reaction keeps devices."""
+    return max((one.lasts for one in reaction.firsts if one.devices & needed), default=0)
+
+
+# What may starve ----------------------------------------------------------------------------
+
+
+def starving(own: Outline, theirs: Outline) -> list[Starving]:
+    """What of ``theirs`` may keep Commands of ``own`` that are no reactions waiting for ever."""
+    drives = any(part.leaves for part in own.parts)
+    floors = _floors(theirs) if not drives else set(theirs.states)
+    found = [_by_loops(part, own, theirs, drives) for part in theirs.parts]
+    found += [_by_cycle(loop, own, floors, drives) for loop in loops(theirs)]
+    found += [
+        Starving(gap.place, gap.reason, "", tuple(sorted(own.devices)), drives, True)
+        for gap in theirs.gaps
+    ]
+    return [one for one in found if one is not None]
+
+
+def _floors(theirs: Outline) -> set[str]:
+    """The states that may hold the floor: those that reactions lead to, or go on beside."""
+    begun = [*(one.does for one in theirs.reactions), *theirs.wakes]
+    starts = [name for one in begun for name in (*one.goes, *one.calls)]
+    starts += [one.stays for one in theirs.reactions if one.stays]
+    if any(one.stays == "" for one in theirs.reactions):
+        return set(theirs.states)
+    return {state.name for state in closure(theirs, starts)}
+
+
+def _by_loops(part: Price, own: Outline, theirs: Outline, drives: bool) -> Starving | None:
+    """A Command that works in loops: the next one goes before others' equal Commands (E4)."""
+    if not part.loops:
+        return None
+    equal = [one for one in own.parts if one.leaves or not part.leaves]
+    held = part.devices & devices_of(equal)
+    engages = part.engages and drives
+    reacts = any(part in one.does.parts for one in theirs.reactions)
+    floor = not part.leaves and (drives or reacts or _in_states(part, theirs))
+    if not held and not engages and not floor:
+        return None
+    what = f"{part.what} goes on until its goal is reached"
+    return Starving(part.place, what, "E4", tuple(sorted(held)), engages, floor)
+
+
+def _in_states(part: Price, theirs: Outline) -> bool:
+    names = _floors(theirs)
+    return any(part in state.parts for state in theirs.states.values() if state.name in names)
+
+
+def _by_cycle(loop: Loop, own: Outline, floors: set[str], drives: bool) -> Starving | None:
+    """What follows itself without a wait: the active stream goes on before others (S2c)."""
+    equal = [one for one in own.parts if one.leaves or not loop.leaves]
+    held = loop.devices & devices_of(equal)
+    engages = loop.engages and drives
+    floor = bool(loop.states & floors)
+    if not held and not engages and not floor:
+        return None
+    return Starving(loop.place, loop.what, "S2c", tuple(sorted(held)), engages, floor)

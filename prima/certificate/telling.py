@@ -1,0 +1,195 @@
+"""Certificates as text, and as data for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from prima.certificate.finding import Delay, Starving
+from prima.prices import Gap, Price
+
+if TYPE_CHECKING:
+    from prima.certificate import Certificate
+
+MOST_REASONS = 5
+"""Reasons of one kind that are told; the data have all of them."""
+
+
+def format_certificate(one: Certificate) -> str:
+    """A certificate as text."""
+    lines = [f"What {one.ea} can do to {one.fa}, on {one.robot}"]
+    lines += ["", "Devices", f"  both use      {_list(one.both)}"]
+    lines += [f"  {one.fa} alone  {_list(one.only_fa)}", f"  {one.ea} alone  {_list(one.only_ea)}"]
+    lines += _reasons(one.gaps, "not known")
+    lines += ["", f"How long reactions of {one.fa} may wait for {one.ea}"]
+    lines += _delays(one)
+    unit = one.longest_unit
+    lines += ["", f"Longest unit of {one.ea}"]
+    lines.append(f"  {_seconds(unit.lasts, unit.known)}, at {unit.place}" if unit else "  none")
+    lines += ["", f"Where {one.ea} drives away from where the user may be"]
+    lines += [f"  {price.what} at {price.place}" for price in one.leaves] or ["  nowhere"]
+    if one.leaves:
+        lines.append(f"  It waits while {one.fa} is in a conversation with the user (K1, K2).")
+    lines += ["", f"What of {one.fa} may starve, but for reactions"]
+    lines += [line for starved in one.starves for line in _starving(starved, one)]
+    lines += [f"  {place}: a hold, for {lasts / 1000:g} s, with x3\n    waiting: all"
+              for place, lasts in one.holds]  # fmt: skip
+    lines += _others(one)
+    lines += ["", f"Robots that can run {one.ea}"]
+    for robot, lacking in sorted(one.lacks.items()):
+        lines.append(f"  {robot}: {'all of it' if not lacking else f'not {_list(lacking)}'}")
+    return "\n".join(lines) + "\n"
+
+
+def _delays(one: Certificate) -> list[str]:
+    """What reactions wait for; events with equal waits are told together."""
+    if not one.delays:
+        return [f"  never: {one.ea} does nothing that reactions of {one.fa} wait for"]
+    told: dict[tuple[str, ...], list[str]] = {}
+    for delay in one.delays:
+        told.setdefault(tuple(_delay(delay, one)), []).append(delay.event)
+    return [
+        line
+        for (first, *rest), events in told.items()
+        for line in (f"  {', '.join(events)}: {first}", *rest)
+    ]
+
+
+def _delay(delay: Delay, one: Certificate) -> list[str]:
+    lines = []
+    if delay.place is not None:
+        lines.append(f"for the {delay.what} at {delay.place}")
+    if delay.after:
+        places = " and ".join(map(str, delay.after))
+        lines.append(f"for what {one.ea} does about the same event at {places} (F2)")
+    elif delay.endless or not delay.place:
+        lines.append(f"for all that {one.ea} does (K1, K2)")
+    first = ", and ".join(lines)
+    first = f"{_bound(delay)}, {first}"
+    if delay.listens:
+        first += ", and while the user speaks"
+    found = [first]
+    if delay.each is None:
+        found.append(
+            f"    longer, without a bound, for each event that {one.ea} reacts to meanwhile"
+        )
+    elif delay.each:
+        more = delay.each / 1000
+        found.append(f"    {more:.1f} s more for each event that {one.ea} reacts to meanwhile")
+    found += _reasons(delay.endless, "without an end", 4)
+    return found + _reasons(delay.unknown, "not known", 4)
+
+
+def _bound(delay: Delay) -> str:
+    if delay.endless:
+        return "without a bound"
+    return _seconds(delay.lasts, delay.known)
+
+
+def _reasons(gaps: Iterable[Gap], why: str, indent: int = 2) -> list[str]:
+    gaps = list(gaps)
+    lines = [f"{' ' * indent}{why}: {gap.reason}, at {gap.place}" for gap in gaps[:MOST_REASONS]]
+    if len(gaps) > MOST_REASONS:
+        lines.append(f"{' ' * indent}{why}: {len(gaps) - MOST_REASONS} more such places")
+    return lines
+
+
+def _starving(starved: Starving, one: Certificate) -> list[str]:
+    kinds = []
+    if starved.everything:
+        kinds.append(f"all, where {one.ea} has the floor (F2)")
+    if starved.devices:
+        rule = f" ({starved.rule})" if starved.rule else ""
+        kinds.append(f"equal ones on {_list(starved.devices)}{rule}")
+    if starved.leaving:
+        kinds.append("those that leave the user (K1)")
+    return [f"  {starved.place}: {starved.what}", *(f"    waiting: {kind}" for kind in kinds)]
+
+
+def _others(one: Certificate) -> list[str]:
+    """How long Commands wait that are no reactions, where nothing may starve."""
+    if one.starves:
+        return []
+    if one.others.unknown:
+        return _reasons(
+            one.others.unknown, "not known how long Commands that are no reactions wait"
+        )
+    longest = f"{one.others.lasts / 1000:.1f} s"
+    return [f"  nothing: others than reactions wait up to {longest} each time {one.ea} is busy"]
+
+
+def certificate_data(one: Certificate) -> dict[str, Any]:
+    """A certificate as plain data; times in ms, null where there is no bound that is known."""
+    return {
+        "fa": one.fa,
+        "ea": one.ea,
+        "robot": one.robot,
+        "devices": {
+            "both": one.both,
+            "fa": one.only_fa,
+            "ea": one.only_ea,
+            "not_known": _gaps(one.gaps),
+        },
+        "delays": [_delay_data(delay) for delay in one.delays],
+        "longest_unit": _price(one.longest_unit) if one.longest_unit else None,
+        "leaves": [_price(held) for held in one.leaves],
+        "holds": [{"place": str(place), "lasts": lasts} for place, lasts in one.holds],
+        "starves": [_starving_data(starved) for starved in one.starves],
+        "others": {
+            "lasts": None if one.others.unknown or one.others.endless else one.others.lasts,
+            "not_known": _gaps(one.others.unknown),
+            "without_end": _gaps(one.others.endless),
+        },
+        "lacks": one.lacks,
+    }
+
+
+def _delay_data(delay: Delay) -> dict[str, Any]:
+    return {
+        "event": delay.event,
+        "lasts": delay.lasts if delay.known else None,
+        "at_least": delay.lasts,
+        "known": delay.known,
+        "what": delay.what or None,
+        "place": str(delay.place) if delay.place else None,
+        "devices": list(delay.devices),
+        "user_speaks": delay.listens,
+        "same_event": [str(place) for place in delay.after],
+        "each_event": delay.each,
+        "not_known": _gaps(delay.unknown),
+        "without_end": _gaps(delay.endless),
+    }
+
+
+def _starving_data(starved: Starving) -> dict[str, Any]:
+    return {
+        "place": str(starved.place),
+        "what": starved.what,
+        "rule": starved.rule or None,
+        "devices": list(starved.devices),
+        "leaving": starved.leaving,
+        "everything": starved.everything,
+    }
+
+
+def _price(held: Price) -> dict[str, Any]:
+    return {
+        "what": held.what,
+        "place": str(held.place),
+        "lasts": held.lasts if held.known else None,
+        "at_least": held.lasts,
+        "known": held.known,
+        "devices": sorted(held.devices),
+    }
+
+
+def _gaps(gaps: Iterable[Gap]) -> list[dict[str, str]]:
+    return [{"place": str(gap.place), "reason": gap.reason} for gap in gaps]
+
+
+def _list(words: Iterable[str]) -> str:
+    return ", ".join(sorted(words)) or "none"
+
+
+def _seconds(lasts: int, known: bool) -> str:
+    return f"up to {lasts / 1000:.1f} s" if known else f"{lasts / 1000:.1f} s or more"

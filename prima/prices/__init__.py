@@ -1,0 +1,45 @@
+"""What parts of an application cost others: how long a reaction may have to wait for them.
+
+Nothing that runs is cut (rule U1), and nothing breaks a unit (U4, U5); so a reaction that needs
+the same device waits for the end. The times are those of the simulator's voice and gestures.
+"""
+
+from __future__ import annotations
+
+from prima.errors import Problem
+from prima.interpreter.elements import Document
+from prima.prices.model import Gap, Outline, Price, Reaction, State, worst
+from prima.sim.scenario import Profile
+from prima.voicexml.document import VoiceDocument
+
+__all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "prices", "worst"]
+
+
+def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
+    """All that is known of an application of either language, its further documents included."""
+    if isinstance(document, Document):
+        from prima.prices import dialogue
+
+        return dialogue.outline(document, profile)
+    from prima.prices import voice
+
+    return voice.outline(document, profile)
+
+
+def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
+    """All parts of an application that nothing breaks, in document order."""
+    return outline(document, profile).parts
+
+
+def notes(document: Document, profile: Profile) -> list[Problem]:
+    """What units cost, as notes for ``prima validate --notes``."""
+    return [
+        Problem(
+            price.place,
+            "note",
+            "unit-price",
+            f"While this unit runs, a reaction that needs its devices waits up to {price.seconds}.",
+        )
+        for price in prices(document, profile)
+        if price.what == "unit"
+    ]

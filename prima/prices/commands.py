@@ -1,0 +1,115 @@
+"""How long Commands take at most on a robot, as the simulator carries them out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from prima.commands import TABLE_4_2, Argument, CommandType, check_argument
+from prima.markup.tree import Node
+from prima.prices.model import Price
+from prima.sim.robot import BRAKING_MS
+from prima.sim.scenario import POINTING_MS, Profile
+
+SETTLING_MS = 1500
+"""What a turn takes beyond its angle at full speed: it slows down, and is seen to have ended."""
+SEARCH = 360.0 + 180.0
+"""How far (degrees) the robot turns at most to face the user, who stands still."""
+
+Value = object | None
+"""An argument's value; None where only a run tells."""
+
+
+def command_price(
+    node: Node,
+    name: str,
+    args: Mapping[str, Value],
+    speech: tuple[int, str] | None,
+    profile: Profile,
+) -> Price:
+    """What a Command costs others.
+
+    Args:
+        node: its element.
+        name: its type.
+        args: its arguments; None for one that an expression gives.
+        speech: how long (ms) what it says takes, and why that may be more; None where it
+            says nothing.
+        profile: the robot.
+    """
+    row = profile.commands.get(name) or TABLE_4_2.get(name)
+    said, unknown = speech or (0, "")
+    if row is None:
+        return Price(node, name, frozenset(), 1, unknown)
+    devices = row.occupied("x" if speech else None)
+    if row.feedback:
+        moves = profile.durations.get(name, profile.loop)
+    else:
+        moves = max(_motion(row, args, profile), 1)
+    lasts = max(said, moves)
+    return Price(node, name, devices, lasts, unknown, row.leaves, row.engages, row.feedback)
+
+
+def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
+    """How long a Command moves at most (ms): by its arguments, or by their bounds."""
+    moves = MOTIONS.get(row.name)
+    return profile.durations.get(row.name, 1) if moves is None else moves(row, args, profile)
+
+
+def _turn(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
+    """By an angle; toward something it is half a turn at most."""
+    angle = _most(row.arguments["angle"], args["angle"]) if "angle" in args else 180.0
+    return _turning(angle, profile)
+
+
+def _turning(angle: float, profile: Profile) -> int:
+    return round(angle / profile.turn_speed * 1000) + SETTLING_MS
+
+
+def _head(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
+    """From the farthest direction that a head can have."""
+    farthest = _most(row.arguments["pan"], None)
+    angle = farthest + _most(row.arguments["pan"], args.get("pan", 0.0))
+    return round(angle / profile.head_speed * 1000)
+
+
+def _gesture(_row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
+    name = args.get("name")
+    if name is None:
+        return max(profile.gestures.values(), default=1)
+    return profile.gestures.get(str(name), 1)
+
+
+def _for_a_time(row: CommandType, args: Mapping[str, Value], _profile: Profile) -> int:
+    return round(_most(row.arguments["time"], args.get("time")))
+
+
+def _face(_row: CommandType, _args: Mapping[str, Value], profile: Profile) -> int:
+    return _turning(SEARCH, profile)
+
+
+def _most(argument: Argument, value: Value) -> float:
+    """The size of an argument's value, or the largest that it may have."""
+    largest = max(abs(argument.low or 0.0), abs(argument.high or 0.0))
+    if value is None:
+        return largest
+    try:
+        return abs(float(check_argument("", argument, str(value))))
+    except ValueError:
+        return largest  # it is refused when it is asked for
+
+
+MOTIONS: Mapping[str, Callable[[CommandType, Mapping[str, Value], Profile], int]] = {
+    "speak": lambda *_: 1,
+    "stop-moving": lambda *_: BRAKING_MS,
+    "point-by-hand": lambda *_: POINTING_MS,
+    "gesture": _gesture,
+    "move-head": _head,
+    "pause": _for_a_time,
+    "set-speed-and-time": _for_a_time,
+    "turn": _turn,
+    "turn-and-speak": _turn,
+    "set-direction": lambda _row, _args, profile: _turning(180.0, profile),
+    "face-human": _face,
+    "face-human-and-speak": _face,
+}
+"""How long (ms) Commands move that no feedback decides; others by the robot's profile."""

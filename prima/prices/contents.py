@@ -1,0 +1,78 @@
+"""What a document in PRIMA's own language holds: its handlers, contents, units and own events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from prima.interpreter.elements import (
+    Act,
+    Block,
+    Document,
+    Field,
+    Form,
+    Handler,
+    Item,
+    Return,
+    Run,
+    SendOut,
+    Subdialog,
+    Throw,
+    Unit,
+    all_acts,
+    all_items,
+)
+
+
+def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
+    """All handlers, each with its form; those of Commands are of their own events."""
+    yield from ((None, one) for one in document.handlers)
+    for form in document.forms.values():
+        yield from ((form, one) for one in form.handlers)
+        for item in all_items(form.items):
+            yield from ((form, one) for one in item.handlers)
+
+
+def own_contents(item: Item) -> list[Sequence[Act]]:
+    """The content of an item without its handlers."""
+    if isinstance(item, Block):
+        return [item.content]
+    return [part.content for part in item.filled] if isinstance(item, Field | Subdialog) else []
+
+
+def contents_of(part: Item | Handler) -> list[Sequence[Act]]:
+    """The content of an item, or of a handler."""
+    return [part.content] if isinstance(part, Handler) else own_contents(part)
+
+
+def inside(unit: Unit) -> list[Item | Handler]:
+    """What a unit holds: its items, and the handlers of both."""
+    found: list[Item | Handler] = [*unit.handlers]
+    for item in unit.items:
+        found += [item, *item.handlers]
+        if isinstance(item, Unit):
+            found += inside(item)
+    return found
+
+
+def again(item: Item) -> bool:
+    """Whether content may be gone through more than once."""
+    acts = [act for content in own_contents(item) for act in all_acts(content)]
+    return any(not isinstance(act, Run) for act in acts)
+
+
+def sent_by(document: Document) -> set[str]:
+    """The events that the application sends to itself."""
+    acts = [act for _, content, _ in document.contents() for act in all_acts(content)]
+    return {act.event for act in acts if isinstance(act, SendOut) and act.event}
+
+
+def thrown_by(document: Document) -> set[str]:
+    """The events that the application throws itself."""
+    acts = [act for _, content, _ in document.contents() for act in all_acts(content)]
+    thrown = {
+        str(act.event) for act in acts if isinstance(act, Throw) and isinstance(act.event, str)
+    }
+    returned = {act.event for act in acts if isinstance(act, Return)}
+    links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
+    linked = {link.event for link in links}
+    return {name for name in thrown | returned | linked if name}

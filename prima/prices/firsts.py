@@ -1,0 +1,178 @@
+"""What an application does first about an event, and whether content always leaves its state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from prima.interpreter.elements import (
+    Act,
+    Block,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Foreach,
+    Form,
+    Goto,
+    Handler,
+    If,
+    Item,
+    Return,
+    Run,
+    StepTemplate,
+    Subdialog,
+    Throw,
+    all_items,
+)
+from prima.interpreter.events import takes
+from prima.prices.model import Price
+
+
+class Firsts:
+    """Finds the Commands that may be the first ones of some content, by all of its ways."""
+
+    def __init__(
+        self,
+        document: Document,
+        of_items: Mapping[int, Price],
+        step: Callable[[StepTemplate], Price],
+    ) -> None:
+        self._document = document
+        self._of_items = of_items
+        self._step = step
+        self._seen: set[int] = set()
+        self._found: dict[int, Price] = {}
+
+    def of(self, content: Sequence[Act], form: Form | None) -> list[Price]:
+        """What content of a form, or of the whole document, may do first."""
+        self._seen, self._found = set(), {}
+        if self._go_through(content, form):
+            self._stay(form)
+        return list(self._found.values())
+
+    def of_form(self, name: str) -> list[Price]:
+        """What a form may do first."""
+        self._seen, self._found = set(), {}
+        self._enter(self._document.forms.get(name))
+        return list(self._found.values())
+
+    def _add(self, price: Price) -> None:
+        self._found.setdefault(price.node.index, price)
+
+    def _stay(self, form: Form | None) -> None:
+        """The form goes on: with whatever of it has not been done."""
+        for one in [form] if form is not None else self._document.forms.values():
+            self._enter(one)
+
+    def _enter(self, form: Form | None) -> bool:
+        """Add what a form may do first; whether it may do nothing."""
+        if form is None or form.node.index in self._seen:
+            return False
+        self._seen.add(form.node.index)
+        for item in form.items:
+            if not self._visit(item, form) and item.cond is None and item.expr is None:
+                return False
+        return True
+
+    def _visit(self, item: Item, form: Form) -> bool:
+        """Add what an item may do first; whether it may do nothing."""
+        own = self._of_items.get(item.node.index)
+        if own is not None:
+            self._add(own)
+            return False
+        if isinstance(item, Subdialog):
+            return self._enter(self._document.forms.get(item.form))
+        return self._go_through(item.content, form) if isinstance(item, Block) else True
+
+    def _go_through(self, content: Sequence[Act], form: Form | None) -> bool:
+        """Add what content may do first; whether it may come to its end without a Command."""
+        for act in content:
+            match act:
+                case Run():
+                    for step in act.steps:
+                        if not step.after:
+                            self._add(self._step(step))
+                    return False
+                case If():
+                    if not self._branch(act, form):
+                        return False
+                case Foreach():
+                    self._go_through(act.content, form)
+                case Goto():
+                    self._goto(act, form)
+                    return False
+                case Throw():
+                    return self._throw(act, form)
+                case Return():
+                    self._stay(None)
+                    return False
+                case Exit():
+                    return False
+        return True
+
+    def _branch(self, act: If, form: Form | None) -> bool:
+        over = [self._go_through(branch, form) for _, branch in act.branches]
+        return any(over) or act.branches[-1][0] is not None
+
+    def _goto(self, act: Goto, form: Form | None) -> None:
+        if isinstance(act.form, str) and act.form:
+            self._enter(self._document.forms.get(act.form))
+        elif isinstance(act.form, Expression):
+            self._stay(None)
+        else:
+            self._items(form)
+
+    def _items(self, form: Form | None) -> None:
+        """Any item of a form may be gone to."""
+        for one in [form] if form is not None else self._document.forms.values():
+            for item in all_items(one.items):
+                self._visit(item, one)
+
+    def _throw(self, act: Throw, form: Form | None) -> bool:
+        if act.node.index in self._seen:
+            return True
+        self._seen.add(act.node.index)
+        fitting = [one for one in _all_handlers(self._document, form) if _fits(one, act)]
+        for handler in fitting:
+            self._go_through(handler.content, form)
+        return True
+
+
+def _fits(handler: Handler, act: Throw) -> bool:
+    event = act.event
+    return isinstance(event, Expression) or any(takes(name, event) for name in handler.events)
+
+
+def _all_handlers(document: Document, form: Form | None) -> list[Handler]:
+    found = list(document.handlers)
+    for one in [form] if form is not None else document.forms.values():
+        found += one.handlers
+        for item in all_items(one.items):
+            found += item.handlers
+    return found
+
+
+def is_left(content: Sequence[Act], back: bool = True) -> bool:
+    """Whether content leaves its state in each case; ``back`` if a return counts as that."""
+    for act in content:
+        if isinstance(act, Exit) or (isinstance(act, Goto) and not act.item):
+            return True
+        if isinstance(act, Return):
+            return back
+        complete = isinstance(act, If) and act.branches[-1][0] is None
+        if isinstance(act, If) and complete and all(is_left(one, back) for _, one in act.branches):
+            return True
+    return False
+
+
+def asks_at_most(field: Field, form: Form, document: Document) -> int:
+    """How often a question is asked at most until the user answers; 0 for without an end."""
+    scope = [*field.handlers, *form.handlers, *document.handlers]
+    total = 0
+    for event in ("noinput", "nomatch"):
+        fitting = [one for one in scope if event in one.events and one.cond is None]
+        counts = [one.count for one in fitting if is_left(one.content)]
+        if not counts:
+            return 0
+        total += min(counts)
+    return max(total - 1, 1)

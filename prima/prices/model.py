@@ -1,0 +1,118 @@
+"""What an application may do, as far as its documents tell: its parts, states and reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from prima.deferred import dataclass, field
+from prima.errors import Place
+from prima.markup.tree import Node
+
+SPEECH = "speech"
+"""The event by which links react to what the user says."""
+
+
+@dataclass(frozen=True, slots=True)
+class Price:
+    """A part of an application that nothing breaks (rules U1, U4, U5)."""
+
+    node: Node
+    what: str
+    """``unit``, ``question``, ``recording``, ``call`` or the Command's name."""
+    devices: frozenset[str]
+    lasts: int
+    """The longest that others wait (ms), as far as the documents tell."""
+    unknown: str = ""
+    """Why it may take longer than that; empty where it may not."""
+    leaves: bool = False
+    engages: bool = False
+    loops: bool = False
+    """Whether it works in loops, between which it gives way: ``lasts`` is one loop."""
+    listens: bool = False
+    """Whether the user may speak in it: what they say comes on top."""
+
+    @property
+    def known(self) -> bool:
+        """Whether ``lasts`` is the longest."""
+        return not self.unknown
+
+    @property
+    def place(self) -> Place:
+        """The element's place."""
+        return self.node.place
+
+    @property
+    def seconds(self) -> str:
+        """How long others wait, for people."""
+        return f"{'' if self.known else 'at least '}{self.lasts / 1000:.1f} s"
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Something that the documents do not tell: a target or a document that is not known."""
+
+    place: Place
+    reason: str
+
+
+@dataclass(slots=True)
+class State:
+    """What an application does without waiting for an event, in a form or after an event."""
+
+    name: str
+    node: Node
+    parts: list[Price] = field(default_factory=list)
+    times: int = 1
+    """How often its parts are done at most, as its questions are asked again."""
+    goes: dict[str, Node] = field(default_factory=dict)
+    """The states that follow without a wait, with the elements that lead there."""
+    calls: dict[str, Node] = field(default_factory=dict)
+    """The states of subdialogs: they come back."""
+    repeats: list[Gap] = field(default_factory=list)
+    """What in it may be done again and again without a wait for an event."""
+    unknown: list[Gap] = field(default_factory=list)
+    """Why it may take longer than its parts: delayed events, content of arrays."""
+
+
+@dataclass(slots=True)
+class Reaction:
+    """What an application does about an event from the user or the surroundings (C5)."""
+
+    events: tuple[str, ...]
+    node: Node
+    firsts: list[Price]
+    """What may be its first Command."""
+    does: State
+    stays: str | None = None
+    """The state that goes on beside it; None where it is left, ``""`` where it may be any."""
+    words: frozenset[str] | None = None
+    """What the user says is made of these words, for a link; None where that is not known."""
+
+
+@dataclass(slots=True)
+class Outline:
+    """All that is known of an application: its parts in document order, states and reactions."""
+
+    parts: list[Price]
+    states: dict[str, State]
+    reactions: list[Reaction]
+    wakes: list[State]
+    """What is done about the application's own delayed events: no reactions."""
+    holds: list[tuple[Place, int]]
+    gaps: list[Gap]
+
+    @property
+    def devices(self) -> set[str]:
+        """All devices that it may use, as far as the documents tell."""
+        return set().union(*(part.devices for part in self.parts))
+
+
+def worst(held: Iterable[Price], devices: frozenset[str]) -> Price | None:
+    """The part for which something that needs these devices may wait longest."""
+    fitting = [price for price in held if price.devices & devices]
+    return max(fitting, key=lambda price: price.lasts, default=None)
+
+
+def devices_of(held: Sequence[Price]) -> frozenset[str]:
+    """The devices of some parts together."""
+    return frozenset().union(*(price.devices for price in held))

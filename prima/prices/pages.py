@@ -1,0 +1,119 @@
+"""The further documents of a VoiceXML application: the files that elements of it name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from urllib.parse import urldefrag, urlsplit
+
+from prima.deferred import dataclass
+from prima.errors import DocumentError
+from prima.markup.tree import Node
+from prima.markup.uris import join
+from prima.prices.model import Gap
+from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
+from prima.voicexml.recordings import HEADER_BYTES, length_ms
+
+MOST_PAGES = 100
+"""Documents of one application that are read."""
+TARGETS = {
+    "goto": ("next", "expr"),
+    "submit": ("next", "expr"),
+    "subdialog": ("src", "srcexpr"),
+    "link": ("next", "expr"),
+    "choice": ("next", "expr"),
+}
+"""Elements that lead elsewhere: the attribute that says where, and the one that computes it."""
+WITHIN = re.compile(r"""\s*(['"])#[^'"]*\1(\s*\+\s*[\w.$]+)*\s*""")
+"""An expression that names a dialog of its own document, whichever that is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where an element leads: dialogs of a page, or what is not known."""
+
+    page: Page | None = None
+    dialogs: tuple[str, ...] = ()
+    gap: Gap | None = None
+
+
+class Pages:
+    """All documents of an application, as far as files that it names by themselves."""
+
+    def __init__(self, document: VoiceDocument) -> None:
+        self.document = document
+        self.gaps: list[Gap] = []
+        self._known: dict[str, Page | None] = {document.page.uri: document.page}
+        for page in self:
+            if page.application:
+                self._open(page.application, page.root)
+            for node in page.root.walk():
+                if node.tag in TARGETS:
+                    gap = self.target(page, node).gap
+                    self.gaps += [gap] if gap else []
+        self.gaps = list(dict.fromkeys(self.gaps))
+
+    def __iter__(self) -> Iterator[Page]:
+        """The documents, further ones as they are found."""
+        done: set[str] = set()
+        while waiting := [one for one in self._known.values() if one and one.uri not in done]:
+            for page in waiting:
+                done.add(page.uri)
+                yield page
+
+    def root(self, page: Page) -> Page | None:
+        """The application root document of a page, if it has one of its own."""
+        return self._known.get(page.application) if page.application else None
+
+    def target(self, page: Page, node: Node) -> Target:
+        """Where an element of a page leads."""
+        plain, computed = TARGETS[node.tag]
+        code = node.get(computed)
+        if code:
+            if WITHIN.fullmatch(code):
+                return Target(page, tuple(page.dialogs))
+            place = node.attribute_place(computed)
+            return Target(gap=Gap(place, "an expression says where it goes on"))
+        uri = node.get(plain).strip()
+        if not uri:
+            return Target()
+        base, dialog = urldefrag(page.resolve(uri, node) if uri[:1] != "#" else uri)
+        if urlsplit(base).scheme == "service" and dialog in page.dialogs:
+            base = ""
+        if urlsplit(base).scheme or base.startswith("//"):
+            place = node.attribute_place(plain)
+            return Target(gap=Gap(place, f"the document that {base} answers is not known"))
+        found = self._open(base, node) if base else page
+        if found is None:
+            return Target(gap=self._full(node))
+        first = next(iter(found.dialogs), "")
+        return Target(found, (dialog or first,))
+
+    def _open(self, uri: str, node: Node) -> Page | None:
+        """A document of the application's folder, read once; none if there is none to read."""
+        if uri not in self._known:
+            self._known[uri] = None
+            if len(self._known) <= MOST_PAGES:
+                file = f"{self.document.file.rpartition('/')[0]}/{uri}".lstrip("/")
+                file = uri if "/" not in self.document.file else file
+                try:
+                    self._known[uri] = read_page(uri, file, self.document.fetch(uri))
+                except (FetchError, DocumentError):
+                    return None  # the application is told of it: error.badfetch
+        return self._known[uri]
+
+    def _full(self, node: Node) -> Gap | None:
+        if len(self._known) <= MOST_PAGES:
+            return None
+        return Gap(node.place, f"only {MOST_PAGES} documents of an application are read")
+
+    def recording(self, page: Page, node: Node, name: str) -> int | None:
+        """How long (ms) a recording of the application's folder plays, if it can be played."""
+        try:
+            uri = urldefrag(join(page.base(), name))[0]
+            if self.document.glance is not None:
+                return length_ms(*self.document.glance(uri, HEADER_BYTES))
+            whole = self.document.fetch(uri)
+            return length_ms(whole[:HEADER_BYTES], len(whole))
+        except (FetchError, ValueError):
+            return None

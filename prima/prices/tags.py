@@ -1,0 +1,84 @@
+"""What elements of VoiceXML documents hold, and where their content leads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from prima.interpreter.selection import takes
+from prima.markup.tree import Node
+from prima.voicexml.events import HANDLERS
+
+ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
+HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
+"""Elements whose text is said, or that hold such."""
+LEAVING = ("goto", "submit", "exit", "return", "disconnect")
+SERVICES = "error.service"
+OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
+"""VoiceXML's own events: what a document does about them is no reaction."""
+
+
+def holders(node: Node) -> Iterator[Node]:
+    """An element and all in it that may say something themselves."""
+    if node.tag in HOLDING:
+        yield node
+        for inner in node.nodes:
+            yield from holders(inner)
+
+
+def says(pieces: Iterable[Node | str]) -> bool:
+    """Whether there is anything to say among some pieces."""
+    return any(isinstance(one, Node) or one.strip() for one in pieces)
+
+
+def names_of(handler: Node) -> list[str]:
+    """The events that a handler names; of one that names none, those that it takes."""
+    if handler.tag != "catch":
+        return [handler.tag]
+    return [name.rstrip(".") for name in handler.get("event").split()] or [""]
+
+
+def is_foreign(name: str) -> bool:
+    """Whether an event may come from the user or the surroundings."""
+    return takes(SERVICES, name) or not any(takes(one, name) for one in OWN)
+
+
+def thrown_by(root: Node) -> Iterator[str]:
+    """The events that a document throws itself; the empty name for those of expressions."""
+    for node in root.walk():
+        if node.tag in ("throw", "link", "choice", "return"):
+            if node.get("event"):
+                yield node.get("event")
+            elif node.get("eventexpr"):
+                yield ""
+
+
+def to_item(node: Node) -> bool:
+    """Whether a goto leads to an item of its own dialog."""
+    return bool(node.attributes.keys() & {"nextitem", "expritem"})
+
+
+def leaves(content: Iterable[Node | str]) -> bool:
+    """Whether content leaves its dialog in each case."""
+    nodes = [one for one in content if isinstance(one, Node)]
+    for node in nodes:
+        if node.tag in LEAVING and not to_item(node):
+            return True
+        if node.tag == "if" and _complete(node):
+            return True
+    return False
+
+
+def returns(node: Node) -> bool:
+    """Whether there is a return in an element."""
+    return any(one.tag == "return" for one in node.walk())
+
+
+def _complete(node: Node) -> bool:
+    """Whether each branch of an ``if`` leaves its dialog, one of them being ``else``."""
+    branches: list[list[Node | str]] = [[]]
+    for one in node.content:
+        if isinstance(one, Node) and one.tag in ("elseif", "else"):
+            branches.append([])
+        else:
+            branches[-1].append(one)
+    return any(one.tag == "else" for one in node.nodes) and all(map(leaves, branches))
