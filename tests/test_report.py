@@ -126,7 +126,7 @@ def test_reasons_are_those_of_prima_explain() -> None:
         assert len(whys[row.number].get("told", [])) == told.count(" s: ") - 1  # the head's
     data = data_of(make([made]))["runs"][0]
     assert data["whys"][14]["source"] == "navigate.xml:61"
-    assert data["names"]["follow#2"][1:] == ["follow.xml:40", 12]
+    assert data["names"]["navigate#3"][1:] == ["navigate.xml:39", 6]
     assert data["whys"][10]["cause"] == 9
 
 

@@ -87,7 +87,7 @@ class Endings(Selection):
         self.cuts.append(Cut(ab, was, rule, self.place, devices))
         if was == RUNNING:
             self._loop_over(ab)
-        self.remove(ab, ended=False)
+        self.remove(ab, ended=was == RUNNING)  # what ran has ended, cut short as it is
 
     def justified(self, cut: Cut) -> None:
         """Invariants 2 and 3: why an AB was taken out of working memory."""
