@@ -67,24 +67,25 @@ class Selection(Streams):
         kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
         return kept is None and not self.restoring(ab)
 
-    def held_back(self, ab: AB, winner: AB | None = None) -> bool:
+    def held_back(self, ab: AB, winner: AB | None = None, surely: bool = True) -> bool:
         """S3: whether a reaction that outranks it wants one of its devices, and may start.
 
         Where it is asked who could start in the place of a winner, that holds nothing back.
+        ``surely`` says how F2 is read for reactions to which it is open.
         """
         return any(
             other is not winner
             and other.cause is not None
             and other.devices & ab.devices
             and self.outranks(other, ab)
-            and self.refused_by_floor(other, surely=True) is None
+            and self.refused_by_floor(other, surely) is None
             and self.refused_by_channel(other) is None
             for other in self.competing(ab)
         )
 
-    def could_start(self, ab: AB, winner: AB) -> bool:
+    def could_start(self, ab: AB, winner: AB, surely: bool = True) -> bool:
         """S1: whether nothing keeps a waiting AB from starting in the place of another."""
-        return self.occupant(ab) is None and self.free_to_go(ab) and not self.held_back(ab, winner)
+        return self.kept_by_s3(ab) and not self.held_back(ab, winner, surely)
 
     def kept_by_s3(self, ab: AB) -> bool:
         """Whether nothing but S3 can keep a waiting AB from starting."""
@@ -155,7 +156,11 @@ class Selection(Streams):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
         if any(self.abs[base(name)].inserted for name in losers):
             return  # whether what X1 or X4 has put in competes for itself is left open
-        rivals = [other for other in rivals if other.shown in losers | needed]
+        rivals = [other for other in rivals if other.shown in losers | needed] or [
+            other
+            for other in self.competing(ab)
+            if other.shown in losers and self.could_start(other, ab, surely=False)
+        ]
         self._rule_told_rightly(ab, shown, told["rule"], rivals)
 
     def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
