@@ -115,6 +115,7 @@ CODES: dict[str, str] = {
     "never-said": "A scenario waits for words that none of its applications says, so that what it holds"
     " never happens.",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
-    " time the application gets error.unsupported.COMMAND, which it may handle.",
+    " time the application gets error.unsupported.COMMAND, which it may handle. It is told once of each"
+    " Command of a document, with the number of places.",
 }
 """Code to explanation."""

@@ -29,7 +29,7 @@ from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.markup.check import DOCUMENTS, check_root
+from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
 from prima.markup.opening import root_of
 from prima.markup.reader import parse, too_large
@@ -256,14 +256,15 @@ def _validate_one(path: str) -> list[Problem]:
             return [*found, *_grammars_of(page, folder)]
         if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
             return _grammar_problems(_path(path), data)
-        root = None if application else parse(path, data)
-        if root is None or root.namespace == DIALOGUE.namespace:
-            document, problems = read_document(path, data)
-            return problems + _prices(document) if b"<iu" in data else problems
+        if application:
+            return _application_problems(path, data)
         from prima.sim.scenario import read_robot, read_world
         from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 
-        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
+        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO)
+        vocabulary = check_root(parse(path, data, kinds), kinds)
+        if vocabulary is DIALOGUE:
+            return _application_problems(path, data)
         if vocabulary is WORLD:
             reading = _Reading(_path(path), {})
             for area in read_world(path, data).areas:
@@ -277,6 +278,12 @@ def _validate_one(path: str) -> list[Problem]:
     except DocumentError as error:
         return error.problems
     return []
+
+
+def _application_problems(path: str, data: bytes) -> list[Problem]:
+    """The problems of an application in PRIMA's own language."""
+    document, problems = read_document(path, data)
+    return problems + _prices(document) if b"<iu" in data else problems
 
 
 NAMING_FILES = {
@@ -604,6 +611,10 @@ class _Reading:
         for document in self.documents:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
+            else:
+                from prima.voicexml import check
+
+                self.problems += check.check_commands(document.page.root, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""
@@ -621,7 +632,7 @@ class _Reading:
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
     """A document of another kind than the scenario needs is the mistake of who names it."""
-    if problem.code != "wrong-namespace" or parse(name, content).namespace not in DOCUMENTS:
+    if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
     return problem._replace(place=place, message=f'"{name}": {problem.message}')
 

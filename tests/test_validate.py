@@ -98,6 +98,16 @@ def test_errors_of_a_run_have_their_source_line(tmp_path: Path) -> None:
     assert "      |            ^~~~~~" in done.stderr
 
 
+@pytest.mark.parametrize("verb", ["talk", "run"])
+@pytest.mark.parametrize("namespace", ['xmlns="http://www.w3.org/2001/vxml" ', ""])
+def test_who_runs_an_application_is_told_how(tmp_path: Path, verb: str, namespace: str) -> None:
+    (tmp_path / "main.vxml").write_text(f'<vxml {namespace}version="2.1"><form/></vxml>')
+    done = prima(verb, "main.vxml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "This is a VoiceXML document; a scenario is needed here." in done.stderr
+    assert "prima run and prima talk take it by --ea main.vxml." in done.stderr
+
+
 def test_sarif_is_complete(tmp_path: Path) -> None:
     (tmp_path / "a.xml").write_text(BAD)
     done = prima("validate", "a.xml", "--format", "sarif", cwd=tmp_path)
