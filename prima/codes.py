@@ -114,6 +114,11 @@ CODES: dict[str, str] = {
     " application.",
     "never-said": "A scenario waits for words that none of its applications says, so that what it holds"
     " never happens.",
+    "bad-ignore": "What is to ignore a warning lacks its code or its reason: a comment in a document,"
+    " <!-- prima-ignore: CODE reason -->, or an [[ignore]] of prima.toml. It ignores nothing.",
+    "unused-ignore": "A comment or an [[ignore]] of prima.toml ignores a warning that is not there (any"
+    " more), or that is an error: errors are never ignored. Of warnings that a document gets from a"
+    " scenario alone this is not told, and of an entry only when all files that it names are checked.",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
     " time the application gets error.unsupported.COMMAND, which it may handle. It is told once of each"
     " Command of a document, with the number of places.",

@@ -25,6 +25,7 @@ from prima.errors import (
     one_of,
     parted,
 )
+from prima.ignores import Ignores
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
@@ -225,13 +226,14 @@ class Loaded:
 def validate(paths: Iterable[str | Path]) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
+    Those that authors ignore, in a document or in ``prima.toml``, are left out.
+
     Raises:
         UsageError: a file cannot be read.
     """
-    problems: list[Problem] = []
-    for path in paths:
-        problems += _validate_one(str(path))
-    return sorted(once(problems))
+    validation = Validation()
+    problems = [problem for path in paths for problem in validation.problems(path)]
+    return sorted(once([*problems, *validation.ignored()]))
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
@@ -241,6 +243,27 @@ def once(problems: Iterable[Problem]) -> list[Problem]:
     return [
         one for one in found if one.severity == "error" or (one.place, one.message) not in errors
     ]
+
+
+class Validation:
+    """Checks documents one after the other, and in the end what their authors ignore."""
+
+    def __init__(self) -> None:
+        self._ignores = Ignores(read_file)
+
+    def problems(self, path: str | Path) -> list[Problem]:
+        """The problems of a document that nobody ignores.
+
+        Raises:
+            UsageError: the file cannot be read.
+        """
+        found = self._ignores.left(_validate_one(str(path)))
+        self._ignores.check(str(path))
+        return sorted(set(found))
+
+    def ignored(self) -> list[Problem]:
+        """What is wrong with ignores of the documents checked: no reason, or nothing to ignore."""
+        return sorted(set(self._ignores.told()))
 
 
 def _validate_one(path: str) -> list[Problem]:
@@ -274,7 +297,7 @@ def _validate_one(path: str) -> list[Problem]:
         elif vocabulary is ROBOT:
             return read_robot(path, data).warnings
         else:
-            return load_scenario(path).problems
+            return _load(_path(path), data).problems
     except DocumentError as error:
         return error.problems
     return []
@@ -397,7 +420,13 @@ def load_scenario(path: str | Path) -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _load(_path(path), read_file(path))
+    return _without_ignored(_load(_path(path), read_file(path)))
+
+
+def _without_ignored(loaded: Loaded) -> Loaded:
+    """What has been loaded, without the problems that authors ignore."""
+    loaded.problems = Ignores(read_file).left(loaded.problems)
+    return loaded
 
 
 def stage(
@@ -451,7 +480,7 @@ def stage(
         if document.kind != kind:
             what = "the robot's own (FA)" if document.kind == "fa" else "a place's (EA)"
             raise UsageError(f"--{kind} {path}: this is {what}; write --{document.kind} {path}.")
-    return loaded
+    return _without_ignored(loaded)
 
 
 def _standing(world: str) -> str:

@@ -23,7 +23,7 @@ LAYERS = [
     {"voicexml"},
     {"session"},
     {"sim", "journal"},
-    {"prices"},
+    {"prices", "ignores"},
     {"export", "loading", "pool", "web"},
     {"api"},
     {"certificate", "examples", "graph", "lsp", "new", "report", "study", "talk", "testing"},
