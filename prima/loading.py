@@ -289,8 +289,9 @@ def _validate_one(path: str) -> list[Problem]:
         if vocabulary is DIALOGUE:
             return _application_problems(path, data)
         if vocabulary is WORLD:
-            reading = _Reading(_path(path), {})
-            for area in read_world(path, data).areas:
+            world = read_world(path, data)
+            reading = _Reading(_path(path), {}, [*world.warnings])
+            for area in world.areas:
                 if area.src not in reading.files:
                     reading.offered(area.src, area)
             return reading.problems
@@ -534,6 +535,8 @@ def _load(path: Path, data: bytes) -> Loaded:
         reading.application(src, node.attribute_place("src"), node)
     world = reading.read(scenario.world, root.attribute_place("world"), read_world)
     robot = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
+    if world is not None:
+        reading.problems += world.warnings
     offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
     if robot is not None:
         reading.check_commands(robot)

@@ -109,7 +109,7 @@ INSIDE = {
         {"__init__"},
     ],
     "sim": [
-        {"vocabulary", "voice"},
+        {"vocabulary", "voice", "plan"},
         {"scenario"},
         {"world"},
         {"routes"},

@@ -318,7 +318,7 @@ def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
 ) -> None:
     robot = (
         '<robot xmlns="urn:prima:robot:1" version="1.0" id="robot">'
-        '<device name="neck"/><device name="necks"/></robot>'
+        '<device name="neck"/><device name="necks"/><adds command="nod-twice" devices="necks"/></robot>'
     )
     assert written(tmp_path, "robot.xml", robot) == []
 

@@ -487,7 +487,7 @@ class Checker:
         called = {name for form in forms for name in self._leads[form].calls}
         inside = self._reached(called, calls=False)
         exiting = self._exiting()
-        leaves = everywhere.targets or everywhere.anywhere or everywhere.ends
+        ways = self._ways()
         for name, form in forms.items():
             if not name:
                 continue  # nothing can name it, which has been told
@@ -496,10 +496,10 @@ class Checker:
                     form.node, "unreachable", f'Nothing leads to the form "{name}".',
                     "Go to it from somewhere, or remove it.", "id", "warning",
                 )  # fmt: skip
-            leads = self._leads[name]
-            left = leads.targets or leads.anywhere or leads.ends
-            left = left or not exiting.isdisjoint(leads.calls)
-            if not (left or leaves) and name in reached:
+            asks = any(isinstance(item, Field) for item in all_items(form.items))
+            left = name in ways or None in ways or (asks and "" in ways)
+            left = left or not exiting.isdisjoint(self._leads[name].calls)
+            if not left and name in reached:
                 remedy = (
                     "To come back from the subdialog, write <return/>."
                     if name in inside
@@ -507,6 +507,28 @@ class Checker:
                 )
                 message = f'The form "{name}" can never be left.'
                 self.note(form.node, "dead-end", message, remedy, "id", "warning")
+
+    def _ways(self) -> set[str | None]:
+        """The forms that can be left but by an error; None if every form can, "" if all that ask can.
+
+        A handler of errors is no way out: nobody writes a state that is left when it fails.
+        """
+        failing: set[int] = set()
+        asking: set[int] = set()
+        for handler in handlers_of(self.document, self.acts):
+            if all(event.partition(".")[0] == "error" for event in handler.events):
+                failing |= set(map(id, all_acts(handler.content)))
+        for handler in self.document.handlers:
+            if DEFAULTS.issuperset(handler.events):
+                asking |= set(map(id, all_acts(handler.content)))
+        found: set[str | None] = {None} if any(link.form for link in self.document.links) else set()
+        found |= {form.id for form, _ in self.forms if any(link.form for link in form.links)}
+        for kind in (Goto, Exit, Return, Throw):
+            for stands, act in self.acts.of(kind):
+                stays = isinstance(act, Goto) and act.form is None
+                if not stays and id(act) not in failing:
+                    found.add("" if id(act) in asking else stands.id if stands else None)
+        return found
 
     def _exiting(self) -> set[str]:
         """The forms from which an exit can be reached, through gotos and subdialogs."""

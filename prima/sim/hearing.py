@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from prima.commands import TABLE_4_2
 from prima.errors import MANY_WORDS, Problem, did_you_mean
 from prima.interpreter.elements import Document
-from prima.interpreter.events import STANDARD, Events, beginnings, near
+from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
     PLACED,
     Sayings,
     Surroundings,
     check_name,
     check_surroundings,
+    nearest,
 )
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
@@ -47,12 +48,37 @@ def check_hearing(cast: Cast) -> list[Problem]:
     nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
+    events = [Events(document) for document in documents]
+    problems += _corners(nodes, events, cast)
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application says and hears is known only when it runs
-    events = [Events(document) for document in documents]
     problems += _services(events, {service.name for service in cast.scenario.services})
     problems += _words(nodes, documents)
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
+
+
+def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
+    """Handlers of a corner's event that no corner of the world raises: most likely a slip."""
+    corners = {corner.event for corner in cast.world.corners} - {"corner"}
+    known = {*STANDARD, *corners, *(node.get("name") for node in nodes if node.tag == "event")}
+    known |= {raised.name for one in events for raised in one.raised}
+    begins = {name for one in known for name in beginnings(one)}
+    heard = [(handler.node, name) for one in events for handler in one.handlers
+             for name in handler.events]  # fmt: skip
+    pages = [document for document in cast.documents if not isinstance(document, Document)]
+    for page in pages:
+        catches = [node for node in page.page.root.walk() if node.tag == "catch"]
+        heard += [(node, name) for node in catches for name in node.get("event").split()]
+    for node, name in heard:
+        if name in begins or name.startswith(OPEN):
+            continue
+        meant = near(name, corners)
+        if meant or name.startswith("corner."):
+            message = f'No corner of the world raises the event "{name}".'
+            remedy = f'Did you mean "{meant}"?' if meant else nearest(name, corners)
+            remedy = remedy or "Write corner, or name the corner's event in the world."
+            place = event_place(node, name)
+            yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
 def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
@@ -96,8 +122,8 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
         name = node.get("name")
         if heard.isdisjoint(beginnings(name)):
             message = f'No application handles the event "{name}".'
-            nearest = near(name, heard)
-            remedy = f'Did you mean "{nearest}"?' if nearest else "Remove it, or handle it."
+            meant = near(name, heard)
+            remedy = f'Did you mean "{meant}"?' if meant else "Remove it, or handle it."
             yield Problem(node.attribute_place("name"), "warning", "unheard-event", message, remedy)
 
 
@@ -114,12 +140,12 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
             ending = ENDINGS if attribute == "reason" else frozenset()
             if not name or name in begins | ending or name.startswith(OPEN):
                 continue
-            nearest = near(name, known | ending)
-            if nearest:
+            meant = near(name, known | ending)
+            if meant:
                 message = f'Nothing raises an event "{name}".'
-                if nearest in ending:
+                if meant in ending:
                     message = f'No application ends with "{name}".'
-                remedy = f'Did you mean "{nearest}"?'
+                remedy = f'Did you mean "{meant}"?'
                 place = node.attribute_place(attribute)
                 yield Problem(place, "warning", "unknown-event", message, remedy)
 
@@ -171,9 +197,9 @@ def _services(events: list[Events], names: set[str]) -> Iterator[Problem]:
     """Services that are asked and not there, where another one was most likely meant."""
     for one in events:
         for node, service in one.asked:
-            nearest = near(service, names)
-            if service not in names and nearest:
+            meant = near(service, names)
+            if service not in names and meant:
                 message = f'The scenario has no service "{service}".'
-                remedy = f'Did you mean "{nearest}"?'
+                remedy = f'Did you mean "{meant}"?'
                 place = node.attribute_place("to")
                 yield Problem(place, "warning", "no-such-name", message, remedy)
