@@ -61,8 +61,9 @@ CODES: dict[str, str] = {
     " be meant; if it is over there, say so with <exit/>, or in a subdialog with <return/>.",
     "dead-content": "What stands behind a goto, return or exit is never reached.",
     "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
-    " form item, <foreach> or <script> declares. At run time that is error.semantic. A grammar's tag"
-    " uses a name that no tag of the grammar declares: at run time such an answer is no match.",
+    " form item, <foreach> or <script> declares. At run time that is error.semantic. So is, in VoiceXML, a"
+    " param of a subdialog that no <var> of the called form takes. A grammar's tag uses a name that no"
+    " tag of the grammar declares: at run time such an answer is no match.",
     "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
     " stopped.",
     "assigning-condition": "A condition has = where a comparison, ==, was most likely meant: it changes the"
@@ -110,7 +111,8 @@ CODES: dict[str, str] = {
     " to the beginning of that state, at once or by way of others: the same is told a second time"
     " (rule O3). Where a question is asked on the way back, or the handler keeps what the event tells,"
     " that is meant.",
-    "unknown-event": "A handler names an event that nothing raises, most likely a slip. Events of one's own"
+    "unknown-event": "A handler names an event that nothing raises, most likely a slip; given a scenario, also"
+    " one of a corner that its world does not have. Events of one's own"
     " come from throw, send, link, watch, a return, or a scenario.",
     "unheard-event": "An event is raised, and no handler takes it. It is lost; one that is thrown ends the"
     " application.",

@@ -271,12 +271,7 @@ def _validate_one(path: str) -> list[Problem]:
         data = read_file(path)
         application = _is_surely_ours(data)
         if not application and is_voicexml(data):
-            from prima.voicexml.document import read_page
-
-            page = read_page(_path(path).name, path, data)
-            folder = _path(path).parent
-            found = [*page.problems, *page.warnings(), *_not_there(page, folder)]
-            return [*found, *_grammars_of(page, folder)]
+            return list(_voicexml_problems(path, data))
         if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
             return _grammar_problems(_path(path), data)
         if application:
@@ -298,7 +293,7 @@ def _validate_one(path: str) -> list[Problem]:
         elif vocabulary is ROBOT:
             return read_robot(path, data).warnings
         else:
-            return _load(_path(path), data).problems
+            return _load(_path(path), data, whole=True).problems
     except DocumentError as error:
         return error.problems
     return []
@@ -308,6 +303,29 @@ def _application_problems(path: str, data: bytes) -> list[Problem]:
     """The problems of an application in PRIMA's own language."""
     document, problems = read_document(path, data)
     return problems + _prices(document) if b"<iu" in data else problems
+
+
+def _voicexml_problems(path: str, data: bytes) -> Iterator[Problem]:
+    """The problems of a VoiceXML document, and of those of its folder that it leads to."""
+    from prima.voicexml.document import FetchError, read_page
+    from prima.voicexml.pages import Pages
+    from prima.voicexml.variables import check_variables
+
+    folder = _path(path).parent
+    first = read_page(_path(path).name, path, data)
+    pages = Pages(first, path, lambda uri: _fetch(folder, uri))
+
+    def script(page: Page, node: Node) -> str | None:
+        try:
+            source = page.resolve(node.get("src"), node) if node.get("src") else ""
+            return _fetch(folder, source).decode("utf-8") if source else None
+        except (FetchError, ValueError):
+            return None
+
+    for page in pages:
+        yield from (*page.problems, *page.warnings(), *_not_there(page, folder))
+        yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+    yield from (*pages.problems, *pages.between())
 
 
 NAMING_FILES = {
@@ -523,13 +541,14 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
         seen[name] = option
 
 
-def _load(path: Path, data: bytes) -> Loaded:
+def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
+    """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.hearing import check_hearing
     from prima.sim.rehearsal import Cast, check_cast, check_names
     from prima.sim.scenario import look_at_scenario, read_robot, read_world
 
     scenario, told = look_at_scenario(str(path), data)
-    reading = _Reading(path, {path.name: _digest(data)}, [*told])
+    reading = _Reading(path, {path.name: _digest(data)}, [*told], whole=whole)
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
@@ -569,6 +588,8 @@ class _Reading:
     files: dict[str, str]
     problems: list[Problem] = field(default_factory=list)
     documents: list[AnyDocument] = field(default_factory=list)
+    whole: bool = False
+    """Whether all documents of VoiceXML applications are looked into, not only the first."""
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
@@ -591,7 +612,13 @@ class _Reading:
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
         own = (node.get("id"), node.get("kind")) if node is not None else ("", "")
-        read = self.read(src, place, lambda path, data: read_application(path, data, *own))
+
+        def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
+            document, problems = read_application(path, data, *own)
+            further = _voicexml_problems(path, data) if self.whole and is_voicexml(data) else ()
+            return document, [*problems, *further]
+
+        read = self.read(src, place, made_of)
         if read is None:
             return None
         document, problems = read

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from prima.commands import TABLE_4_2
 from prima.errors import MANY_WORDS, Problem, did_you_mean
@@ -15,11 +15,13 @@ from prima.interpreter.surroundings import (
     check_name,
     check_surroundings,
     nearest,
+    texts_of,
 )
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
 from prima.values import read_value
+from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ENDINGS = frozenset({"exit", "unloaded"})
@@ -49,11 +51,10 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
     events = [Events(document) for document in documents]
-    problems += _corners(nodes, events, cast)
+    problems += [*_corners(nodes, events, cast), *_words(nodes, cast)]
     if len(documents) < len(cast.documents):
-        return problems  # what a VoiceXML application says and hears is known only when it runs
+        return problems  # what a VoiceXML application hears is known only when it runs
     problems += _services(events, {service.name for service in cast.scenario.services})
-    problems += _words(nodes, documents)
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
 
 
@@ -90,9 +91,32 @@ def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
                     yield from check_name(node, name, value, names)
 
 
-def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
+def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
+    """What the applications ask, and what they say; None if that is known only in a run."""
+    asked: list[Sequence[object]] = []
+    said: list[Sequence[object]] = []
+    for document in cast.documents:
+        if isinstance(document, Document):
+            asked += texts_of(document, True)
+            said += texts_of(document, False)
+            continue
+        pages = Pages(document.page, document.file, document.fetch)
+        if pages.open:
+            return None
+        spoken = [text for page in pages for text in spoken_in(page)]
+        asked += spoken
+        said += spoken
+    return Sayings(asked), Sayings(said)
+
+
+def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
     """Triggers that wait for words which nobody says; what is never to be said, if it is a slip."""
-    questions, sayings = Sayings(documents, True), Sayings(documents, False)
+    waiting = [one for one in nodes if any(one.get(name) for name in ("asked", "said", "says"))]
+    answers = [one for one in nodes if one.tag == "answer"]
+    found = _sayings(cast) if waiting or answers else None
+    if found is None:
+        return
+    questions, sayings = found
     for tag, name, asked in (
         ("answer", "to", True),
         ("when", "asked", True),
@@ -108,8 +132,8 @@ def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
                 remedy = did_you_mean(words, said.lines if len(said.lines) <= MANY_WORDS else ())
                 if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
-                if tag == "never" and not remedy:
-                    continue  # that nobody says it is just what is expected
+                if not remedy and (tag == "never" or not said.certain):
+                    continue  # what nobody says is just what is expected, or only a run tells it
                 place = node.attribute_place(name)
                 yield Problem(place, "warning", "never-said", message, remedy)
 
