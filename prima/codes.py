@@ -53,14 +53,17 @@ CODES: dict[str, str] = {
     "nothing-to-say": "A Command that speaks has no text.",
     "empty": "The element holds nothing.",
     "after-else": "Nothing but content may stand after <else>: it takes all that is left.",
-    "unreachable": "No goto, link or subdialog leads to the form, so its content never runs.",
-    "dead-end": "Nothing in the form, its handlers included, is a goto, exit, return, throw or link,"
+    "unreachable": "No goto, link or subdialog leads to the form, so its content never runs. Or no way of"
+    " a world leads to a place: the robot gets there only from where it sees it.",
+    "blocked-way": "A way of a world goes through a wall: the robot that takes it stands before the wall.",
+    "dead-end": "Nothing in the form, its handlers included but for those of errors, is a goto, exit, return, throw or link,"
     " and no subdialog that it calls can exit: once in it, the application waits for ever. That may"
     " be meant; if it is over there, say so with <exit/>, or in a subdialog with <return/>.",
     "dead-content": "What stands behind a goto, return or exit is never reached.",
     "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
-    " form item, <foreach> or <script> declares. At run time that is error.semantic. A grammar's tag"
-    " uses a name that no tag of the grammar declares: at run time such an answer is no match.",
+    " form item, <foreach> or <script> declares. At run time that is error.semantic. So is, in VoiceXML, a"
+    " param of a subdialog that no <var> of the called form takes. A grammar's tag uses a name that no"
+    " tag of the grammar declares: at run time such an answer is no match.",
     "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
     " stopped.",
     "assigning-condition": "A condition has = where a comparison, ==, was most likely meant: it changes the"
@@ -108,13 +111,20 @@ CODES: dict[str, str] = {
     " to the beginning of that state, at once or by way of others: the same is told a second time"
     " (rule O3). Where a question is asked on the way back, or the handler keeps what the event tells,"
     " that is meant.",
-    "unknown-event": "A handler names an event that nothing raises, most likely a slip. Events of one's own"
+    "unknown-event": "A handler names an event that nothing raises, most likely a slip; given a scenario, also"
+    " one of a corner that its world does not have. Events of one's own"
     " come from throw, send, link, watch, a return, or a scenario.",
     "unheard-event": "An event is raised, and no handler takes it. It is lost; one that is thrown ends the"
     " application.",
     "never-said": "A scenario waits for words that none of its applications says, so that what it holds"
     " never happens.",
+    "bad-ignore": "What is to ignore a warning lacks its code or its reason: a comment in a document,"
+    " <!-- prima-ignore: CODE reason -->, or an [[ignore]] of prima.toml. It ignores nothing.",
+    "unused-ignore": "A comment or an [[ignore]] of prima.toml ignores a warning that is not there (any"
+    " more), or that is an error: errors are never ignored. Of warnings that a document gets from a"
+    " scenario alone this is not told, and of an entry only when all files that it names are checked.",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
-    " time the application gets error.unsupported.COMMAND, which it may handle.",
+    " time the application gets error.unsupported.COMMAND, which it may handle. It is told once of each"
+    " Command of a document, with the number of places.",
 }
 """Code to explanation."""

@@ -10,6 +10,7 @@ does wrong is an assertion.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
@@ -82,6 +83,24 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     alike = [one for one in words if one.casefold() == word.casefold()]
     nearest = alike or get_close_matches(word, words, n=1, cutoff=0.6)
     return f'Did you mean "{nearest[0]}"?' if nearest else ""
+
+
+def few(problems: list[Problem], most: int) -> list[Problem]:
+    """At most so many of problems that say the same; the last of these tells how many more there are."""
+    counts = Counter(problem[1:] for problem in problems)
+    if max(counts.values(), default=0) <= most:
+        return problems
+    told: Counter[tuple[str, ...]] = Counter()
+    kept: list[Problem] = []
+    for problem in sorted(problems):
+        alike = problem[1:]
+        told[alike] += 1
+        if told[alike] == most and counts[alike] > most:
+            more = f"So it is at {counted(counts[alike] - most, 'more place')}."
+            problem = problem._replace(remedy=f"{problem.remedy} {more}".strip())
+        if told[alike] <= most:
+            kept.append(problem)
+    return kept
 
 
 def parted(text: str) -> tuple[str, str]:

@@ -25,11 +25,12 @@ from prima.errors import (
     one_of,
     parted,
 )
+from prima.ignores import Ignores
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.markup.check import DOCUMENTS, check_root
+from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
 from prima.markup.opening import root_of
 from prima.markup.reader import parse, too_large
@@ -225,13 +226,14 @@ class Loaded:
 def validate(paths: Iterable[str | Path]) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
+    Those that authors ignore, in a document or in ``prima.toml``, are left out.
+
     Raises:
         UsageError: a file cannot be read.
     """
-    problems: list[Problem] = []
-    for path in paths:
-        problems += _validate_one(str(path))
-    return sorted(once(problems))
+    validation = Validation()
+    problems = [problem for path in paths for problem in validation.problems(path)]
+    return sorted(once([*problems, *validation.ignored()]))
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
@@ -243,40 +245,87 @@ def once(problems: Iterable[Problem]) -> list[Problem]:
     ]
 
 
+class Validation:
+    """Checks documents one after the other, and in the end what their authors ignore."""
+
+    def __init__(self) -> None:
+        self._ignores = Ignores(read_file)
+
+    def problems(self, path: str | Path) -> list[Problem]:
+        """The problems of a document that nobody ignores.
+
+        Raises:
+            UsageError: the file cannot be read.
+        """
+        found = self._ignores.left(_validate_one(str(path)))
+        self._ignores.check(str(path))
+        return sorted(set(found))
+
+    def ignored(self) -> list[Problem]:
+        """What is wrong with ignores of the documents checked: no reason, or nothing to ignore."""
+        return sorted(set(self._ignores.told()))
+
+
 def _validate_one(path: str) -> list[Problem]:
     try:
         data = read_file(path)
         application = _is_surely_ours(data)
         if not application and is_voicexml(data):
-            from prima.voicexml.document import read_page
-
-            page = read_page(_path(path).name, path, data)
-            folder = _path(path).parent
-            found = [*page.problems, *page.warnings(), *_not_there(page, folder)]
-            return [*found, *_grammars_of(page, folder)]
+            return list(_voicexml_problems(path, data))
         if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
             return _grammar_problems(_path(path), data)
-        root = None if application else parse(path, data)
-        if root is None or root.namespace == DIALOGUE.namespace:
-            document, problems = read_document(path, data)
-            return problems + _prices(document) if b"<iu" in data else problems
+        if application:
+            return _application_problems(path, data)
         from prima.sim.scenario import read_robot, read_world
         from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 
-        vocabulary = check_root(root, (DIALOGUE, WORLD, ROBOT, SCENARIO))
+        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO)
+        vocabulary = check_root(parse(path, data, kinds), kinds)
+        if vocabulary is DIALOGUE:
+            return _application_problems(path, data)
         if vocabulary is WORLD:
-            reading = _Reading(_path(path), {})
-            for area in read_world(path, data).areas:
+            world = read_world(path, data)
+            reading = _Reading(_path(path), {}, [*world.warnings])
+            for area in world.areas:
                 if area.src not in reading.files:
                     reading.offered(area.src, area)
             return reading.problems
         elif vocabulary is ROBOT:
             return read_robot(path, data).warnings
         else:
-            return load_scenario(path).problems
+            return _load(_path(path), data, whole=True).problems
     except DocumentError as error:
         return error.problems
     return []
+
+
+def _application_problems(path: str, data: bytes) -> list[Problem]:
+    """The problems of an application in PRIMA's own language."""
+    document, problems = read_document(path, data)
+    return problems + _prices(document) if b"<iu" in data else problems
+
+
+def _voicexml_problems(path: str, data: bytes) -> Iterator[Problem]:
+    """The problems of a VoiceXML document, and of those of its folder that it leads to."""
+    from prima.voicexml.document import FetchError, read_page
+    from prima.voicexml.pages import Pages
+    from prima.voicexml.variables import check_variables
+
+    folder = _path(path).parent
+    first = read_page(_path(path).name, path, data)
+    pages = Pages(first, path, lambda uri: _fetch(folder, uri))
+
+    def script(page: Page, node: Node) -> str | None:
+        try:
+            source = page.resolve(node.get("src"), node) if node.get("src") else ""
+            return _fetch(folder, source).decode("utf-8") if source else None
+        except (FetchError, ValueError):
+            return None
+
+    for page in pages:
+        yield from (*page.problems, *page.warnings(), *_not_there(page, folder))
+        yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+    yield from (*pages.problems, *pages.between())
 
 
 NAMING_FILES = {
@@ -390,7 +439,13 @@ def load_scenario(path: str | Path) -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _load(_path(path), read_file(path))
+    return _without_ignored(_load(_path(path), read_file(path)))
+
+
+def _without_ignored(loaded: Loaded) -> Loaded:
+    """What has been loaded, without the problems that authors ignore."""
+    loaded.problems = Ignores(read_file).left(loaded.problems)
+    return loaded
 
 
 def stage(
@@ -444,7 +499,7 @@ def stage(
         if document.kind != kind:
             what = "the robot's own (FA)" if document.kind == "fa" else "a place's (EA)"
             raise UsageError(f"--{kind} {path}: this is {what}; write --{document.kind} {path}.")
-    return loaded
+    return _without_ignored(loaded)
 
 
 def _standing(world: str) -> str:
@@ -486,18 +541,21 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
         seen[name] = option
 
 
-def _load(path: Path, data: bytes) -> Loaded:
+def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
+    """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.hearing import check_hearing
     from prima.sim.rehearsal import Cast, check_cast, check_names
     from prima.sim.scenario import look_at_scenario, read_robot, read_world
 
     scenario, told = look_at_scenario(str(path), data)
-    reading = _Reading(path, {path.name: _digest(data)}, [*told])
+    reading = _Reading(path, {path.name: _digest(data)}, [*told], whole=whole)
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
     world = reading.read(scenario.world, root.attribute_place("world"), read_world)
     robot = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
+    if world is not None:
+        reading.problems += world.warnings
     offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
     if robot is not None:
         reading.check_commands(robot)
@@ -530,6 +588,8 @@ class _Reading:
     files: dict[str, str]
     problems: list[Problem] = field(default_factory=list)
     documents: list[AnyDocument] = field(default_factory=list)
+    whole: bool = False
+    """Whether all documents of VoiceXML applications are looked into, not only the first."""
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
@@ -552,7 +612,13 @@ class _Reading:
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
         own = (node.get("id"), node.get("kind")) if node is not None else ("", "")
-        read = self.read(src, place, lambda path, data: read_application(path, data, *own))
+
+        def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
+            document, problems = read_application(path, data, *own)
+            further = _voicexml_problems(path, data) if self.whole and is_voicexml(data) else ()
+            return document, [*problems, *further]
+
+        read = self.read(src, place, made_of)
         if read is None:
             return None
         document, problems = read
@@ -604,6 +670,10 @@ class _Reading:
         for document in self.documents:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
+            else:
+                from prima.voicexml import check
+
+                self.problems += check.check_commands(document.page.root, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""
@@ -621,7 +691,7 @@ class _Reading:
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
     """A document of another kind than the scenario needs is the mistake of who names it."""
-    if problem.code != "wrong-namespace" or parse(name, content).namespace not in DOCUMENTS:
+    if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
     return problem._replace(place=place, message=f'"{name}": {problem.message}')
 

@@ -1045,7 +1045,7 @@ USAGES: list[Any] = [
     (["run", "s.xml", "--format", "jsn"], 2, "jsn"),
     (["run", "no.xml"], 2, "no.xml: cannot be read: No such file"),
     (["run", "."], 0, "runs: 1; fine: 1"),
-    (["run", "app.xml"], 1, "This is an application; a scenario is needed here. A run takes"),
+    (["run", "app.xml"], 1, "a scenario is needed here. prima run and prima talk take it by --fa app.xml."),
     (["run", "good.jsonl"], 1, "prima show prints it"),
     (["run", "s.xml", "-o", "."], 2, "Is a directory"),
     (["run", "s.xml", "-o", ""], 2, "cannot be written"),

@@ -23,7 +23,7 @@ LAYERS = [
     {"voicexml"},
     {"session"},
     {"sim", "journal"},
-    {"prices"},
+    {"prices", "ignores"},
     {"export", "loading", "pool", "web"},
     {"api"},
     {"certificate", "examples", "graph", "lsp", "new", "report", "study", "talk", "testing"},
@@ -109,7 +109,7 @@ INSIDE = {
         {"__init__"},
     ],
     "sim": [
-        {"vocabulary", "voice"},
+        {"vocabulary", "voice", "plan"},
         {"scenario"},
         {"world"},
         {"routes"},

@@ -105,6 +105,9 @@ def test_meaning(body: str, code: str) -> None:
     [
         ('<form id="a"><block><exit/></block></form><form id="b"><block><exit/></block></form>', "unreachable"),
         ('<form id="a"><block><speak>x</speak></block></form>', "dead-end"),
+        ('<form id="a"><block><speak>x</speak></block></form><error><exit/></error>', "dead-end"),
+        ('<form id="a"><block><speak>x</speak></block><on event="error.device"><exit/></on></form>', "dead-end"),
+        ('<form id="a"><block><speak>x</speak></block></form><noinput><exit/></noinput>', "dead-end"),
         ('<form id="a"><block><exit/><speak>x</speak></block></form>', "dead-content"),
         ('<form id="a"><block><par><speak>x</speak><speak>y</speak></par><exit/></block></form>', "shared-device"),
         ('<form id="a"><block><tracking-human/><exit/></block></form>', "endless"),
@@ -280,3 +283,15 @@ def test_values_in_messages_are_written_as_the_author_writes_them(
     with pytest.raises(ValueError) as wrong:
         check_argument("x", Argument(kind, "", 1000, 60_000), value)
     assert str(wrong.value) == message
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form id="a"><field name="x" type="boolean"/></form><noinput><exit/></noinput>',
+        '<form id="a"><block><speak>x</speak></block></form><on event="error touch"><exit/></on>',
+        '<form id="a"><block><speak>x</speak></block></form><on event="touch"><exit/></on>',
+    ],
+)
+def test_a_handler_that_an_event_can_reach_leaves_a_state(body: str) -> None:
+    assert [p for p in read(body)[1] if p.code == "dead-end"] == []

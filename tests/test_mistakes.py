@@ -66,8 +66,8 @@ def test_every_mistake_is_expected() -> None:
 
 
 def test_what_mistakes_name_beside_them_is_right() -> None:
-    for name in ("museum", "room", "robot", "speaker", "ask", "bow"):
-        assert problems_of(MISTAKES / "beside" / f"{name}.xml") == []
+    for path in (MISTAKES / "beside").iterdir():
+        assert problems_of(path) == [], path.name
 
 
 # The examples of the codes ----------------------------------------------------------
@@ -257,12 +257,68 @@ def test_what_is_wrong_deeper_in_a_scenario_is_told(
     assert found.severity == "warning" and says in found.remedy
 
 
+def staged(folder: Path, robot: str, content: str) -> list[Problem]:
+    """The problems of a scenario whose FA asks a robot for something."""
+    (folder / "app.xml").write_text(application(f"<block>{content}<exit/></block>"), "utf-8")
+    beside = (MISTAKES / "beside").as_posix()
+    text = (
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/{robot}.xml"><robot at="door"/>'
+        '<application src="app.xml"/></scenario>'
+    )
+    return written(folder, "visit.xml", text)
+
+
+PICTURE = '<command type="take-a-picture">{}</command>'
+BOW = '<command type="gesture">{}</command>'
+
+
+@pytest.mark.parametrize(
+    ("robot", "content"),
+    [
+        ("camera", PICTURE.format('<param name="zoom" value="2"/>')),
+        ("camera", PICTURE.format('<param name="zoom" expr="1 + 1"/>')),
+        ("robot", BOW.format('<param name="name" value="bow"/>')),
+        ("robot", '<command type="speak">Hello.</command>'),
+    ],
+)
+def test_what_a_command_of_the_profile_is_given_is_enough(
+    tmp_path: Path, robot: str, content: str
+) -> None:
+    assert staged(tmp_path, robot, content) == []
+
+
+@pytest.mark.parametrize(
+    ("robot", "content", "code"),
+    [
+        ("camera", PICTURE.format(""), "missing-attribute"),
+        ("robot", BOW.format(""), "missing-attribute"),
+        ("camera", PICTURE.format('<param name="zoom" value="2"/>Smile!'), "stray-text"),
+        (
+            "robot",
+            '<command type="turn"><param name="angle" value="9"/>Hi.</command>',
+            "stray-text",
+        ),
+    ],
+)
+def test_what_a_command_of_the_profile_lacks_is_told(
+    tmp_path: Path, robot: str, content: str, code: str
+) -> None:
+    (found,) = staged(tmp_path, robot, content)
+    assert found.code == code and found.severity == "error" and found.remedy
+
+
+def test_a_closing_tag_that_is_misspelt_is_told_as_that(tmp_path: Path) -> None:
+    (found,) = written(tmp_path, "tour.xml", application("<block><speak>Hi.</speek></block>"))
+    assert found.code == "not-xml" and "write </speak>" in found.remedy
+
+
 def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
     tmp_path: Path,
 ) -> None:
     robot = (
         '<robot xmlns="urn:prima:robot:1" version="1.0" id="robot">'
-        '<device name="neck"/><device name="necks"/></robot>'
+        '<device name="neck"/><device name="necks"/><adds command="nod-twice" devices="necks"/></robot>'
     )
     assert written(tmp_path, "robot.xml", robot) == []
 

@@ -98,6 +98,16 @@ def test_errors_of_a_run_have_their_source_line(tmp_path: Path) -> None:
     assert "      |            ^~~~~~" in done.stderr
 
 
+@pytest.mark.parametrize("verb", ["talk", "run"])
+@pytest.mark.parametrize("namespace", ['xmlns="http://www.w3.org/2001/vxml" ', ""])
+def test_who_runs_an_application_is_told_how(tmp_path: Path, verb: str, namespace: str) -> None:
+    (tmp_path / "main.vxml").write_text(f'<vxml {namespace}version="2.1"><form/></vxml>')
+    done = prima(verb, "main.vxml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "This is a VoiceXML document; a scenario is needed here." in done.stderr
+    assert "prima run and prima talk take it by --ea main.vxml." in done.stderr
+
+
 def test_sarif_is_complete(tmp_path: Path) -> None:
     (tmp_path / "a.xml").write_text(BAD)
     done = prima("validate", "a.xml", "--format", "sarif", cwd=tmp_path)
@@ -327,7 +337,9 @@ def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
 ) -> None:
     (tmp_path / "d").mkdir()
     for name in ("a.js", "a b.vxml"):
-        (tmp_path / "d" / name).write_text("")
+        (tmp_path / "d" / name).write_text(
+            '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form id="x"/></vxml>'
+        )
     (tmp_path / "d" / "m.vxml").write_text(
         f'<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">{content}</vxml>'
     )
@@ -485,3 +497,181 @@ def told_twice_in(body: str) -> list[Problem]:
     _, problems = read_document("x.xml", f"{head}{body}</prima>".encode())
     assert [one for one in problems if one.severity == "error"] == []
     return [one for one in problems if one.code == "told-twice"]
+
+
+# Documents of VoiceXML together ---------------------------------------------------------
+
+VXML = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"{}>{}</vxml>'
+CALLED = VXML.format(
+    "", '<form id="call"><var name="order"/><block><return namelist="order"/></block></form>'
+)
+
+
+def told(folder: Path, content: str, attributes: str = "", **others: str) -> list[str]:
+    """What is told of an application of several documents."""
+    for name, text in others.items():
+        (folder / f"{name}.vxml").write_text(text)
+    (folder / "main.vxml").write_text(VXML.format(attributes, content))
+    found = loading.validate([folder / "main.vxml"])
+    return [f"{Path(one.place.file).name} {one.code} {one.message} {one.remedy}" for one in found]
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        ('<form><block><log expr="x"/></block></form>', "x"),
+        ('<var name="a" expr="b"/><form/>', "b"),
+        ('<form><block><assign name="x" expr="1"/></block></form>', "x"),
+        ('<form><block><assign name="x.y" expr="1"/></block></form>', "x"),
+        (
+            '<form><var name="a"/><block><submit next="service:s" namelist="a b"/></block></form>',
+            "b",
+        ),
+        ('<form><block cond="ready"/></form>', "ready"),
+        ('<form id="a"><var name="x"/></form><form><block><log expr="x"/></block></form>', "x"),
+        ('<catch event="e"><log expr="x"/></catch><form/>', "x"),
+        (
+            '<form xmlns:p="urn:prima:dialogue:1"><block><p:turn angle-expr="x"/></block></form>',
+            "x",
+        ),
+    ],
+)
+def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, name: str) -> None:
+    (one,) = told(tmp_path, content)
+    assert f'undeclared-variable The variable "{name}" is not declared' in one
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<var name="x"/><form><block><log expr="x + document.x + application.y"/></block></form>',
+        '<form><field name="x" type="boolean"><filled><log expr="x$.utterance"/></filled></field></form>',
+        '<form><block><log expr="typeof x"/></block></form>',
+        '<form><block><script>var x = 1; y = 2;</script><log expr="x + y"/></block></form>',
+        '<script src="x.js"/><form><block><log expr="fromfile(1)"/></block></form>',
+        '<script src="gone.js"/><form><block><log expr="anything"/></block></form>',
+        '<form><block><foreach item="x" array="[1]"><log expr="x"/></foreach></block></form>',
+        '<form><block><log expr="session.connection + lastresult$.length"/></block></form>',
+        '<catch event="e"><log expr="_event + x"/></catch><form><var name="x"/></form>',
+        '<form><block><assign name="document.x" expr="1"/></block></form>',
+    ],
+)
+def test_a_variable_that_something_declares_is_none_to_tell(tmp_path: Path, content: str) -> None:
+    (tmp_path / "x.js").write_text("function fromfile(a) { return a; }")
+    assert [one for one in told(tmp_path, content) if "undeclared-variable" in one] == []
+
+
+def test_variables_of_the_application_root_are_declared(tmp_path: Path) -> None:
+    root = VXML.format("", '<var name="shared"/>')
+    content = '<form><block><log expr="shared + own"/></block></form>'
+    (one,) = told(tmp_path, content, ' application="root.vxml"', root=root)
+    assert '"own"' in one
+    assert "root.vxml" in told(tmp_path, content, ' application="gone.vxml"')[0]
+    assert len(told(tmp_path, content, ' application="gone.vxml"')) == 1, "nobody knows the rest"
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ('<subdialog name="s" src="second.vxml#call"><param name="size" expr="1"/></subdialog>',
+         'undeclared-variable The form "call" has no <var name="size"/>'),
+        ('<subdialog name="s" src="second.vxml"><param name="oder" expr="1"/></subdialog>',
+         'Did you mean "order"?'),
+        ('<block><goto next="second.vxml#cal"/></block>',
+         'no-such-form There is no dialog "cal" in second.vxml: this will be error.badfetch.'
+         ' Did you mean "call"?'),
+    ],
+)  # fmt: skip
+def test_what_another_document_lacks_is_told(tmp_path: Path, content: str, says: str) -> None:
+    (one,) = told(tmp_path, f"<form>{content}</form>", second=CALLED)
+    assert one.startswith("main.vxml") and says in one
+
+
+def test_what_another_document_takes_is_fine(tmp_path: Path) -> None:
+    call = '<subdialog name="s" src="second.vxml#call"><param name="order" expr="1"/></subdialog>'
+    content = f'<form>{call}<block><goto next="second.vxml#call"/></block></form>'
+    assert told(tmp_path, content, second=CALLED) == []
+
+
+SECOND = VXML.format(
+    "", '<form><field name="x"><grammar src="gone.grxml"/><prompt>Hm?</prompt></field></form>'
+)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<form><block><goto next="second.vxml"/></block></form>',
+        '<menu><choice next="second.vxml">two</choice></menu>',
+        '<form><subdialog name="s" src="second.vxml"/></form>',
+        '<form><block><submit next="second.vxml"/></block></form>',
+    ],
+)
+def test_further_documents_of_an_application_are_looked_into(tmp_path: Path, content: str) -> None:
+    (one,) = told(tmp_path, content, second=SECOND)
+    assert one.startswith("second.vxml no-such-file") and "gone.grxml" in one
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (tmp_path / "visit.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        '<application src="main.vxml"/></scenario>'
+    )
+    (problem,) = loading.validate([tmp_path / "visit.xml"])
+    assert problem.code == "no-such-file" and problem.place.file.endswith("second.vxml")
+
+
+def test_further_documents_are_no_business_of_a_run(tmp_path: Path) -> None:
+    broken = SECOND.replace("</vxml>", "")
+    content = '<form><block><goto next="second.vxml"/></block></form>'
+    (one,) = told(tmp_path, content, second=broken)
+    assert one.startswith("second.vxml not-xml")
+    assert loading.stage([], [str(tmp_path / "main.vxml")]).problems == []
+
+
+def test_documents_that_lead_to_each_other_are_read_once(tmp_path: Path) -> None:
+    second = VXML.format("", '<form><block><goto next="main.vxml"/></block></form>')
+    content = '<form><block><goto next="second.vxml"/></block></form>'
+    assert told(tmp_path, content, second=second) == []
+
+
+# What a scenario waits for ----------------------------------------------------------------
+
+
+ASKING = (
+    '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f">'
+    '<field name="x" type="boolean"><prompt>{}</prompt><noinput><exit/></noinput>'
+    "<filled><exit/></filled></field></form></prima>"
+)
+VOICE = VXML.format(
+    "",
+    '<form><field name="x" type="boolean"><prompt>{}</prompt><filled>{}</filled></field></form>',
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "document", "words", "remedy"),
+    [
+        ("a.xml", ASKING.format("Tea or coffee?"), "tea", None),
+        ("a.xml", ASKING.format("Tea or coffee?"), "juice", ""),
+        ("a.xml", ASKING.format('Tea or <value expr="1"/>?'), "tea", None),
+        ("a.xml", ASKING.format('<value expr="1"/>?'), "juice", None),
+        ("a.xml", ASKING.format('Tea or <value expr="1"/>?'), "juice", None),
+        ("a.xml", ASKING.format('Coffeine <value expr="1"/>?'), "Cofeine ?", "Coffeine ?"),
+        ("a.vxml", VOICE.format("<emphasis>Tea</emphasis> or coffee?", "<exit/>"), "Tea or", None),
+        ("a.vxml", VOICE.format("Tea or coffee?", "<exit/>"), "Tea or cofee?", "Tea or coffee?"),
+        ("a.vxml", VOICE.format("Tea or coffee?", '<goto expr="x"/>'), "Tea or cofee?", None),
+    ],
+)
+def test_an_answer_that_no_question_contains_is_told(
+    tmp_path: Path, name: str, document: str, words: str, remedy: str | None
+) -> None:
+    (tmp_path / name).write_text(document)
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (tmp_path / "visit.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        f'<application src="{name}"/><answer to="{words}">Yes.</answer></scenario>'
+    )
+    found = loading.validate([tmp_path / "visit.xml"])
+    assert [one.code for one in found] == ["never-said"] * (remedy is not None)
+    assert all((remedy or "") in one.remedy for one in found)

@@ -20,9 +20,8 @@ from prima.cli.common import (
     tell,
 )
 from prima.errors import Problem, UsageError, one_of
+from prima.ignores import KINDS, SETTINGS
 
-KINDS = (".xml", ".vxml", ".grxml", ".gram", ".abnf")
-"""How the names of documents in a folder end."""
 WATCH_SECONDS = 0.3
 MANY = 50
 """From so many files on, a terminal is told how far it is."""
@@ -38,6 +37,7 @@ MANY = 50
     help="What to print; short leaves out the source lines.",
 )
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
+@click.option("--strict", is_flag=True, help="Count warnings as problems: exit code 1.")
 @click.option("--notes", is_flag=True, help="Print notes too: what holds and units cost others.")
 @click.option(
     "--with",
@@ -53,6 +53,7 @@ def validate(
     files: tuple[str, ...],
     form: str,
     watch: bool,
+    strict: bool,
     notes: bool,
     fas: tuple[str, ...],
     robot: str,
@@ -62,26 +63,27 @@ def validate(
 
     All problems of every file are printed, each with its place, its source line and
     what to write instead. A folder stands for all documents in it. Exit code 1 if any
-    problem is an error, 2 if a file cannot be read.
+    problem is an error, or with --strict a warning; 2 if a file cannot be read.
 
     \b
     prima validate documents/fa/follow.xml documents/ea
     prima validate documents --format sarif > problems.sarif
+    prima validate documents --strict
     prima validate my-guide.xml --watch
     prima validate --with documents/fa/follow.xml documents/ea/museum.xml
     """
     raise_limits(limits)
     if robot and not fas:
         raise UsageError("--robot goes with --with.")
-    if fas and (watch or notes or form in ("short", "sarif")):
+    if fas and (watch or notes or strict or form in ("short", "sarif")):
         raise UsageError("A certificate (--with) takes --format text or json alone.")
     if fas:
         _certify(fas, files, robot, form)
         return
     if watch:
         _watch(files, form, notes)
-    unread, errors = _check(files, form, notes)
-    if unread or errors:
+    unread, errors, warnings = _check(files, form, notes)
+    if unread or errors or (strict and warnings):
         raise Exit(2 if unread else 1)
 
 
@@ -99,30 +101,31 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
         put("\n".join(map(format_certificate, found)))
 
 
-def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int]:
-    """Check and print; gives how many files could not be read, and how many errors there are."""
+def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int, int]:
+    """Check and print; gives how many files could not be read, and the errors and warnings."""
     from prima import loading  # not the whole interface, for a quick start
 
+    validation = loading.Validation()
     problems: list[Problem] = []
     unread: list[str] = []
     names = list(_expanded(files))
     for index, name in enumerate(names, 1):
         try:
-            problems += loading.validate([name])
+            problems += validation.problems(name)
         except UsageError as error:
             unread.append(str(error))
         if len(names) >= MANY and sys.stderr.isatty():
             click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
-    problems = loading.once(problems)
+    problems = loading.once([*problems, *validation.ignored()])
     _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell(f"prima: {message}")
     errors = sum(problem.severity == "error" for problem in problems)
+    warnings = sum(problem.severity == "warning" for problem in problems)
     if form in ("text", "short") and not unread:
-        warnings = sum(problem.severity == "warning" for problem in problems)
         counts = f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
         tell(f"files: {len(names)}; {counts}")
-    return len(unread), errors
+    return len(unread), errors, warnings
 
 
 def _expanded(files: tuple[str, ...]) -> Iterator[str]:
@@ -192,7 +195,7 @@ def _changes(files: tuple[str, ...]) -> dict[str, float]:
     found: dict[str, float] = {}
     for folder in folders:
         for path in Path(folder).rglob("*"):
-            if path.suffix in KINDS:
+            if path.suffix in KINDS or path.name == SETTINGS:
                 try:
                     found[str(path)] = path.stat().st_mtime_ns
                 except OSError:

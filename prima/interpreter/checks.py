@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property, lru_cache
 from typing import Any
 
-from prima.commands import TABLE_4_2, CommandType
+from prima.commands import TABLE_4_2, Argument, CommandType, check_argument, missing_argument
 from prima.deferred import pattern
-from prima.errors import Place, Problem, Severity, did_you_mean
+from prima.errors import Place, Problem, Severity, did_you_mean, few, parted
 from prima.interpreter.compiling import compiled
 from prima.interpreter.elements import (
     Act,
@@ -53,7 +53,7 @@ from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
 from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
-from prima.values import read_value
+from prima.values import nearest, read_value
 
 LONG_UNIT_MS = 20_000
 """A unit whose speech alone takes longer than this cannot be reacted in."""
@@ -102,37 +102,96 @@ def check_commands(
     """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
     problems = _outside_units(document, commands)
     heard = {name for handler in handlers_of(document) for name in handler.events}
+    cannot: list[Problem] = []
     for command in document_commands(document):
         row = commands.get(command.type)
         if row is None or row.substitute:
-            known = command.type in TABLE_4_2
-            lacking = sorted(TABLE_4_2[command.type].devices - devices) if known else []
-            lacks = f": it lacks {', '.join(lacking)}" if lacking and devices else ""
-            message = (
-                f"This robot cannot do {command.type}{lacks}."
-                f" At run time it is error.unsupported.{command.type}."
-                if known
-                else f'This robot has no Command "{command.type}".'
-            )
-            if row is not None:
-                message += f" With the extension x6 {row.substitute} takes its place."
-            event = f"error.unsupported.{command.type}"
-            handled = any(takes(name, event) for name in heard)
-            handle = "" if handled else f'Handle it: <on event="{event}">.'
-            hint = handle if known else did_you_mean(command.type, commands)
-            severity: Severity = "warning" if known else "error"
-            problems.append(
-                Problem(command.node.place, severity, "unsupported-command", message, hint)
-            )
-            continue
-        for name, _ in command.extra:
-            if name not in row.extra and name not in row.arguments:
-                message = f'This robot\'s {command.type} has no additional argument "{name}".'
-                hint = did_you_mean(name, row.extra | set(row.arguments))
-                problems.append(
-                    Problem(command.node.place, "error", "no-such-argument", message, hint)
-                )
-    return problems
+            cannot.append(_cannot(command, row, commands, devices, heard))
+        else:
+            problems += _arguments(command, row)
+    return problems + few(cannot, 1)
+
+
+def _cannot(
+    command: CommandTemplate,
+    row: CommandType | None,
+    commands: Mapping[str, CommandType],
+    devices: frozenset[str],
+    heard: set[str],
+) -> Problem:
+    """A Command that a robot lacks; ``heard`` are the events that the document handles."""
+    place = command.node.place
+    if command.type not in TABLE_4_2:
+        message, hint = (
+            f'This robot has no Command "{command.type}".',
+            did_you_mean(command.type, commands),
+        )
+        return Problem(place, "error", "unsupported-command", message, hint)
+    lacking = sorted(TABLE_4_2[command.type].devices - devices) if devices else []
+    lacks = f": it lacks {', '.join(lacking)}" if lacking else ""
+    event = f"error.unsupported.{command.type}"
+    message = f"This robot cannot do {command.type}{lacks}. At run time it is {event}."
+    if row is not None:
+        message += f" With the extension x6 {row.substitute} takes its place."
+    handled = any(takes(name, event) for name in heard)
+    hint = "" if handled else f'Handle it: <on event="{event}">.'
+    return Problem(place, "warning", "unsupported-command", message, hint)
+
+
+def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
+    """What is wrong with the arguments of a Command that only a robot's profile knows."""
+    place = command.node.place
+    for name, _ in command.extra:
+        if name not in row.extra and name not in row.arguments:
+            message = f'This robot\'s {command.type} has no additional argument "{name}".'
+            hint = did_you_mean(name, row.extra | set(row.arguments))
+            yield Problem(place, "error", "no-such-argument", message, hint)
+    if command.node.tag == "command":  # arguments of others are attributes, looked at already
+        given = dict(command.extra)
+        yield from given_to(command.node, row, given, bool(command.text))
+
+
+def given_to(
+    node: Node, row: CommandType, given: Mapping[str, object], says: bool
+) -> Iterator[Problem]:
+    """What is wrong with the motion arguments and the text of a ``<command>``.
+
+    Args:
+        node: the element.
+        row: what the robot's profile says of the Command.
+        given: its params, by name; only those are looked at whose values are texts.
+        says: whether it has a text.
+    """
+    for name, value in given.items():
+        if name in row.arguments and isinstance(value, str):
+            yield from _argument(_param_place(node, name), name, row.arguments[name], value)
+    if missing := missing_argument(row, given):
+        needed = [name for name, one in row.arguments.items() if one.required or one.choice]
+        lacking = next(name for name in needed if name not in given)
+        remedy = f'Write <param name="{lacking}" value="..."/> into it.'
+        yield Problem(node.place, "error", "missing-attribute", missing, remedy)
+    if row.text == "none" and says:
+        remedy = "Say it with <speak>."
+        yield Problem(node.place, "error", "stray-text", f"{row.name} cannot say anything.", remedy)
+
+
+def _argument(place: Place, name: str, argument: Argument, text: str) -> Iterator[Problem]:
+    """What is wrong with a motion argument's value."""
+    try:
+        check_argument(name, argument, text)
+    except ValueError as error:
+        code = "bad-value"
+        wrong, remedy = parted(str(error))
+        if "out of range" in wrong:
+            code, value = "out-of-range", float(read_value(argument.kind, text))
+            remedy = nearest(argument.kind, value, argument.low, argument.high)
+        yield Problem(place, "error", code, wrong, remedy)
+
+
+def _param_place(node: Node, name: str) -> Place:
+    """Where a param's value stands."""
+    param = next((one for one in node.all("param") if one.get("name") == name), node)
+    return param.attribute_place("value") if "value" in param.attributes else param.place
 
 
 def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
@@ -428,7 +487,7 @@ class Checker:
         called = {name for form in forms for name in self._leads[form].calls}
         inside = self._reached(called, calls=False)
         exiting = self._exiting()
-        leaves = everywhere.targets or everywhere.anywhere or everywhere.ends
+        ways = self._ways()
         for name, form in forms.items():
             if not name:
                 continue  # nothing can name it, which has been told
@@ -437,10 +496,10 @@ class Checker:
                     form.node, "unreachable", f'Nothing leads to the form "{name}".',
                     "Go to it from somewhere, or remove it.", "id", "warning",
                 )  # fmt: skip
-            leads = self._leads[name]
-            left = leads.targets or leads.anywhere or leads.ends
-            left = left or not exiting.isdisjoint(leads.calls)
-            if not (left or leaves) and name in reached:
+            asks = any(isinstance(item, Field) for item in all_items(form.items))
+            left = name in ways or None in ways or (asks and "" in ways)
+            left = left or not exiting.isdisjoint(self._leads[name].calls)
+            if not left and name in reached:
                 remedy = (
                     "To come back from the subdialog, write <return/>."
                     if name in inside
@@ -448,6 +507,28 @@ class Checker:
                 )
                 message = f'The form "{name}" can never be left.'
                 self.note(form.node, "dead-end", message, remedy, "id", "warning")
+
+    def _ways(self) -> set[str | None]:
+        """The forms that can be left but by an error; None if every form can, "" if all that ask can.
+
+        A handler of errors is no way out: nobody writes a state that is left when it fails.
+        """
+        failing: set[int] = set()
+        asking: set[int] = set()
+        for handler in handlers_of(self.document, self.acts):
+            if all(event.partition(".")[0] == "error" for event in handler.events):
+                failing |= set(map(id, all_acts(handler.content)))
+        for handler in self.document.handlers:
+            if DEFAULTS.issuperset(handler.events):
+                asking |= set(map(id, all_acts(handler.content)))
+        found: set[str | None] = {None} if any(link.form for link in self.document.links) else set()
+        found |= {form.id for form, _ in self.forms if any(link.form for link in form.links)}
+        for kind in (Goto, Exit, Return, Throw):
+            for stands, act in self.acts.of(kind):
+                stays = isinstance(act, Goto) and act.form is None
+                if not stays and id(act) not in failing:
+                    found.add("" if id(act) in asking else stands.id if stands else None)
+        return found
 
     def _exiting(self) -> set[str]:
         """The forms from which an exit can be reached, through gotos and subdialogs."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from prima.deferred import dataclass
 from prima.errors import Problem, did_you_mean, one_of
 from prima.interpreter.elements import (
     CommandTemplate,
     Document,
-    Expression,
     Field,
     Pause,
     Run,
@@ -112,26 +111,36 @@ def commands_of(document: Document) -> list[CommandTemplate]:
 
 
 class Sayings:
-    """All that the questions of some documents ask, or their Commands say as well, gathered once."""
+    """What some applications say: their texts, gathered once.
 
-    def __init__(self, documents: Iterable[Document], asked: bool) -> None:
-        texts = [text for document in documents for text in _texts(document, asked)]
-        self.lines = {_joined(text) for text in texts}
-        self._open = any(isinstance(part, Expression) for text in texts for part in text)
-        """Whether some of it is known only in a run."""
+    Of a text with expressions only the rest is known: it holds words with which it shares one, and
+    perhaps others.
+    """
+
+    def __init__(self, texts: Iterable[Sequence[object]]) -> None:
+        every = list(texts)
+        self.lines = {_joined(text) for text in every}
         self._all = "\n".join(map(fold, self.lines))
+        opened = [text for text in every if not all(isinstance(part, str | Pause) for part in text)]
+        shared = [set(fold(_joined(text)).split()) for text in opened]
+        self._shared: set[str] = set().union(*shared)
+        self._open = not all(shared)
+        """Whether some text is known only in a run."""
+        self.certain = not opened
+        """Whether all of it is known before a run."""
 
     def may_hold(self, words: str) -> bool:
         """Whether words may ever be said; so as not to err, yes where that cannot be told."""
-        return self._open or fold(words) in self._all
+        folded = fold(words)
+        return self._open or folded in self._all or not self._shared.isdisjoint(folded.split())
 
 
-def _joined(text: Text) -> str:
+def _joined(text: Sequence[object]) -> str:
     words = (" " if isinstance(part, Pause) else part for part in text)
-    return "".join(part for part in words if isinstance(part, str))
+    return " ".join("".join(part for part in words if isinstance(part, str)).split())
 
 
-def _texts(document: Document, asked: bool) -> list[Text]:
+def texts_of(document: Document, asked: bool) -> list[Text]:
     """What a document's questions ask, and if not ``asked`` what its Commands say as well."""
     found: list[Text] = []
     for form in document.forms.values():

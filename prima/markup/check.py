@@ -20,11 +20,7 @@ DOCUMENTS = {
     "urn:prima:scenario:1": "a scenario",
 }
 """What documents are, by their namespaces."""
-REMEDIES = {
-    ("an application", "a scenario"): "A run takes a scenario, which names its applications:"
-    ' <application src="..."/>.',
-}
-"""What to do with one kind of document where another is needed."""
+VOICEXML = "a VoiceXML document"
 
 
 def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
@@ -41,21 +37,39 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
             message = f"The root element is <{root.tag}>; it must be <{tag}>."
             remedy = f"Begin with <{tag}>."
             raise DocumentError([Problem(root.place, "error", "wrong-root", message, remedy)])
-    own = DOCUMENTS.get(root.namespace)
+    own = kind_of(root)
     if own:
-        wanted = one_of(DOCUMENTS.get(name, "a VoiceXML document") for _, name in expected)
+        wanted = one_of(DOCUMENTS.get(name, VOICEXML) for _, name in expected)
         message = f"This is {own}; {wanted} is needed here."
-        remedy = REMEDIES.get((own, wanted), f"Name the file of {wanted}.")
+        remedy = f"Name the file of {wanted}."
+        if own in ("an application", VOICEXML) and wanted == "a scenario":
+            remedy = _as_application(root)
         raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
-    tag = "prima" if root.tag == "vxml" else root.tag
-    expected = [entry for entry in expected if entry[0] == tag] or expected
+    expected = [entry for entry in expected if entry[0] == root.tag] or expected
     wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
     message = f"The root element <{root.tag}> has {found}."
     near = did_you_mean(root.namespace, [namespace for _, namespace in expected])
     remedy = near or f"Begin with {wanted}."
     place = root.source.place(root.index, "xmlns", value=True)
     raise DocumentError([Problem(place, "error", "wrong-namespace", message, remedy)])
+
+
+def kind_of(root: Node) -> str:
+    """What document an element is the root of, such as ``a world``; nothing where it is none."""
+    if root.tag == "vxml" and root.namespace in ("", "http://www.w3.org/2001/vxml"):
+        return VOICEXML
+    return DOCUMENTS.get(root.namespace, "")
+
+
+def _as_application(root: Node) -> str:
+    """How a run takes an application."""
+    file = root.source.file
+    option = f"--{root.get('kind', 'ea')} {file}"
+    return (
+        f"prima run and prima talk take it by {option}."
+        ' A scenario names it by <application src="..."/>.'
+    )
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:

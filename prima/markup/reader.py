@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import codecs
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from prima.deferred import pattern
-from prima.errors import DocumentError, Place, Problem
+from prima.errors import DocumentError, Place, Problem, did_you_mean
 from prima.markup.build import (
     MAX_NAME,
     TooMuch,
@@ -176,8 +177,13 @@ def _check_prolog(source: Source) -> None:
         return  # what is not well-formed is told better below
 
 
-def parse(file: str, data: bytes) -> Node:
+def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> Node:
     """Parse bytes into nodes.
+
+    Args:
+        file: the name by which places are told.
+        data: the bytes.
+        vocabularies: whose elements may be meant, to tell a slip in an opening tag.
 
     Raises:
         DocumentError: not well-formed, or beyond a limit.
@@ -191,7 +197,7 @@ def parse(file: str, data: bytes) -> Node:
         try:
             return build(source)
         except Unclear:
-            _explain(source)
+            _explain(source, vocabularies)
             return build(source, doctype=True)
     except TooMuch as much:
         raise _beyond(much) from None
@@ -201,7 +207,7 @@ def parse(file: str, data: bytes) -> Node:
         raise _error(place, "not-xml", message, "Take another name.") from None
 
 
-def _explain(source: Source) -> None:
+def _explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
     """Tell what is wrong with a document, by the parser that has the better words.
 
     Raises:
@@ -222,7 +228,7 @@ def _explain(source: Source) -> None:
     try:
         root = etree.fromstring(source.text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        raise _syntax_error(source, error) from None
+        raise _misspelt(source, error, vocabularies) or _syntax_error(source, error) from None
     dtd = root.getroottree().docinfo.internalDTD
     if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
         raise _error(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
@@ -241,6 +247,29 @@ def _beyond(much: TooMuch) -> DocumentError:
     message = f"The document has more than {LIMITS.elements:,} elements."
     remedy = f"Divide it, or raise the limit: --limit elements={10 * LIMITS.elements}."
     return _error(place, "too-large", message, remedy)
+
+
+MISMATCH = r"tag mismatch: (\S+) line (\d+) and (\S+)"
+"""The parser's words for a closing tag that does not fit: the opening one, its line, the closing."""
+
+
+def _misspelt(
+    source: Source, error: etree.XMLSyntaxError, vocabularies: Sequence[Vocabulary]
+) -> DocumentError | None:
+    """The error for an opening tag that no language has, where its closing tag is right."""
+    match = re.search(MISMATCH, (error.msg or "").split(", line ")[0])
+    if match is None:
+        return None
+    opened, closed = match[1], match[3]
+    tags = {tag for one in vocabularies for tag in one.tags}
+    if opened in tags or closed not in tags or not did_you_mean(opened, [closed]):
+        return None
+    lines = source.text.split("\n")
+    line = int(match[2])
+    column = lines[line - 1].rfind(f"<{opened}") + 1 if line <= len(lines) else 1
+    place = Place(source.file, line, max(column, 1))
+    remedy = f'Did you mean "{closed}"? The closing tag is right.'
+    return _error(place, "unknown-element", f"There is no <{opened}>.", remedy)
 
 
 def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
@@ -305,7 +334,7 @@ def _clearer(source: Source, place: Place, message: str, remedy: str) -> tuple[P
     """The parser's place, message and remedy, nearer to the mistake and in plainer words."""
     lines = source.text.split("\n")
     line = lines[place.line - 1] if place.line <= len(lines) else ""
-    if match := re.search(r"tag mismatch: (\S+) line (\d+) and (\S+)", message):
+    if match := re.search(MISMATCH, message):
         start = line.rfind("</", 0, place.column)
         place = place._replace(column=start + 1) if start >= 0 else place
         if match[1].startswith("／"):
@@ -351,7 +380,7 @@ def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, 
     Raises:
         DocumentError: no tree can be given: not XML, or not such a document at all.
     """
-    root = parse(file, data)
+    root = parse(file, data, vocabularies)
     problems: list[Problem] = []
     check_tree(root, check_root(root, vocabularies), problems)
     return root, problems

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from prima.commands import TABLE_4_2
 from prima.errors import MANY_WORDS, Problem, did_you_mean
 from prima.interpreter.elements import Document
-from prima.interpreter.events import STANDARD, Events, beginnings, near
+from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
     PLACED,
     Sayings,
     Surroundings,
     check_name,
     check_surroundings,
+    nearest,
+    texts_of,
 )
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
 from prima.values import read_value
+from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ENDINGS = frozenset({"exit", "unloaded"})
@@ -47,12 +50,36 @@ def check_hearing(cast: Cast) -> list[Problem]:
     nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
-    if len(documents) < len(cast.documents):
-        return problems  # what a VoiceXML application says and hears is known only when it runs
     events = [Events(document) for document in documents]
+    problems += [*_corners(nodes, events, cast), *_words(nodes, cast)]
+    if len(documents) < len(cast.documents):
+        return problems  # what a VoiceXML application hears is known only when it runs
     problems += _services(events, {service.name for service in cast.scenario.services})
-    problems += _words(nodes, documents)
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
+
+
+def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
+    """Handlers of a corner's event that no corner of the world raises: most likely a slip."""
+    corners = {corner.event for corner in cast.world.corners} - {"corner"}
+    known = {*STANDARD, *corners, *(node.get("name") for node in nodes if node.tag == "event")}
+    known |= {raised.name for one in events for raised in one.raised}
+    begins = {name for one in known for name in beginnings(one)}
+    heard = [(handler.node, name) for one in events for handler in one.handlers
+             for name in handler.events]  # fmt: skip
+    pages = [document for document in cast.documents if not isinstance(document, Document)]
+    for page in pages:
+        catches = [node for node in page.page.root.walk() if node.tag == "catch"]
+        heard += [(node, name) for node in catches for name in node.get("event").split()]
+    for node, name in heard:
+        if name in begins or name.startswith(OPEN):
+            continue
+        meant = near(name, corners)
+        if meant or name.startswith("corner."):
+            message = f'No corner of the world raises the event "{name}".'
+            remedy = f'Did you mean "{meant}"?' if meant else nearest(name, corners)
+            remedy = remedy or "Write corner, or name the corner's event in the world."
+            place = event_place(node, name)
+            yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
 def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
@@ -64,9 +91,32 @@ def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
                     yield from check_name(node, name, value, names)
 
 
-def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
+def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
+    """What the applications ask, and what they say; None if that is known only in a run."""
+    asked: list[Sequence[object]] = []
+    said: list[Sequence[object]] = []
+    for document in cast.documents:
+        if isinstance(document, Document):
+            asked += texts_of(document, True)
+            said += texts_of(document, False)
+            continue
+        pages = Pages(document.page, document.file, document.fetch)
+        if pages.open:
+            return None
+        spoken = [text for page in pages for text in spoken_in(page)]
+        asked += spoken
+        said += spoken
+    return Sayings(asked), Sayings(said)
+
+
+def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
     """Triggers that wait for words which nobody says; what is never to be said, if it is a slip."""
-    questions, sayings = Sayings(documents, True), Sayings(documents, False)
+    waiting = [one for one in nodes if any(one.get(name) for name in ("asked", "said", "says"))]
+    answers = [one for one in nodes if one.tag == "answer"]
+    found = _sayings(cast) if waiting or answers else None
+    if found is None:
+        return
+    questions, sayings = found
     for tag, name, asked in (
         ("answer", "to", True),
         ("when", "asked", True),
@@ -82,8 +132,8 @@ def _words(nodes: list[Node], documents: list[Document]) -> Iterator[Problem]:
                 remedy = did_you_mean(words, said.lines if len(said.lines) <= MANY_WORDS else ())
                 if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
-                if tag == "never" and not remedy:
-                    continue  # that nobody says it is just what is expected
+                if not remedy and (tag == "never" or not said.certain):
+                    continue  # what nobody says is just what is expected, or only a run tells it
                 place = node.attribute_place(name)
                 yield Problem(place, "warning", "never-said", message, remedy)
 
@@ -96,8 +146,8 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
         name = node.get("name")
         if heard.isdisjoint(beginnings(name)):
             message = f'No application handles the event "{name}".'
-            nearest = near(name, heard)
-            remedy = f'Did you mean "{nearest}"?' if nearest else "Remove it, or handle it."
+            meant = near(name, heard)
+            remedy = f'Did you mean "{meant}"?' if meant else "Remove it, or handle it."
             yield Problem(node.attribute_place("name"), "warning", "unheard-event", message, remedy)
 
 
@@ -114,12 +164,12 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
             ending = ENDINGS if attribute == "reason" else frozenset()
             if not name or name in begins | ending or name.startswith(OPEN):
                 continue
-            nearest = near(name, known | ending)
-            if nearest:
+            meant = near(name, known | ending)
+            if meant:
                 message = f'Nothing raises an event "{name}".'
-                if nearest in ending:
+                if meant in ending:
                     message = f'No application ends with "{name}".'
-                remedy = f'Did you mean "{nearest}"?'
+                remedy = f'Did you mean "{meant}"?'
                 place = node.attribute_place(attribute)
                 yield Problem(place, "warning", "unknown-event", message, remedy)
 
@@ -171,9 +221,9 @@ def _services(events: list[Events], names: set[str]) -> Iterator[Problem]:
     """Services that are asked and not there, where another one was most likely meant."""
     for one in events:
         for node, service in one.asked:
-            nearest = near(service, names)
-            if service not in names and nearest:
+            meant = near(service, names)
+            if service not in names and meant:
                 message = f'The scenario has no service "{service}".'
-                remedy = f'Did you mean "{nearest}"?'
+                remedy = f'Did you mean "{meant}"?'
                 place = node.attribute_place("to")
                 yield Problem(place, "warning", "no-such-name", message, remedy)

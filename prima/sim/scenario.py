@@ -17,6 +17,7 @@ from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
 from prima.prelude import START
+from prima.sim.plan import Plan
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.values import nearest, outside, read_value, within
 
@@ -129,6 +130,8 @@ class Map:
     things: dict[str, Point] = field(default_factory=dict)
     corners: list[Corner] = field(default_factory=list)
     areas: list[Area] = field(default_factory=list)
+    warnings: list[Problem] = field(default_factory=list)
+    """What is odd in its document, and no error."""
 
     def point(self, name: str) -> Point | None:
         """Where a place or thing is (m)."""
@@ -183,6 +186,10 @@ def read_world(file: str, data: bytes) -> Map:
         low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
         world.areas.append(Area(node.get("id"), title, low, high, node.get("application"), node))
     reader.finish()
+    places = {node.get("id"): node for node in reader.root.all("place")}
+    ways = [(node.get("from"), node.get("to"), node) for node in reader.root.all("way")]
+    walls = list(zip(world.walls, reader.root.all("wall"), strict=True))
+    world.warnings = [*reader.problems, *Plan(world.places, places, ways, walls).problems()]
     return world
 
 
@@ -301,14 +308,17 @@ def read_robot(file: str, data: bytes) -> Profile:
 
 
 def _check_devices(reader: Reader, profile: Profile) -> None:
-    """A device of the robot's own whose name is most likely a slip of a device of Table 4.2."""
+    """A device of the robot's own that none of its Commands needs, most likely a slip."""
+    own = {name for node in reader.root.all("adds") for name in node.get("devices").split()}
     for node in reader.root.all("device"):
         name = node.get("name")
-        meant = "" if name in DEVICES else near(name, set(DEVICES) - profile.devices)
-        if meant:
-            message = f'No Command of the language needs a device "{name}".'
-            remedy = f'Did you mean "{meant}"?'
-            reader.problem(node, "no-such-name", message, "name", remedy, "warning")
+        if name in DEVICES or name in own:
+            continue
+        meant = near(name, (set(DEVICES) | own) - profile.devices)
+        message = f'No Command of this robot needs a device "{name}".'
+        remedy = f'Did you mean "{meant}"?' if meant else ""
+        remedy = remedy or f'Name it in an <adds devices="{name}">, or remove it.'
+        reader.problem(node, "no-such-name", message, "name", remedy, "warning")
 
 
 def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal
 
-from prima.commands import TABLE_4_2
-from prima.errors import Problem, counted, did_you_mean, one_of
+from prima.commands import TABLE_4_2, CommandType
+from prima.errors import Problem, did_you_mean, few, one_of
+from prima.interpreter.checks import given_to
 from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import (
     check_expression,
@@ -130,31 +131,13 @@ def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
             problems.append(Problem(node.place, "error", "stray-text", message))
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
-    return _most(problems), _most(later)
+    return few(problems, MOST_ALIKE), few(later, MOST_ALIKE)
 
 
 def _when_reached(problem: Problem) -> Problem:
     """A problem as a warning of what it is at run time."""
     remedy = f"{problem.remedy} Reached, it is error.badfetch.".strip()
     return problem._replace(severity="warning", remedy=remedy)
-
-
-def _most(problems: list[Problem]) -> list[Problem]:
-    """The first of problems that say the same; the last of these tells how many there are."""
-    counts = Counter(problem[1:] for problem in problems)
-    if max(counts.values(), default=0) <= MOST_ALIKE:
-        return problems
-    told: Counter[tuple[str, ...]] = Counter()
-    kept: list[Problem] = []
-    for problem in sorted(problems):
-        alike = problem[1:]
-        told[alike] += 1
-        if told[alike] == MOST_ALIKE and counts[alike] > MOST_ALIKE:
-            more = f"So it is at {counted(counts[alike] - MOST_ALIKE, 'more place')}."
-            problem = problem._replace(remedy=f"{problem.remedy} {more}".strip())
-        if told[alike] <= MOST_ALIKE:
-            kept.append(problem)
-    return kept
 
 
 def version_problem(root: Node) -> Problem | None:
@@ -563,3 +546,26 @@ def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> No
         code = " ".join((node.get(name) if name else node.own_text).split())[:60]
         message = f'"{code}" is not ECMAScript: {error}. This will be error.semantic.'
         problems.append(Problem(place, "warning", "bad-expression", message))
+
+
+# What a robot makes of it -----------------------------------------------------------------
+
+
+def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """Warnings for Commands that a robot adds or lacks: at run time they are events."""
+    problems: list[Problem] = []
+    for node in root.walk():
+        if node.namespace != PRIMA_NAMESPACE or node.tag != "command" or not node.get("type"):
+            continue
+        row = commands.get(node.get("type"))
+        if row is None:
+            message = f'This robot has no Command "{node.get("type")}".'
+            hint = did_you_mean(node.get("type"), commands)
+            place = node.attribute_place("type")
+            problems.append(Problem(place, "warning", "unsupported-command", message, hint))
+        else:
+            given = {one.get("name"): one.attributes.get("value") for one in node.all("param")}
+            says = bool(node.own_text.strip() or node.all("value"))
+            found = given_to(node, row, given, says)
+            problems += [one._replace(severity="warning") for one in found]
+    return problems

@@ -89,7 +89,7 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     Raises:
         DocumentError: it is not well-formed, or no VoiceXML at all.
     """
-    root = parse(file, data)
+    root = parse(file, data, (VOICEXML,))
     bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
     problems, later = check_tree(root)

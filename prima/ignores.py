@@ -1,0 +1,289 @@
+"""What authors want not to be told again: warnings and notes that they ignore, with the reason.
+
+A comment in a document, ``<!-- prima-ignore: CODE reason -->``, counts for the element behind it
+and all that this holds; before the root element it counts for the whole document. An ``[[ignore]]``
+of the nearest ``prima.toml``, from a document's folder upwards, counts for all documents, or those
+that it names. Errors are never ignored: what is wrong with them does not run.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from fnmatch import fnmatchcase
+from os.path import dirname, isabs, isfile, join, realpath, relpath
+from typing import Any
+
+from prima.codes import CODES
+from prima.deferred import dataclass, field, pattern
+from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean
+from prima.markup.reader import decode
+from prima.markup.tree import MARKUP, Source
+
+SETTINGS = "prima.toml"
+KINDS = (".xml", ".vxml", ".grxml", ".gram", ".abnf")
+"""How the names of documents end."""
+WORD = "prima-ignore"
+COMMENT = pattern(rf"\s*{WORD}\b\s*(:?)\s*(\S*)\s*(.*?)\s*", re.DOTALL)
+FORM = f"Write <!-- {WORD}: CODE reason -->."
+OF_SCENARIOS = frozenset(
+    [
+        *("unsupported-command", "no-such-name", "no-such-argument", "missing-attribute"),
+        *("out-of-range", "bad-value", "unknown-event", "unheard-event", "undeclared-variable"),
+    ]
+)
+"""Codes of warnings that a document may get from a scenario alone: nobody knows which do not."""
+ENTRY = pattern(r"^\s*\[\[\s*ignore\s*\]\]", re.MULTILINE)
+KEYS = ("code", "files", "reason")
+
+Position = tuple[int, int]
+"""A line and a column, from 1."""
+EVERYWHERE: tuple[Position, Position] = ((0, 0), (10**9, 0))
+
+
+@dataclass(slots=True)
+class Ignore:
+    """One thing that an author ignores."""
+
+    code: str
+    place: Place
+    span: tuple[Position, Position] = EVERYWHERE
+    """What it counts for in its document, from and up to."""
+    files: tuple[str, ...] = ("*",)
+    used: bool = False
+
+    def takes(self, problem: Problem) -> bool:
+        """Whether it is about such a problem, in a file that it counts for."""
+        at = (problem.place.line, problem.place.column)
+        return (
+            problem.code == self.code
+            and problem.severity != "error"
+            and self.span[0] <= at < self.span[1]
+        )
+
+
+@dataclass(slots=True)
+class Settings:
+    """The ``[[ignore]]`` entries of a ``prima.toml``."""
+
+    path: str
+    ignores: list[Ignore] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+
+    def for_file(self, file: str) -> Iterator[Ignore]:
+        """Those that count for a document of its folder."""
+        name = relpath(file, dirname(self.path)).replace("\\", "/")
+        return (one for one in self.ignores if any(fnmatchcase(name, glob) for glob in one.files))
+
+
+class Ignores:
+    """What is ignored in the documents of one validation, and what of that came to nothing."""
+
+    def __init__(self, read: Callable[[str], bytes]) -> None:
+        self._read = read
+        self._documents: dict[str, tuple[list[Ignore], list[Problem]]] = {}
+        self._settings: dict[str, Settings | None] = {}
+        self._checked: dict[str, str] = {}
+        """The documents that have been checked, by the names by which they are told."""
+
+    def left(self, problems: Iterable[Problem]) -> list[Problem]:
+        """The problems that nobody ignores."""
+        return [problem for problem in problems if not self._ignored(problem)]
+
+    def check(self, file: str) -> None:
+        """Look at the ignores of a document itself, once its problems have been sifted."""
+        self._checked[absolute(file)] = file
+
+    def told(self) -> list[Problem]:
+        """What is wrong with the ignores of the documents checked, those without use among it."""
+        found: list[Problem] = []
+        settings: dict[str, Settings] = {}
+        for path, file in self._checked.items():
+            ignores, problems = self._of_document(path, file)
+            found += problems
+            found += [_unused(one) for one in ignores if self._is_idle(one)]
+            if (own := self._of_folder(dirname(path))) is not None:
+                settings[own.path] = own
+        for own in settings.values():
+            wrong = own.problems + [_unused(one) for one in own.ignores if self._is_over(one, own)]
+            found += [self._as_others(problem) for problem in wrong]
+        return found
+
+    def _as_others(self, problem: Problem) -> Problem:
+        """A problem of settings in a file that is named as the documents are: absolutely or not."""
+        if any(map(isabs, self._checked.values())):
+            return problem
+        return problem._replace(place=problem.place._replace(file=relpath(problem.place.file)))
+
+    @staticmethod
+    def _is_idle(ignore: Ignore) -> bool:
+        """Whether an ignore of a document has no use for certain."""
+        empty = ignore.span[0] >= ignore.span[1]
+        return not ignore.used and (empty or ignore.code not in OF_SCENARIOS)
+
+    def _is_over(self, ignore: Ignore, settings: Settings) -> bool:
+        """Whether an entry has no use, and all documents that it names have been checked."""
+        if ignore.used:
+            return False
+        from pathlib import Path  # seldom needed
+
+        within = Path(settings.path).parent.rglob("*")
+        documents = (str(one) for one in within if one.suffix in KINDS)
+        return all(
+            one in self._checked
+            for one in documents
+            if any(ignore is other for other in settings.for_file(one))
+        )
+
+    def _ignored(self, problem: Problem) -> bool:
+        file = problem.place.file
+        path = absolute(file)
+        settings = self._of_folder(dirname(path))
+        inside = self._of_document(path, file)[0]
+        found = [one for one in inside if one.takes(problem)]
+        if settings is not None:
+            found += [one for one in settings.for_file(path) if one.takes(problem)]
+        for one in found:
+            one.used = True
+        return bool(found)
+
+    def _of_document(self, path: str, file: str) -> tuple[list[Ignore], list[Problem]]:
+        if path not in self._documents:
+            try:
+                self._documents[path] = in_document(file, self._read(file))
+            except (DocumentError, UsageError):
+                self._documents[path] = [], []  # what cannot be read is told by who reads it
+        return self._documents[path]
+
+    def _of_folder(self, folder: str) -> Settings | None:
+        """The settings that count in a folder: the nearest alone."""
+        if folder not in self._settings:
+            file = join(folder, SETTINGS)
+            if isfile(file):
+                self._settings[folder] = read_settings(file)
+            else:
+                above = dirname(folder)
+                self._settings[folder] = None if above == folder else self._of_folder(above)
+        return self._settings[folder]
+
+
+def absolute(file: str) -> str:
+    """A file's path, by which one is known that is named in two ways."""
+    try:
+        return realpath(file)
+    except (OSError, ValueError):
+        return file
+
+
+def _unused(ignore: Ignore) -> Problem:
+    message = f'Nothing is ignored here: there is no warning or note "{ignore.code}".'
+    return Problem(ignore.place, "warning", "unused-ignore", message, "Remove it.")
+
+
+def _incomplete(place: Place, code: str, reason: str, form: str) -> Problem | None:
+    """What is wrong with an ignore's code and reason, if anything is."""
+    if code in CODES and reason:
+        return None
+    if code in CODES:
+        message, remedy = f'Nothing says why "{code}" is ignored.', f"Say it. {form}"
+    else:
+        message = f'There is no code "{code}".' if code else "Nothing says which code is ignored."
+        remedy = did_you_mean(code, CODES) or form
+    return Problem(place, "warning", "bad-ignore", message, remedy)
+
+
+# Documents ----------------------------------------------------------------------------------
+
+
+def in_document(file: str, data: bytes) -> tuple[list[Ignore], list[Problem]]:
+    """The ignores of a document, and what is wrong with them."""
+    if WORD.encode() not in data.replace(b"\0", b""):
+        return [], []
+    source = Source(file, decode(file, data))
+    ignores: list[Ignore] = []
+    problems: list[Problem] = []
+    for offset, text, end in comments(source.text):
+        match = COMMENT.fullmatch(text)
+        if match is None:
+            continue
+        place = source.at(offset)
+        problem = _incomplete(place, match[2], match[3], FORM)
+        if not match[1]:
+            problem = Problem(place, "warning", "bad-ignore", f'"{WORD}" needs a colon.', FORM)
+        if problem is not None:
+            problems.append(problem)
+            continue
+        span = source.at(offset)[1:], source.at(end)[1:]
+        ignores.append(Ignore(match[2], place, span))
+    return ignores, problems
+
+
+def comments(text: str) -> Iterator[tuple[int, str, int]]:
+    """The comments that may be ignores: where each begins, its text, where what is behind it ends."""
+    waiting: list[tuple[int, int, str]] = []
+    """Comments whose element has not ended: where they begin, how deep it is, the text."""
+    depth = 0
+    for piece in MARKUP.finditer(text):
+        tag = piece[0]
+        if tag.startswith("<!--"):
+            if WORD in tag:
+                waiting.append((piece.start(), depth + 1, tag[4:-3]))
+            continue
+        depth += piece["start"] is not None
+        if not (tag.startswith("</") or (piece["start"] and tag.endswith("/>"))):
+            continue
+        while waiting and waiting[-1][1] >= depth:
+            begin, wanted, comment = waiting.pop()
+            yield begin, comment, piece.end() if wanted == depth else begin
+        depth -= 1
+    yield from ((begin, comment, begin) for begin, _, comment in waiting)
+
+
+# Settings -----------------------------------------------------------------------------------
+
+
+def read_settings(file: str) -> Settings:
+    """Read a ``prima.toml``."""
+    import tomllib  # most projects have none
+
+    settings = Settings(file)
+    try:
+        with open(file, encoding="utf-8") as stream:
+            text = stream.read()
+        tree = tomllib.loads(text)
+    except (OSError, ValueError) as error:
+        message = f"This is not TOML: {error}."
+        settings.problems.append(Problem(Place(file), "error", "bad-ignore", message))
+        return settings
+    entries = tree.get("ignore", [])
+    unknown = sorted(tree.keys() - {"ignore"})
+    if unknown or not isinstance(entries, list):
+        message = f'"{(unknown or ["ignore"])[0]}" is no setting.'
+        remedy = "Write [[ignore]], with code, reason and files."
+        settings.problems.append(Problem(Place(file), "error", "bad-ignore", message, remedy))
+    lines = [text.count("\n", 0, found.start()) + 1 for found in ENTRY.finditer(text)]
+    for number, entry in enumerate(entries if isinstance(entries, list) else []):
+        place = Place(file, lines[number] if number < len(lines) else 1)
+        _entry(entry, place, settings)
+    return settings
+
+
+def _entry(entry: Any, place: Place, settings: Settings) -> None:
+    given = entry if isinstance(entry, dict) else {}
+    files = given.get("files", "*")
+    named = [files] if isinstance(files, str) else files
+    strange = sorted(set(given) - set(KEYS))
+    form = 'Write code = "..." and reason = "..." into the [[ignore]].'
+    code, reason = given.get("code", ""), given.get("reason", "")
+    problem = _incomplete(place, str(code), str(reason).strip(), form)
+    if strange:
+        remedy = did_you_mean(strange[0], KEYS) or f"It may have {', '.join(KEYS)}."
+        message = f'An [[ignore]] has no "{strange[0]}".'
+        problem = Problem(place, "warning", "bad-ignore", message, remedy)
+    elif not isinstance(named, list) or not all(isinstance(one, str) for one in named):
+        remedy = 'Write files = "ea/*.xml", or a list of such names.'
+        problem = Problem(place, "warning", "bad-ignore", "files names no files.", remedy)
+    if problem is None:
+        settings.ignores.append(Ignore(str(code), place, files=tuple(named)))
+    else:
+        settings.problems.append(problem)

@@ -1,0 +1,106 @@
+"""What is odd on a world's map, and no error: ways through walls, places to which nothing leads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from prima.errors import Problem
+from prima.markup.tree import Node
+
+Point = tuple[float, float]
+Segment = tuple[Point, Point]
+MOST = 300_000
+"""How many pairs of lines are compared at most; of a larger map nothing is said."""
+
+
+def crosses(one: Segment, two: Segment) -> bool:
+    """Whether two segments have a point in common."""
+    (a, b), (c, d) = one, two
+    sides = _side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b)
+    if sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0:
+        return True
+    ends = ((a, b, c), (a, b, d), (c, d, a), (c, d, b))
+    return any(side == 0 and _between(*end) for side, end in zip(sides, ends, strict=True))
+
+
+def _side(a: Point, b: Point, p: Point) -> float:
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+
+def _between(a: Point, b: Point, p: Point) -> bool:
+    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+
+
+class Plan:
+    """A map's places (m) by name, with its ways and walls; each with its element."""
+
+    def __init__(
+        self,
+        places: Mapping[str, Point],
+        nodes: Mapping[str, Node],
+        ways: Sequence[tuple[str, str, Node]],
+        walls: Sequence[tuple[Segment, Node]],
+    ) -> None:
+        self._places = places
+        self._nodes = nodes
+        self._ways = [way for way in ways if way[0] in places and way[1] in places]
+        self._walls = walls
+
+    def problems(self) -> Iterator[Problem]:
+        """Warnings about it."""
+        if len(self._ways) * len(self._walls) <= MOST:
+            yield from self._blocked()
+        if self._ways and len(self._places) ** 2 * max(len(self._walls), 1) <= MOST:
+            yield from self._unreachable()
+
+    def _blocked(self) -> Iterator[Problem]:
+        for begin, end, node in self._ways:
+            line = self._places[begin], self._places[end]
+            wall = next((wall for segment, wall in self._walls if crosses(line, segment)), None)
+            if wall is not None and begin != end:
+                message = (
+                    f'The way from "{begin}" to "{end}" goes through the wall'
+                    f" in line {wall.place.line}."
+                )
+                remedy = "Lead it round the wall, by a <place> beside it."
+                yield Problem(node.place, "warning", "blocked-way", message, remedy)
+
+    def _unreachable(self) -> Iterator[Problem]:
+        """Places to which no way leads, and that cannot be seen from some place either.
+
+        The robot begins a route at any place that it sees.
+        """
+        groups = self._groups()
+        for group in groups[1:]:
+            blind = next((one for one in groups[0] if not self._sees(one, group)), None)
+            if blind is not None:
+                name = group[0]
+                message = f'Nothing leads to the place "{name}" from "{blind}".'
+                remedy = f'Write <way from="..." to="{name}"/>.'
+                place = self._nodes[name].attribute_place("id")
+                yield Problem(place, "warning", "unreachable", message, remedy)
+
+    def _groups(self) -> list[list[str]]:
+        """Places that ways connect, in the order of the document."""
+        leads: dict[str, set[str]] = {name: set() for name in self._places}
+        for begin, end, _ in self._ways:
+            leads[begin].add(end)
+            leads[end].add(begin)
+        groups: list[list[str]] = []
+        seen: set[str] = set()
+        for name in self._places:
+            group: list[str] = []
+            waiting = [name]
+            while waiting:
+                one = waiting.pop()
+                if one not in seen:
+                    seen.add(one)
+                    group.append(one)
+                    waiting += sorted(leads[one])
+            groups += [group] if group else []
+        return groups
+
+    def _sees(self, name: str, group: Sequence[str]) -> bool:
+        """Whether no wall stands between a place and one of some others."""
+        lines = ((self._places[name], self._places[other]) for other in group)
+        return any(not any(crosses(line, wall) for wall, _ in self._walls) for line in lines)

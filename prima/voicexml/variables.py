@@ -1,0 +1,119 @@
+"""Variables that a VoiceXML document uses and nothing declares: error.semantic when it gets there.
+
+Where it cannot be told, a name is taken for declared: it counts in a whole dialog, wherever in it
+it is declared, and in a whole document if outside of all dialogs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from prima.errors import Problem, did_you_mean
+from prima.interpreter.compiling import compiled
+from prima.markup.tree import Node
+from prima.names import IDENTIFIER, assigned_names, declared_names, free_names
+from prima.voicexml.document import Page
+from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE
+
+ALWAYS = frozenset(
+    [
+        *("session", "application", "document", "dialog", "lastresult$"),
+        *("_event", "_message", "_prompt", "_dtmf", "event"),
+    ]
+)
+"""What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4)."""
+SCOPES = frozenset(["session", "application", "document", "dialog"])
+LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog"])
+"""Elements whose namelist names variables."""
+DIALOGS = ("form", "menu")
+SETUP = ("var", "script", "data")
+
+Text = Callable[[Page, Node], str | None]
+"""Gives the text of a script in a file, if it can be had."""
+
+
+class Unknown(Exception):
+    """A script that cannot be read may declare anything."""
+
+
+def check_variables(page: Page, root: Page | None, text: Text) -> list[Problem]:
+    """Warnings of variables that nothing declares in a document and its application root."""
+    if page.application and root is None:
+        return []
+    try:
+        shared = set(ALWAYS) | _outside(page, text)
+        shared |= _outside(root, text) if root is not None else set()
+        dialogs = {id(node): _declared(page, node, text) for node in page.dialogs.values()}
+    except Unknown:
+        return []
+    problems: list[Problem] = []
+    everywhere = shared.union(*dialogs.values())
+    for node in page.root.nodes:
+        if node.tag in DIALOGS:
+            problems += _used(node, shared | dialogs.get(id(node), set()))
+        elif node.tag in SETUP:
+            problems += _used(node, shared)
+        elif dialogs:  # else handlers and links stand in the dialogs of other documents
+            problems += _used(node, everywhere)
+    return problems
+
+
+def _outside(page: Page, text: Text) -> set[str]:
+    """What a document declares outside of its dialogs, and anywhere in handlers and links."""
+    found: set[str] = set()
+    for node in page.root.nodes:
+        if node.tag not in DIALOGS:
+            found |= _declared(page, node, text)
+    return found
+
+
+def _declared(page: Page, top: Node, text: Text) -> set[str]:
+    """The names that an element and all that it holds declare."""
+    found: set[str] = set()
+    for node in top.walk():
+        if node.key == "script":
+            code = text(page, node) if {"src", "srcexpr"} & node.attributes.keys() else None
+            if code is None and ("src" in node.attributes or "srcexpr" in node.attributes):
+                raise Unknown
+            code = code or node.own_text
+            found |= declared_names(code) | assigned_names(code) | set(free_names(code))
+        for name in (node.get("name"), node.get("item")):
+            if name and node.key not in ("assign", "param", "property", "meta"):
+                found |= {name, f"{name}$"}
+    return found
+
+
+def _used(top: Node, known: set[str]) -> Iterator[Problem]:
+    for node in top.walk():
+        for attribute in node.attributes:
+            is_code = node.namespace == NAMESPACE and attribute in EXPRESSIONS
+            if is_code or (node.namespace == PRIMA_NAMESPACE and attribute.endswith("-expr")):
+                yield from _in_code(node, attribute, known)
+        if node.key == "assign":
+            yield from _listed(node, "name", [node.get("name")], known)
+        elif node.key in LISTING:
+            yield from _listed(node, "namelist", node.get("namelist").split(), known)
+
+
+def _in_code(node: Node, attribute: str, known: set[str]) -> Iterator[Problem]:
+    code = node.get(attribute)
+    plain = compiled(code)
+    for name, start in (free_names(code) if plain is None else plain.names).items():
+        if name not in known and not code[:start].rstrip().endswith("typeof"):
+            yield _undeclared(node, attribute, start, name, known)
+
+
+def _listed(node: Node, attribute: str, names: list[str], known: set[str]) -> Iterator[Problem]:
+    for whole in names:
+        head = whole.partition(".")[0]
+        if IDENTIFIER.fullmatch(head) and head not in known | SCOPES:
+            start = max(node.get(attribute).find(whole), 0)
+            yield _undeclared(node, attribute, start, head, known)
+
+
+def _undeclared(node: Node, attribute: str, start: int, name: str, known: set[str]) -> Problem:
+    message = f'The variable "{name}" is not declared: this will be error.semantic.'
+    words = {word for word in known if IDENTIFIER.fullmatch(word) and word not in ALWAYS}
+    remedy = did_you_mean(name, words) or f'Declare it: <var name="{name}"/>.'
+    place = node.source.inside(node.index, attribute, start)
+    return Problem(place, "warning", "undeclared-variable", message, remedy)
