@@ -505,3 +505,5 @@ class Event:
     """The number that the transcript has for it; 0 for what a record does not name."""
     data: Data = field(default_factory=dict)
     reactive: bool = True
+    shared: bool = False
+    """Whether it is of the robot and its surroundings, for every application alike (V1)."""

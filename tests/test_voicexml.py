@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+
+from prima.messages import Occurred
 from tests.voice import Call
 
 
@@ -84,6 +87,53 @@ def test_an_event_from_outside_that_a_handler_takes_ends_the_wait() -> None:
     call.event("touch.head")
     call.play()
     assert call.said() == ["Well?", "You touched me."]
+
+
+@pytest.mark.parametrize("attribute", ["", 'event=""', 'event="."', 'event="nomatch help"'])
+def test_a_handler_for_all_events_takes_none_of_the_robot_and_its_surroundings(
+    attribute: str,
+) -> None:
+    call = Call(
+        f"""<catch {attribute}><log><value expr="_event"/></log><exit/></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    for name in ("human.found", "touch.head", "message", "corner", "emergency.stop"):
+        call.event(name)
+    call.answer("yes")
+    assert (call.logs(), call.said(), call.ended) == ([], ["Well?"], "exit")
+
+
+@pytest.mark.parametrize(
+    "own", ["reply.weather", "connection.disconnect.hangup", "error.service.x"]
+)
+def test_a_handler_for_all_events_takes_what_is_meant_for_the_document(own: str) -> None:
+    call = Call(
+        """<catch><log><value expr="_event"/></log><exit/></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.step(Occurred(own, app="app"))
+    assert (call.logs(), call.ended) == ([own], "exit")
+
+
+def test_a_handler_for_all_events_takes_a_robot_s_event_that_the_document_throws() -> None:
+    call = Call(
+        """<catch><log>all</log></catch>
+        <form><block><throw event="human.found"/></block>
+        <field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    assert call.logs() == ["all"]
+
+
+def test_an_event_of_the_robot_counts_for_those_handlers_alone_that_name_it() -> None:
+    call = Call(
+        """<catch count="2"><log>all</log></catch><catch event="human"><log>named</log></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.event("human.found")
+    call.event("human.found")
+    assert call.logs() == ["named", "named"]
 
 
 def test_mixed_initiative_fills_many_fields() -> None:

@@ -32,7 +32,7 @@ from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
+from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown, thrown_of_event
 
 Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
@@ -89,9 +89,9 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._drive(None)
 
     def takes(self, name: str) -> bool:
-        """Whether a handler in scope takes an event."""
-        context = self._machine.context
-        return context is not None and self._machine.events.takes(context, Thrown(name, ""))
+        """Whether a handler in scope takes an event of the robot."""
+        context, thrown = self._machine.context, thrown_of_event(Event(name, 0, shared=True))
+        return context is not None and self._machine.events.takes(context, thrown)
 
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
@@ -106,7 +106,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         context = self._machine.context
         if self.over or context is None or not (self._run or self._calling):
             return
-        thrown = Thrown(event.name, str(event.data.get("message", "")))
+        thrown = thrown_of_event(event)
         if not _hangs_up(event) and not self._machine.events.takes(context, thrown):
             return
         self._cause = event.serial if event.reactive else None
