@@ -128,7 +128,7 @@ def read_application(
         own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
     )
     document.glance = lambda uri, most: _glance(folder, uri, most)
-    return document, [*page.problems, *page.later]
+    return document, page.problems
 
 
 VOICEXML = pattern(rb"<(?:[\w.-]+:)?vxml[\s>/]")

@@ -445,13 +445,13 @@ def test_an_external_grammar_without_a_language_has_the_documents() -> None:
     assert call.ended == "exit"
 
 
-def test_attributes_that_exclude_each_other_are_one_warning_wherever_they_are_told(
+def test_attributes_that_exclude_each_other_are_one_error_wherever_they_are_told(
     tmp_path: Path,
 ) -> None:
     application = tmp_path / "app.vxml"
     body = '<form id="a"><block><goto next="#a" expr="1"/><audio/></block></form>'
     application.write_text(f"{HEAD}{body}</vxml>", encoding="utf-8")
     path = scenario(tmp_path, "app.vxml")
-    told = [("warning", "exclusive"), ("warning", "missing-attribute")]
+    told = [("error", "exclusive"), ("error", "missing-attribute")]
     for files in ([application], [path], [application, path]):
         assert [(one.severity, one.code) for one in validate(files)] == told

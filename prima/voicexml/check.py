@@ -100,28 +100,23 @@ def _entry(element: Element) -> Entry:
 ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 
-def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
+def check_tree(root: Node) -> list[Problem]:
     """Give every node its key, take out what is of foreign namespaces, and tell what is wrong.
 
-    The second list has, as warnings, elements whose attributes exclude each other, or lack one
-    of several: they are ``error.badfetch`` when they are reached (5.3.7 and others), and no
-    error before.
+    A document with an error is not run: who fetches it gets ``error.badfetch`` (5.2.6).
     """
     root.key = "vxml"
     if problem := version_problem(root):
-        return [problem], []  # of another version, what else seems wrong may be right
+        return [problem]  # of another version, what else seems wrong may be right
     problems: list[Problem] = []
-    later: list[Problem] = []
     stack = [root]
     while stack:
         node = stack.pop()
         entry = ENTRIES[node.key]
         if node.attributes or entry.required or entry.alternatives:
             _check_attributes(node, entry, problems)
-            if node.key == "meta":  # which nothing reaches
-                problems += alternatives(node)
-            else:
-                later += map(_when_reached, alternatives(node))
+            for names in entry.alternatives:
+                _check_alternatives(node, names, problems)
         check = RULES.get(node.key)
         if check is not None:
             check(node, problems)
@@ -130,13 +125,7 @@ def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
             problems.append(Problem(node.place, "error", "stray-text", message))
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
-    return _most(problems), _most(later)
-
-
-def _when_reached(problem: Problem) -> Problem:
-    """A problem as a warning of what it is at run time."""
-    remedy = f"{problem.remedy} Reached, it is error.badfetch.".strip()
-    return problem._replace(severity="warning", remedy=remedy)
+    return _most(problems)
 
 
 def _most(problems: list[Problem]) -> list[Problem]:
@@ -283,27 +272,22 @@ def _unknown(node: Node, name: str) -> Problem:
     return Problem(place, "error", "unknown-attribute", message, hint)
 
 
-def alternatives(node: Node) -> list[Problem]:
-    """Attributes of an element that exclude each other, or none where one is needed."""
-    problems: list[Problem] = []
-    entry = ENTRIES.get(node.key)  # what a Command of PRIMA holds has no key
-    for names in entry.alternatives if entry is not None else ():
-        _check_alternatives(node, names, problems)
-    return problems
-
-
 def _check_alternatives(node: Node, names: tuple[str, ...], problems: list[Problem]) -> None:
+    """Attributes of an element that exclude each other, or none where one is needed."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names
     given = [name for name in names if name in node.attributes]
     if "content" in names and (node.nodes or node.text):
         given.append("content")
     if len(given) > 1:
-        message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'
+        other = "content of its own" if given[1] == "content" else f'"{given[1]}"'
+        message = f'<{node.tag}> has both "{given[0]}" and {other}.'
         place = node.place if given[1] == "content" else node.attribute_place(given[1])
         problems.append(Problem(place, "error", "exclusive", message, "Keep one of them."))
     elif needed and not given:
-        message = f"<{node.tag}> needs one of {', '.join(names)}."
+        words = [f'"{name}"' for name in names if name != "content"]
+        own = ["content of its own"] if "content" in names else []
+        message = f"<{node.tag}> needs {', '.join([*words, *own][:-1])} or {[*words, *own][-1]}."
         problems.append(Problem(node.place, "error", "missing-attribute", message))
 
 

@@ -73,7 +73,6 @@ class Content(Speaker):
 
     def act(self, node: Node, context: Context, local: Scope) -> Flow:
         """One element that is not said."""
-        self.demand(node)
         match node.tag:
             case "var":
                 self.declare(node, local, context, local)

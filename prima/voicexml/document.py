@@ -49,8 +49,6 @@ class Page:
     dialogs: dict[str, Node] = field(default_factory=dict)
     """Forms and menus by their id, in document order; those without one by a number."""
     problems: list[Problem] = field(default_factory=list)
-    later: list[Problem] = field(default_factory=list)
-    """What is ``error.badfetch`` when it is reached, and no error before."""
 
     @property
     def lang(self) -> str:
@@ -80,7 +78,7 @@ class Page:
 
     def warnings(self) -> list[Problem]:
         """What is no error until it is reached; found only for who asks."""
-        return [*self.later, *check_code(self.root, set(self.dialogs))]
+        return check_code(self.root, set(self.dialogs))
 
 
 def read_page(uri: str, file: str, data: bytes) -> Page:
@@ -92,8 +90,7 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     root = parse(file, data)
     bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
-    problems, later = check_tree(root)
-    page = Page(uri, root, problems=[*bare, *problems], later=later)
+    page = Page(uri, root, problems=[*bare, *check_tree(root)])
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:

@@ -327,7 +327,6 @@ class Machine:
             self.items_of.mark(context, item)
             yield from self.content.run(item, context, self.local())
             return
-        self.content.demand(item)
         if not quiet:
             yield from self._prompt(context, item)
         match item.tag:

@@ -16,7 +16,6 @@ from prima.markup.uris import join
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.values import shown
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, said_last
-from prima.voicexml.check import alternatives
 from prima.voicexml.cues import (
     MAX_CUES,
     MAX_NAME,
@@ -207,15 +206,6 @@ class Speaker:
             message = f'{source(node)}: "{name}" names a scope; declare it there'
             raise Thrown("error.semantic", message, source(node))
 
-    def demand(self, node: Node) -> None:
-        """See that an element has just one of the attributes that exclude each other.
-
-        Raises:
-            Thrown: ``error.badfetch``, as the element's own section says.
-        """
-        for problem in alternatives(node):
-            raise Thrown("error.badfetch", problem.message, source(node))
-
     # Prompts ------------------------------------------------------------------------
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
@@ -311,12 +301,10 @@ class Speaker:
             case "value":
                 speech.parts.append(self.text(node, context, local))
             case "audio":
-                self.demand(node)
                 self.audio(node, context, local, speech)
             case "sub":
                 speech.parts.append(f" {node.get('alias', node.text)} ")
             case "mark":
-                self.demand(node)
                 self.mark_here(node, context, local, speech)
             case "break":
                 ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))

@@ -109,7 +109,6 @@ class Documents:
     def declare(self, node: Node, scope: Scope, context: Context) -> Flow:
         """What a document or form declares: a variable, a script's variables, or data."""
         content, local = self.owner.content, self.owner.local()
-        content.demand(node)
         match node.tag:
             case "script":
                 yield from content.script(node, scope, context, local)
