@@ -171,3 +171,62 @@ def test_data_is_a_read_only_dom() -> None:
         **{"news.xml": "<news><item>one</item><item>two</item></news>"},
     )
     assert call.logs() == ["two"]
+
+
+CHANGES = [
+    '<assign name="session" expr="1"/>',
+    '<assign name="session.x" expr="1"/>',
+    '<assign name="session.connection" expr="1"/>',
+    '<assign name="session.connection.remote.uri" expr="1"/>',
+    '<assign name="connection" expr="1"/>',
+    '<assign name="session.session" expr="1"/>',
+    '<clear namelist="session.connection"/>',
+    '<clear namelist="session"/>',
+    "<script>session = 1</script>",
+    "<script>session.x = 1</script>",
+    "<script>'use strict'; session.connection = 1</script>",
+    "<script>session.connection.local.uri = 'tel:1'</script>",
+    "<script>delete session.connection</script>",
+    "<script>Object.defineProperty(session, 'x', {value: 1})</script>",
+    "<script>Object.assign(session.connection, {x: 1})</script>",
+    "<script>Object.setPrototypeOf(session, null)</script>",
+    "<script>Object.freeze(session.connection)</script>",
+    "<script>session.connection.redirect.push(1)</script>",
+    "<script>Object.getOwnPropertyDescriptor(session, 'connection').value.x = 1</script>",
+    "<script>Object.values(session.connection)[0].x = 1</script>",
+    '<var name="c" expr="session.connection"/><assign name="c.x" expr="1"/>',
+]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_session_variables_are_read_only(change: str) -> None:  # 5.1.2
+    call = Call(
+        f"""<form><catch event="error.semantic"><log expr="_message"/></catch>
+        <block>{change}<log>changed</log></block>
+        <block><log expr="JSON.stringify(session.connection)"/></block></form>"""
+    )
+    found = call.logs()
+    why = ("session variables are read-only", "is not declared", "of undefined")
+    assert any(one in found[0] for one in why)
+    assert found[1:] == ['{"local":{},"remote":{},"protocol":{}}']
+
+
+def test_session_variables_can_be_read_in_every_way() -> None:
+    reads = {
+        "session.connection === session.connection": "true",
+        "session === session.session": "true",
+        "Object.keys(session.connection).join()": "local,remote,protocol",
+        "typeof connection.remote.uri": "undefined",
+        "'connection' in session": "true",
+        "[...Object.entries(session.telephone)].length": "2",
+    }
+    logs = "".join(f'<log expr="{code}"/>' for code in reads)
+    assert Call(f"<form><block>{logs}</block></form>").logs() == list(reads.values())
+
+
+def test_a_document_may_hide_the_session_by_a_variable_of_its_own() -> None:  # 5.1.2
+    call = Call(
+        """<form><var name="session" expr="1"/><block><assign name="session" expr="2"/>
+        <log expr="session"/></block></form>"""
+    )
+    assert call.logs() == ["2"]

@@ -62,6 +62,29 @@ const copy = (v, done) => {
   for (const key of keys(v)) made[key] = copy(v[key], done);
   return made;
 };
+// Data that nobody may change, and that follows what it is a view of.
+const Weak = WeakMap, View = Proxy, Wrong = TypeError, descriptor = Reflect.getOwnPropertyDescriptor;
+const views = new Weak(), refuse = () => { throw new Wrong('session variables are read-only'); };
+const look = {
+  get: (own, key) => view(own[key]),
+  getOwnPropertyDescriptor: (own, key) => {
+    const found = descriptor(own, key);
+    if (found) found.value = view(found.value);
+    return found;
+  },
+  set: refuse, defineProperty: refuse, deleteProperty: refuse, setPrototypeOf: refuse,
+  preventExtensions: refuse,
+};
+const view = (v) => {
+  if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
+  let made = views.get(v);
+  if (made === undefined) {
+    made = new View(v, look);
+    views.set(v, made);
+    views.set(made, made);
+  }
+  return made;
+};
 const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
@@ -77,6 +100,7 @@ return {
   has: function (o, k) { return own(o, k); },
   defined: function (o, k) { return own(o, k) && o[k] !== undefined; },
   hand: function (o, k, from) { o[k] = from[k]; },
+  view: function (o) { return view(o); },
   detach: function (o, k) { o[k] = copy(o[k], new Known()); },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? stringify(v) : text(v); },
@@ -225,6 +249,13 @@ class Engine:
     def named(self, name: str) -> Scope:
         """A new scope that has itself as a variable, as a dialog's ``dialog`` (VoiceXML 5.1.2)."""
         return self._call(self._help["named"], (name,))
+
+    def view(self, scope: Scope) -> Scope:
+        """A scope that looks like another one and cannot be changed, nor can anything in it.
+
+        An attempt is an error; what is set in the other one is seen (VoiceXML 5.1.2).
+        """
+        return self._call(self._help["view"], (scope,))
 
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""

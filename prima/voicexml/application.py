@@ -117,9 +117,8 @@ class VoiceInterpreter(Bounds["Engine"]):
 
     def _tell(self, event: Event) -> None:
         """Give an event's data as ``session.event``: VoiceXML's own variables have none."""
-        context = self._machine.context
-        assert context is not None
-        self.engine.set(context.session, "event", {"name": event.name, "data": dict(event.data)})
+        session = self._machine.documents.session
+        self.engine.set(session, "event", {"name": event.name, "data": dict(event.data)})
 
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
