@@ -52,6 +52,7 @@ from prima.messages import (
     Sensed,
     Transferred,
     Unloaded,
+    line_of,
 )
 from prima.prelude import START
 from prima.scheduler.behavior import WAITING, Behavior, Stream
@@ -528,7 +529,12 @@ class Session:
     def _send(self, app: App, action: Send) -> None:
         data = {"to": action.service, **action.data}
         self.chronicle.add(
-            "send", "robot", app=app.name, data=data, serial=action.serial, source=action.source
+            "send",
+            "robot",
+            app=app.name,
+            data=data,
+            serial=action.serial,
+            source=line_of(action.source),
         )
         order = Order("send", f"{app.name}!{action.serial}", app=app.name)
         order.data = data
@@ -540,7 +546,7 @@ class Session:
             "robot",
             app=app.name,
             message=action.text,
-            source=action.source or None,
+            source=line_of(action.source),
         )
 
     def _quit(self, app: App, action: Quit) -> None:

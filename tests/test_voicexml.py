@@ -230,3 +230,36 @@ def test_a_document_may_hide_the_session_by_a_variable_of_its_own() -> None:  # 
         <log expr="session"/></block></form>"""
     )
     assert call.logs() == ["2"]
+
+
+@pytest.mark.parametrize(
+    ("content", "place"),
+    [
+        ('<assign name="x" expr="1 + nothing"/>', "2:36"),
+        ("<script>\n  nothing();</script>", "3:3"),
+        ('<goto next="#nowhere"/>', "2:9"),
+        ('<goto nextitem="nowhere"/>', "2:9"),
+        ('<clear namelist="nothing"/>', "2:9"),
+        ("<return/>", "2:9"),
+        ('<goto next="nowhere.vxml"/>', "2:9"),
+    ],
+)
+def test_an_error_is_told_with_its_line_and_column(content: str, place: str) -> None:
+    call = Call(
+        f"""<form><var name="x"/><catch event="error"><log expr="_message"/></catch>
+ <block>{content}</block></form>"""
+    )
+    assert call.logs()[0].startswith(f"app.vxml:{place}: ")
+
+
+def test_a_device_that_fails_is_told_with_line_and_column_and_recorded_with_its_line() -> None:
+    call = Call(
+        """<form><catch event="error.device"><log expr="_message"/></catch>
+ <block>Hello.</block><field name="f" type="boolean">
+ <prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.fail("Well?")
+    assert call.logs() == ["app.vxml:2:23: broken"]
+    requests = call.phases("request")
+    assert next(one["source"] for one in requests if one["text"] == "Well?") == "app.vxml:2"

@@ -410,7 +410,7 @@ def test_the_telephone_of_old_documents(tmp_path: Path) -> None:
 def test_a_document_without_dialogs_tells_where(tmp_path: Path) -> None:
     made = run(tmp_path, '\n<var name="a"/>', head=f"\n{HEAD}")
     [failure] = made.failures
-    told = "error.badfetch: app.vxml:2: the document has no dialog: add a <form> or <menu>"
+    told = "error.badfetch: app.vxml:2:1: the document has no dialog: add a <form> or <menu>"
     assert failure == f"app: {told}"
 
 

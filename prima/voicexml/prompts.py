@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.commands import TABLE_4_2
-from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
+from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.markup.tree import Node
 from prima.markup.uris import join
@@ -141,8 +141,7 @@ class Speaker:
 
     def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
         """``error.semantic`` with the place of what failed (5.2.6)."""
-        place = node.code_place(attribute, error.line, error.column)
-        where = f"{place.file.rpartition('/')[2]}:{place.line}"
+        where = short(node.code_place(attribute, error.line, error.column))
         code = node.get(attribute) if attribute else node.tag
         return Thrown("error.semantic", f"{where}: {code.strip()[:80]}: {error}", where)
 
