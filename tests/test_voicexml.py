@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from prima.messages import Occurred
-from tests.voice import Call
+from prima import api
+from prima.messages import Ended, Occurred
+from tests.voice import Call, vxml
 
 
 def test_prompts_queue_until_the_application_waits() -> None:
@@ -263,3 +266,31 @@ def test_a_device_that_fails_is_told_with_line_and_column_and_recorded_with_its_
     assert call.logs() == ["app.vxml:2:23: broken"]
     requests = call.phases("request")
     assert next(one["source"] for one in requests if one["text"] == "Well?") == "app.vxml:2"
+
+
+QUICK = """<property name="timeout" value="{}"/>
+<form><field name="f"><option>tea</option><noinput/></field></form>"""
+
+
+@pytest.mark.parametrize("timeout", ["0s", "1ms", "40ms"])
+def test_questions_that_time_out_at_once_end_their_application_alone(
+    timeout: str, tmp_path: Path
+) -> None:
+    quick, slow = tmp_path / "quick.vxml", tmp_path / "slow.vxml"
+    quick.write_text(vxml(QUICK.format(timeout)), encoding="utf-8")
+    slow.write_text(vxml(QUICK.format("50s")), encoding="utf-8")
+    transcript = api.rehearse(api.stage([], [str(quick), str(slow)]))
+    told = "quick.vxml:2:7: it waited for less than 50 ms more than 1,000 times in a row"
+    assert transcript.outcome != "limit"
+    assert transcript.failures == [f"quick: error.semantic: {told}: set a longer timeout"]
+    assert transcript.summary().seconds == 600
+
+
+def test_short_waits_with_a_longer_one_among_them_are_allowed() -> None:
+    call = Call(QUICK.format("1ms"))
+    for number in range(2500):
+        call.step(at=call.now + (60 if number % 900 == 0 else 1) - 1)
+        question = call.session.mediator.question()
+        assert question is not None
+        call.step(Ended(question.id, True, {"outcome": "noinput"}), at=call.now + 1)
+    assert not call.ended

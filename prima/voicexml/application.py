@@ -36,6 +36,8 @@ from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown, thrown_of_
 
 Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
+BRIEF_MS, MOST_BRIEF = 50, 1000
+"""How long a wait must last (ms), or how many may be shorter in a row."""
 
 
 class VoiceInterpreter(Bounds["Engine"]):
@@ -61,6 +63,8 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._state = 0
         self._cause: int | None = None
         self._marked: str | None = None
+        self._brief = 0
+        """How many waits in a row lasted almost no time."""
         self._sends = count(1)
         self.connection: Data = {}
         """What is known of the user's connection (5.1.4)."""
@@ -242,9 +246,22 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._marked, content.mark = content.mark, None
         self.actions.append(Request(self._run, steps_of(commands), self._state, cause))
         self._open, self._queue = open_to_answers, commands
+        began = self.now
         resume = yield
         self._run, self._open, self._queue = 0, (), ()
+        self._count_wait(self.now - began)
         return resume
+
+    def _count_wait(self, lasted: int) -> None:
+        """Bound waits that last (ms) almost no time: each makes records, which the run has few of."""
+        self._brief = self._brief + 1 if lasted < BRIEF_MS else 0
+        if self._brief > MOST_BRIEF:
+            context = self._machine.context
+            item = context.item if context is not None else None
+            reason = (
+                f"it waited for less than {BRIEF_MS} ms more than {MOST_BRIEF:,} times in a row"
+            )
+            self.give_up(item or self.document.node, f"{reason}: set a longer timeout")
 
     def send(self, service: str, data: Data, node: Node) -> int:
         """Send something to a service, or to a URI; gives its serial."""
