@@ -44,6 +44,9 @@ VOICEXML = {"scope", "src", "srcexpr", "type", "weight", "fetchhint", "fetchtime
 VOICEXML |= {"maxstale", "accept"}
 """What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
 
+FOREIGN = {"scope"}
+"""What grammars in files have of it nonetheless: it says nothing there."""
+
 
 def read_xml(
     node: Node, document: Document, problems: Problems, inline: bool, lenient: bool = False
@@ -79,7 +82,7 @@ class _Reader:
             self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
             return
         self.space = node.namespace
-        self._attributes(node, VOICEXML if self.inline else set())
+        self._attributes(node, VOICEXML if self.inline else FOREIGN)
         self._version(node)
         self._mode(node)
         self._language(node)

@@ -167,6 +167,7 @@ class Engine:
         """Seconds of evaluations since the owner last set it to nought."""
         # Functions by their code, for each use that is made of it.
         self._compiled: dict[str, Any] = {}
+        self._lenient: dict[str, str] = {}
         self._conditions: dict[tuple[str, int], Any] = {}
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
@@ -224,6 +225,16 @@ class Engine:
             function = self._compile(f"const $v = (\n{code}\n); {give}")
             self._compiled[code] = function
         return function
+
+    def lenient(self, code: str) -> str:
+        """An expression of other platforms as one of ECMAScript: ``x = 1; x + 1``, or nothing.
+
+        Several statements give the value of the last, no statement gives undefined.
+        """
+        kept = self._lenient.get(code)
+        if kept is None:
+            kept = self._lenient[code] = _single(self._context, code)
+        return kept
 
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
         """A function of scopes: of all of them, if nothing is said."""
@@ -514,6 +525,29 @@ def check_expression(context: Any, code: str) -> None:
     _check(context, code, f"return (\n{code}\n)", 1)
     _check(context, code, f"return [\n{code}\n]", 1)  # what closes one bracket fails in the other
     _remember("expression", code)
+
+
+def has_statements(context: Any, code: str) -> bool:
+    """Whether code that should be one expression is none, but could be a script."""
+    try:
+        check_expression(context, code)
+    except ScriptError:
+        try:
+            check_script(context, code)
+        except ScriptError:
+            return False
+        return True
+    return False
+
+
+def _single(context: Any, code: str) -> str:
+    """Code as one expression; its lines are counted as those of any (:func:`statement_place`)."""
+    return f"eval({json.dumps(chr(10) + code)})" if has_statements(context, code) else code
+
+
+def statement_place(error: ScriptError) -> tuple[int, int]:
+    """The line and column in several statements; around them are two functions of ours."""
+    return error.places[-3] if len(error.places) > 2 else (0, 0)
 
 
 def check_script(context: Any, code: str) -> None:

@@ -133,14 +133,15 @@ class Content(Speaker):
     ) -> None:
         """Give a variable of a scope the value of an expression."""
         try:
-            self.engine.assign(scope, name, node.get(attribute), context.scopes(local))
+            self.engine.assign(scope, name, self.code(node, attribute), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
     def assign(self, node: Node, context: Context, local: Scope) -> None:
         """Give a declared variable a value (5.3.2)."""
         try:
-            self.engine.assign_declared(node.get("name"), node.get("expr"), context.scopes(local))
+            code = self.code(node, "expr")
+            self.engine.assign_declared(node.get("name"), code, context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, "expr") from None
 

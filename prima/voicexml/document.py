@@ -12,7 +12,8 @@ from prima.markup.reader import parse
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
-from prima.voicexml.check import check_code, check_tree, version_problem
+from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 __all__ = [
@@ -90,6 +91,8 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     root = parse(file, data)
     bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
+    if old(root):
+        upgrade(root)
     page = Page(uri, root, problems=[*bare, *check_tree(root)])
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
@@ -113,8 +116,8 @@ def _without_namespace(root: Node) -> list[Problem]:
         node = stack.pop()
         node.namespace = node.namespace or NAMESPACE
         stack.extend(node.nodes)
-    if version_problem(root):
-        return []  # a document of VoiceXML 1.0 has no namespace
+    if root.get("version", VERSIONS[0]).strip() not in VERSIONS:
+        return []  # VoiceXML 1.0 has no namespace
     message = "The root element <vxml> has no namespace: it is read as VoiceXML."
     remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
     return [Problem(root.place, "warning", "no-namespace", message, remedy)]
