@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from urllib.parse import urldefrag
+from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError, Problem
 from prima.markup.check import check_root
@@ -13,6 +14,7 @@ from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
 from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.site import Site
 from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
@@ -26,8 +28,10 @@ __all__ = [
     "join",
     "read_page",
 ]
+REMOTE = frozenset(["http", "https", "service"])
+"""Schemes of URIs that are asked for outside the application."""
 Fetch = Callable[[str], bytes]
-"""Gives the bytes of a resource by its URI, relative to the application's folder."""
+"""Gives the bytes of a file by its name in the application's folder."""
 
 Glance = Callable[[str, int], tuple[bytes, int]]
 """Gives a file's first bytes, at most so many, and its size; raises :class:`FetchError`."""
@@ -135,8 +139,38 @@ class VoiceDocument:
     node: Node
     glance: Glance | None = None
     """Where recordings are looked at; without it they are fetched."""
+    site: Site | None = None
+    """Where its folder was copied from: URIs in it are files of the folder."""
     watches: list[Json] = field(default_factory=list)
     forms: dict[str, Json] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> str:
+        """The folder whose files it may name."""
+        return self.site.folder if self.site is not None else os.path.dirname(self.file)
+
+    def name(self, uri: str) -> str | None:
+        """The name in the folder of what a URI leads to; None for what is asked for outside."""
+        if urlsplit(uri).scheme not in REMOTE:
+            return uri
+        name = self.site.name(uri) if self.site is not None else None
+        if name is None:
+            return None
+        try:
+            if self.glance is None:
+                self.fetch(name)
+            else:
+                self.glance(name, 0)
+        except FetchError:
+            return None
+        return name
+
+    def place(self, uri: str) -> str:
+        """How messages name what a URI has led to: as a file, seen from the first document."""
+        name = self.name(uri)
+        if name is None or self.site is None:
+            return uri
+        return self.site.seen(self.file, name)
 
     @property
     def lang(self) -> str:

@@ -413,9 +413,12 @@ class Speaker:
 
     def _look_at(self, uri: str) -> int | None:
         document = self.owner.document
+        name = document.name(uri)
+        if name is None:
+            return None
         if document.glance is not None:
-            return length_ms(*document.glance(uri, HEADER_BYTES))
-        whole = document.fetch(uri)
+            return length_ms(*document.glance(name, HEADER_BYTES))
+        whole = document.fetch(name)
         return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------
