@@ -207,7 +207,7 @@ NO_NAMESPACE = (
 @pytest.mark.parametrize(
     "grammar",
     [GRAMMAR.format(""), GRAMMAR.format(' xmlns="http://www.w3.org/2001/06/grammar"'),
-     '<grammar src="g.grxml"/>', '<grammar src="g.grxml#r" type="application/grammar-xml"/>'],
+     '<grammar src="g.grxml"/>', '<grammar src="g.grxml" type="application/grammar-xml"/>'],
 )  # fmt: skip
 def test_no_namespace(tmp_path: Path, grammar: str) -> None:
     """It runs with one warning, whatever grammars it has; theirs may lack it, too."""
@@ -468,7 +468,8 @@ OLD = """<?xml version="1.0"?>
    <sayas class="digits">12</sayas> <sayas phon="x">tomato</sayas></prompt></block>
   <subdialog name="s" src="part.vxml" modal="true" caching="fast"/>
   <field name="f"><prompt>Well?</prompt>
-   <dtmf type="application/srgs">#ABNF 1.0; language en; mode dtmf; root $r; $r = 1 | 2;</dtmf>
+   <dtmf type="application/srgs">#ABNF 1.0;
+   language en; mode dtmf; root $r; $r = 1 | 2;</dtmf>
    <option>tea</option><filled><log expr="f + lang"/><throw event="telephone.disconnect.hangup"/>
    </filled></field></form>
 </vxml>"""
@@ -585,3 +586,16 @@ def test_a_grammar_in_a_file_may_have_a_scope() -> None:
     )
     call.answer("tea")
     assert call.logs() == ["tea"]
+
+
+def test_a_scope_in_a_grammar_s_file_is_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "g.grxml"
+    path.write_text(
+        '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en"'
+        ' root="r" scope="document"><rule id="r">tea</rule></grammar>'
+    )
+    [told] = validate([path])
+    assert str(told) == (
+        f"{path}:1:96: warning: scope says nothing in a grammar's file. Write it where VoiceXML"
+        " names the file. [unknown-attribute]"
+    )
