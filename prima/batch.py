@@ -453,7 +453,7 @@ class Inputs(Mapping[Path, bytes]):
 
         for document in loaded.cast.documents:
             if not isinstance(document, Document) and document.glance is not None:
-                folder = Path(document.file).resolve().parent
+                folder = Path(document.folder).resolve()
                 document.glance = partial(self._glance, document.glance, folder)
 
     def _glance(

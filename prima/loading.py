@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from prima.sim.rehearsal import Cast
     from prima.sim.scenario import Area, Map, Profile, Scenario
     from prima.voicexml.document import Page
+    from prima.voicexml.site import Site
 
 # What one use needs and another does not is imported where it is used: most commands are short.
 
@@ -110,9 +111,11 @@ def read_file(path: str | Path) -> bytes:
 
 
 def read_application(
-    path: str, data: bytes, name: str = "", kind: str = ""
+    path: str, data: bytes, name: str = "", kind: str = "", site: Site | None = None
 ) -> tuple[AnyDocument, list[Problem]]:
     """Read an application of either language; a VoiceXML document is named after its file.
+
+    ``site`` says where a VoiceXML document and its folder are served.
 
     Raises:
         DocumentError: no document at all can be given.
@@ -122,14 +125,15 @@ def read_application(
     from prima.voicexml.document import VoiceDocument, read_page
 
     file = _path(path)
-    page = read_page(file.name, path, data)
+    page = read_page(site.uri if site else file.name, path, data)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
-    folder = file.parent
+    folder = _path(site.folder) if site else file.parent
     document = VoiceDocument(
         own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
     )
+    document.site = site
     document.glance = lambda uri, most: _glance(folder, uri, most)
-    return document, [*page.problems, *page.later]
+    return document, page.problems
 
 
 VOICEXML = pattern(rb"<(?:[\w.-]+:)?vxml[\s>/]")
@@ -454,6 +458,7 @@ def stage(
     says: Iterable[str] = (),
     world: str | None = None,
     robot: str | None = None,
+    maps: Iterable[str] = (),
 ) -> Loaded:
     """Put applications on a robot in an empty room, with a user in front of it.
 
@@ -463,6 +468,7 @@ def stage(
         says: what the user says to the questions, one after the other.
         world: path of another world; the robot is at its first place.
         robot: path of another robot's profile.
+        maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
@@ -475,7 +481,11 @@ def stage(
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
     for _, path in given:
         read_file(path)  # what is not there is no fault of a document
-    applications = [f'<application src="{escape(path)}" kind="{kind}"/>' for kind, path in given]
+    served = _served([path for _, path in given], maps)
+    applications = [
+        f'<application src="{escape(path)}" kind="{kind}"{served.get(path, "")}/>'
+        for kind, path in given
+    ]
     answers = [
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(says, 1)
@@ -522,6 +532,32 @@ def _standing(world: str) -> str:
     return (
         f'<robot at="{escape(name)}"/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
     )
+
+
+def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
+    """What a scenario says of applications whose folders are mapped to URIs.
+
+    Raises:
+        UsageError: a mapping is none, or no application is in its folder.
+    """
+    from html import escape
+
+    from prima.voicexml.site import mapped, mapping_of
+
+    served: dict[str, str] = {}
+    held: dict[str, str] = {}
+    for text in maps:
+        try:
+            uri, folder = mapping_of(text)
+        except ValueError as error:
+            raise UsageError(f"--map {' '.join(error.args)}") from None
+        held[uri] = folder
+        if not any(mapped(path, {uri: folder}) for path in paths):
+            raise UsageError(f"--map {text}: no application is in the folder {folder}.")
+    for path in paths:
+        if found := mapped(path, held):
+            served[path] = f' uri="{escape(found[0])}" folder="{escape(found[1])}"'
+    return served
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:
@@ -612,9 +648,10 @@ class _Reading:
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
         own = (node.get("id"), node.get("kind")) if node is not None else ("", "")
+        site = self.site(src, node) if node is not None else None
 
         def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
-            document, problems = read_application(path, data, *own)
+            document, problems = read_application(path, data, *own, site)
             further = _voicexml_problems(path, data) if self.whole and is_voicexml(data) else ()
             return document, [*problems, *further]
 
@@ -624,7 +661,32 @@ class _Reading:
         document, problems = read
         self.problems += problems
         self.documents.append(document)
+        if site is not None and node is not None and isinstance(document, Document):
+            message = f'"{src}" is not VoiceXML, which alone is served at a URI.'
+            remedy = "Remove uri and folder."
+            where = node.attribute_place("uri", value=False)
+            self.problems.append(Problem(where, "error", "unknown-attribute", message, remedy))
         return document
+
+    def site(self, src: str, node: Node) -> Site | None:
+        """Where an application is served, if the scenario says so; a wrong one is a problem."""
+        from prima.voicexml.site import site_of
+
+        uri, folder = node.get("uri").strip(), node.get("folder")
+        if not uri and not folder:
+            return None
+        if not uri:
+            message, remedy = 'A folder is served at a "uri".', "Add it."
+            place = node.attribute_place("folder")
+            self.problems.append(Problem(place, "error", "missing-attribute", message, remedy))
+            return None
+        try:
+            above = normpath(self.path.parent / folder) if folder else ""
+            return site_of(normpath(self.path.parent / src), uri, above)
+        except ValueError as error:
+            place = node.attribute_place("uri")
+            self.problems.append(Problem(place, "error", "bad-value", *error.args))
+            return None
 
     def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
         """The applications that a world's areas offer, but those that the scenario runs itself."""

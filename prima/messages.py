@@ -26,6 +26,12 @@ PROMOTED = -1
 NO_DEVICES: frozenset[str] = frozenset()
 
 
+def line_of(source: str) -> str | None:
+    """The ``FILE:LINE`` of who asked, for a record, of a place with its column; none of nothing."""
+    line = source.rpartition(":")[0]
+    return line if line.rpartition(":")[2].isdigit() else source or None
+
+
 @dataclass(frozen=True, slots=True)
 class Cue:
     """Something that goes with a text besides its words, for the device that says it.
@@ -72,6 +78,7 @@ class Command:
     extra: dict[str, Json] = field(default_factory=dict)
     lang: str = ""
     source: str = ""
+    """Where the document asks for it: ``FILE:LINE:COLUMN``, as all such places here."""
     restartable: bool = False
     """Whether it gives way to a reaction and starts again afterwards (rule X2)."""
     cues: tuple[Cue, ...] = ()
@@ -505,3 +512,5 @@ class Event:
     """The number that the transcript has for it; 0 for what a record does not name."""
     data: Data = field(default_factory=dict)
     reactive: bool = True
+    shared: bool = False
+    """Whether it is of the robot and its surroundings, for every application alike (V1)."""

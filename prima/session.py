@@ -52,6 +52,7 @@ from prima.messages import (
     Sensed,
     Transferred,
     Unloaded,
+    line_of,
 )
 from prima.prelude import START
 from prima.scheduler.behavior import WAITING, Behavior, Stream
@@ -263,7 +264,7 @@ class Session:
         self._serial += 1
         self.mediator.emergency(value.pressed, value.resume, self._serial)
         name = "emergency.stop" if value.pressed else "emergency.release"
-        event = Event(name, self._serial, {}, reactive=True)
+        event = Event(name, self._serial, {}, reactive=True, shared=True)
         for app in self._in_order():
             app.event(self.chronicle.now, event)
             self._act(app)
@@ -305,7 +306,7 @@ class Session:
         apps = self._alive if app is None else self._alone(app)
         if apps is None or len(apps) > 1:
             apps = self._in_order()
-        event = Event(name, serial, data, True)
+        event = Event(name, serial, data, True, shared=app is None)
         for one in apps:
             one.event(self.chronicle.now, event)
             if one.actions or self._due or one.deadline is not None:
@@ -479,7 +480,7 @@ class Session:
             app = self.apps[stream.app.name]
             told = Told(app.name, stream if stream.open else None, [])
             self.mediator.open_window(told)
-            app.event(self.chronicle.now, Event(name, 0, {}, reactive=False))
+            app.event(self.chronicle.now, Event(name, 0, {}, reactive=False, shared=True))
             self._act(app)
             self.mediator.close_window(told)
 
@@ -528,7 +529,12 @@ class Session:
     def _send(self, app: App, action: Send) -> None:
         data = {"to": action.service, **action.data}
         self.chronicle.add(
-            "send", "robot", app=app.name, data=data, serial=action.serial, source=action.source
+            "send",
+            "robot",
+            app=app.name,
+            data=data,
+            serial=action.serial,
+            source=line_of(action.source),
         )
         order = Order("send", f"{app.name}!{action.serial}", app=app.name)
         order.data = data
@@ -540,7 +546,7 @@ class Session:
             "robot",
             app=app.name,
             message=action.text,
-            source=action.source or None,
+            source=line_of(action.source),
         )
 
     def _quit(self, app: App, action: Quit) -> None:

@@ -526,17 +526,17 @@ NUMBER = '<argument name="n" kind="number" low="5"/>'
     [
         ('<command type="danse"/>', "", 1, 'app.xml:2:21: error: This robot has no Command "danse". Did you mean "dance"?'),
         ('<speak>x<param name="voic" value="1"/></speak>', "", 1, 'Did you mean "voice"?'),
-        ('<topological-move to="moon"/>', "", 3, 'a: error.device.localization: app.xml:2: there is no way to "moon"'),
+        ('<topological-move to="moon"/>', "", 3, 'a: error.device.localization: app.xml:2:21: there is no way to "moon"'),
         ('<gesture name="jump"/>', "", 3, 'the robot knows no gesture "jump"'),
-        ('<turn angle-expr="0/0"/>', "", 3, "error.semantic: app.xml:2: angle"),
-        ('<turn angle-expr="1/0"/>', "", 3, "error.semantic: app.xml:2: angle"),
+        ('<turn angle-expr="0/0"/>', "", 3, "error.semantic: app.xml:2:21: angle"),
+        ('<turn angle-expr="1/0"/>', "", 3, "error.semantic: app.xml:2:21: angle"),
         ('<turn angle-expr="[]"/>', "", 3, "is not a number"),
         ('<send event="x" delay-expr="0/0"/>', "", 3, "is not a time"),
         ('<send event="x" delay-expr="-1"/>', "", 3, "is not a time"),
-        ('<goto next-expr="1/0"/>', "", 3, "error.badfetch: app.xml:2: there is no form"),
-        ('<set-speed-and-time time-expr="1e300"/>', "", 3, "error.semantic: app.xml:2: time"),
-        ('<set-direction toward-expr="1/0"/>', "", 3, "error.semantic: app.xml:2: toward"),
-        ('<set-direction toward-expr="0/0"/>', "", 3, "error.semantic: app.xml:2: toward"),
+        ('<goto next-expr="1/0"/>', "", 3, "error.badfetch: app.xml:2:21: there is no form"),
+        ('<set-speed-and-time time-expr="1e300"/>', "", 3, "error.semantic: app.xml:2:21: time"),
+        ('<set-direction toward-expr="1/0"/>', "", 3, "error.semantic: app.xml:2:21: toward"),
+        ('<set-direction toward-expr="0/0"/>', "", 3, "error.semantic: app.xml:2:21: toward"),
         ('<command type="dance"><param name="n" expr="1"/></command>', NUMBER, 3, "out of range"),
     ],
 )  # fmt: skip
@@ -584,7 +584,7 @@ def test_expressions(prima: Prima, tmp_path: Path, name: str, code: str, message
     prima("run", stage(tmp_path, app(form(f"<block>{asked}</block>{CATCH}"))), "-o", "t").check(0)
     assert time.monotonic() - began < 3
     [said] = messages(tmp_path / "t")
-    assert said.startswith("caught app.xml:3: ") and message in said
+    assert said.startswith("caught app.xml:3:") and message in said
 
 
 @pytest.mark.parametrize("code", ["null", "undefined", "String(1) ? null : 1"])
@@ -625,7 +625,7 @@ def test_every_expression_that_fails_can_be_handled(
     prima: Prima, tmp_path: Path, name: str, body: str
 ) -> None:
     prima("run", played(tmp_path, app(body, head=CATCH)), "-o", "t").check(0)
-    assert messages(tmp_path / "t")[0].startswith("caught app.xml:2: ")
+    assert messages(tmp_path / "t")[0].startswith("caught app.xml:2:")
 
 
 @pytest.mark.parametrize(("name", "body"), SITES)
@@ -761,7 +761,7 @@ def test_who_sends_himself_event_after_event_ends_alone(prima: Prima, tmp_path: 
     write(tmp_path, "bad.xml", app(loops, name="bad"))
     write(tmp_path, "app.xml", GOOD)
     write(tmp_path, "s.xml", scenario('<application src="bad.xml"/>' + PLAY))
-    prima("run", "s.xml", "-o", "t").check(3, "prima: bad: error.semantic: bad.xml:2: it loops")
+    prima("run", "s.xml", "-o", "t").check(3, "prima: bad: error.semantic: bad.xml:2:75: it loops")
     assert messages(tmp_path / "t") == ["alive"]
     assert len((tmp_path / "t").read_bytes()) < 5_000_000
 
@@ -779,7 +779,7 @@ def test_who_waits_between_his_events_may_go_on(prima: Prima, tmp_path: Path) ->
 
 def test_subdialogs_inside_each_other_can_be_handled(prima: Prima, tmp_path: Path) -> None:
     path = stage(tmp_path, app(form(f'<subdialog src="#f"/>{CATCH}')))
-    prima("run", path).check(0, "caught app.xml:2: more than 32")
+    prima("run", path).check(0, "caught app.xml:2:14: more than 32")
 
 
 STORMS = [

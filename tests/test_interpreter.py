@@ -503,7 +503,7 @@ def test_a_failing_device_is_an_event_with_its_place() -> None:
         </form>"""
     )
     bench.fail("One.")
-    assert bench.logs() == ["error.device.speaker app.xml:2: broken", "next"]
+    assert bench.logs() == ["error.device.speaker app.xml:2:18: broken", "next"]
 
 
 def test_an_error_that_nobody_handles_ends_this_application_alone() -> None:
@@ -517,7 +517,7 @@ def test_an_error_that_nobody_handles_ends_this_application_alone() -> None:
     bench = Bench(bad, good)
     assert bench.saying() == ["Fine."]
     assert bench.session.failures == [
-        "bad: error.semantic: bad.xml:1: JSON.nowhere.to: TypeError: cannot read property 'to'"
+        "bad: error.semantic: bad.xml:1:101: JSON.nowhere.to: TypeError: cannot read property 'to'"
         " of undefined"
     ]
 
@@ -538,7 +538,7 @@ def test_what_is_no_events_name_cannot_be_thrown(expr: str, told: str) -> None:
         <on event="error.semantic"><log expr="event.data.message"/></on></form>"""
     )
     remedy = 'is not an event name. Write one such as "touch.head".'
-    assert bench.logs() == [f"app.xml:1: event {told} {remedy}"]
+    assert bench.logs() == [f"app.xml:1:90: event {told} {remedy}"]
 
 
 @pytest.mark.parametrize("expr", ["'a.b'", "'a' + '.b'", "'a.b.'"])
@@ -571,7 +571,7 @@ def test_an_expression_that_fails_is_a_timely_error_semantic(expr: str) -> None:
         <on event="error.semantic"><log expr="event.message"/></on></form>"""
     )
     assert len(bench.logs()) == 1
-    assert bench.logs()[0].startswith("app.xml:1: ")
+    assert bench.logs()[0].startswith("app.xml:1:1")
     assert not bench.session.over
 
 
@@ -1066,7 +1066,7 @@ def test_an_error_in_a_script_is_told_at_its_own_line() -> None:
           a.b.c();
         </script></block></form>"""
     )
-    assert bench.session.failures[0].startswith("app: error.semantic: app.xml:3: ")
+    assert bench.session.failures[0].startswith("app: error.semantic: app.xml:3:11: ")
 
 
 def test_an_event_that_nobody_handles_is_told_with_its_place() -> None:
@@ -1074,7 +1074,7 @@ def test_an_event_that_nobody_handles_is_told_with_its_place() -> None:
         """<form id="a"><block>
           <throw event="foo"/></block></form>"""
     )
-    assert bench.session.failures == ["app: foo: app.xml:2"]
+    assert bench.session.failures == ["app: foo: app.xml:2:11"]
 
 
 def test_what_is_asked_for_instead_of_a_refused_command_is_the_reaction() -> None:

@@ -172,7 +172,7 @@ EVENTS = ["go", "go.on", "own", "go", "go", "error.outside", "go", "go.on", "go.
 
 def run(text: str, quick: bool) -> tuple[list[Any], list[Any], int]:
     """The records of a run in which events occur, the variables after it, and how many functions."""
-    document, problems = read_document("a.xml", f"<!-- {quick} -->{text}".encode())
+    document, problems = read_document("a.xml", f"{text}<!-- {quick} -->".encode())
     errors = {one.code for one in problems if one.severity == "error"}
     allowed = {"undeclared-variable", "no-such-item"}
     assert errors <= allowed, f"only what can be run is of interest: {problems}"
@@ -397,7 +397,7 @@ def test_an_error_in_it_is_told_with_its_place() -> None:
         session.step(now, [Occurred("go")])
     assert (document.forms["f"].reactions or {})["go"] is not None
     logs = [one["message"] for one in session.drain() if one["phase"] == "log"]
-    assert logs == ["now", "a.xml:4: n.x.y: TypeError: cannot read property 'y' of undefined"]
+    assert logs == ["now", "a.xml:4:24: n.x.y: TypeError: cannot read property 'y' of undefined"]
 
 
 def test_a_loop_of_ever_more_content_ends() -> None:

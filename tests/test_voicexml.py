@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from tests.voice import Call
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.messages import Ended, Occurred
+from tests.voice import Call, vxml
 
 
 def test_prompts_queue_until_the_application_waits() -> None:
@@ -86,6 +92,53 @@ def test_an_event_from_outside_that_a_handler_takes_ends_the_wait() -> None:
     assert call.said() == ["Well?", "You touched me."]
 
 
+@pytest.mark.parametrize("attribute", ["", 'event=""', 'event="."', 'event="nomatch help"'])
+def test_a_handler_for_all_events_takes_none_of_the_robot_and_its_surroundings(
+    attribute: str,
+) -> None:
+    call = Call(
+        f"""<catch {attribute}><log><value expr="_event"/></log><exit/></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    for name in ("human.found", "touch.head", "message", "corner", "emergency.stop"):
+        call.event(name)
+    call.answer("yes")
+    assert (call.logs(), call.said(), call.ended) == ([], ["Well?"], "exit")
+
+
+@pytest.mark.parametrize(
+    "own", ["reply.weather", "connection.disconnect.hangup", "error.service.x"]
+)
+def test_a_handler_for_all_events_takes_what_is_meant_for_the_document(own: str) -> None:
+    call = Call(
+        """<catch><log><value expr="_event"/></log><exit/></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.step(Occurred(own, app="app"))
+    assert (call.logs(), call.ended) == ([own], "exit")
+
+
+def test_a_handler_for_all_events_takes_a_robot_s_event_that_the_document_throws() -> None:
+    call = Call(
+        """<catch><log>all</log></catch>
+        <form><block><throw event="human.found"/></block>
+        <field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    assert call.logs() == ["all"]
+
+
+def test_an_event_of_the_robot_counts_for_those_handlers_alone_that_name_it() -> None:
+    call = Call(
+        """<catch count="2"><log>all</log></catch><catch event="human"><log>named</log></catch>
+        <form><field name="f" type="boolean"><prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.event("human.found")
+    call.event("human.found")
+    assert call.logs() == ["named", "named"]
+
+
 def test_mixed_initiative_fills_many_fields() -> None:
     call = Call(
         """<form>
@@ -121,3 +174,123 @@ def test_data_is_a_read_only_dom() -> None:
         **{"news.xml": "<news><item>one</item><item>two</item></news>"},
     )
     assert call.logs() == ["two"]
+
+
+CHANGES = [
+    '<assign name="session" expr="1"/>',
+    '<assign name="session.x" expr="1"/>',
+    '<assign name="session.connection" expr="1"/>',
+    '<assign name="session.connection.remote.uri" expr="1"/>',
+    '<assign name="connection" expr="1"/>',
+    '<assign name="session.session" expr="1"/>',
+    '<clear namelist="session.connection"/>',
+    '<clear namelist="session"/>',
+    "<script>session = 1</script>",
+    "<script>session.x = 1</script>",
+    "<script>'use strict'; session.connection = 1</script>",
+    "<script>session.connection.local.uri = 'tel:1'</script>",
+    "<script>delete session.connection</script>",
+    "<script>Object.defineProperty(session, 'x', {value: 1})</script>",
+    "<script>Object.assign(session.connection, {x: 1})</script>",
+    "<script>Object.setPrototypeOf(session, null)</script>",
+    "<script>Object.freeze(session.connection)</script>",
+    "<script>session.connection.redirect.push(1)</script>",
+    "<script>Object.getOwnPropertyDescriptor(session, 'connection').value.x = 1</script>",
+    "<script>Object.values(session.connection)[0].x = 1</script>",
+    '<var name="c" expr="session.connection"/><assign name="c.x" expr="1"/>',
+]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_session_variables_are_read_only(change: str) -> None:  # 5.1.2
+    call = Call(
+        f"""<form><catch event="error.semantic"><log expr="_message"/></catch>
+        <block>{change}<log>changed</log></block>
+        <block><log expr="JSON.stringify(session.connection)"/></block></form>"""
+    )
+    found = call.logs()
+    why = ("session variables are read-only", "is not declared", "of undefined")
+    assert any(one in found[0] for one in why)
+    assert found[1:] == ['{"local":{},"remote":{},"protocol":{}}']
+
+
+def test_session_variables_can_be_read_in_every_way() -> None:
+    reads = {
+        "session.connection === session.connection": "true",
+        "session === session.session": "true",
+        "Object.keys(session.connection).join()": "local,remote,protocol",
+        "typeof connection.remote.uri": "undefined",
+        "'connection' in session": "true",
+        "[...Object.entries(session.telephone)].length": "2",
+    }
+    logs = "".join(f'<log expr="{code}"/>' for code in reads)
+    assert Call(f"<form><block>{logs}</block></form>").logs() == list(reads.values())
+
+
+def test_a_document_may_hide_the_session_by_a_variable_of_its_own() -> None:  # 5.1.2
+    call = Call(
+        """<form><var name="session" expr="1"/><block><assign name="session" expr="2"/>
+        <log expr="session"/></block></form>"""
+    )
+    assert call.logs() == ["2"]
+
+
+@pytest.mark.parametrize(
+    ("content", "place"),
+    [
+        ('<assign name="x" expr="1 + nothing"/>', "2:36"),
+        ("<script>\n  nothing();</script>", "3:3"),
+        ('<goto next="#nowhere"/>', "2:9"),
+        ('<goto nextitem="nowhere"/>', "2:9"),
+        ('<clear namelist="nothing"/>', "2:9"),
+        ("<return/>", "2:9"),
+        ('<goto next="nowhere.vxml"/>', "2:9"),
+    ],
+)
+def test_an_error_is_told_with_its_line_and_column(content: str, place: str) -> None:
+    call = Call(
+        f"""<form><var name="x"/><catch event="error"><log expr="_message"/></catch>
+ <block>{content}</block></form>"""
+    )
+    assert call.logs()[0].startswith(f"app.vxml:{place}: ")
+
+
+def test_a_device_that_fails_is_told_with_line_and_column_and_recorded_with_its_line() -> None:
+    call = Call(
+        """<form><catch event="error.device"><log expr="_message"/></catch>
+ <block>Hello.</block><field name="f" type="boolean">
+ <prompt>Well?</prompt></field></form>"""
+    )
+    call.play()
+    call.fail("Well?")
+    assert call.logs() == ["app.vxml:2:23: broken"]
+    requests = call.phases("request")
+    assert next(one["source"] for one in requests if one["text"] == "Well?") == "app.vxml:2"
+
+
+QUICK = """<property name="timeout" value="{}"/>
+<form><field name="f"><option>tea</option><noinput/></field></form>"""
+
+
+@pytest.mark.parametrize("timeout", ["0s", "1ms", "40ms"])
+def test_questions_that_time_out_at_once_end_their_application_alone(
+    timeout: str, tmp_path: Path
+) -> None:
+    quick, slow = tmp_path / "quick.vxml", tmp_path / "slow.vxml"
+    quick.write_text(vxml(QUICK.format(timeout)), encoding="utf-8")
+    slow.write_text(vxml(QUICK.format("50s")), encoding="utf-8")
+    transcript = api.rehearse(api.stage([], [str(quick), str(slow)]))
+    told = "quick.vxml:2:7: it waited for less than 50 ms more than 1,000 times in a row"
+    assert transcript.outcome != "limit"
+    assert transcript.failures == [f"quick: error.semantic: {told}: set a longer timeout"]
+    assert transcript.summary().seconds == 600
+
+
+def test_short_waits_with_a_longer_one_among_them_are_allowed() -> None:
+    call = Call(QUICK.format("1ms"))
+    for number in range(2500):
+        call.step(at=call.now + (60 if number % 900 == 0 else 1) - 1)
+        question = call.session.mediator.question()
+        assert question is not None
+        call.step(Ended(question.id, True, {"outcome": "noinput"}), at=call.now + 1)
+    assert not call.ended

@@ -437,50 +437,6 @@ def test_parameters_that_exclude_each_other_are_badfetch() -> None:  # Appendix 
         assert call.logs() == ["refused"]
 
 
-EITHER = {
-    "goto": "<block><goto next='#a' expr='1'/></block>",
-    "goto nextitem": "<block><goto next='#a' nextitem='b'/></block>",
-    "goto nowhere": "<block><goto/></block>",
-    "submit": "<block><submit next='a' expr='1'/></block>",
-    "submit nowhere": "<block><submit namelist='x'/></block>",
-    "throw": "<block><throw event='a' eventexpr='1'/></block>",
-    "throw message": "<block><throw event='a' message='m' messageexpr='1'/></block>",
-    "return": "<block><return event='a' namelist='x'/></block>",
-    "exit": "<block><exit expr='1' namelist='x'/></block>",
-    "script": "<block><script src='a.js'>var x;</script></block>",
-    "form script": "<script src='a.js' srcexpr='1'/><block/>",
-    "data": "<block><data src='a' srcexpr='1'/></block>",
-    "audio": "<block><audio src='a' expr='1'/></block>",
-    "mark": "<block><prompt><mark name='a' nameexpr='1'/></prompt></block>",
-    "subdialog": "<subdialog name='s' src='#a' srcexpr='1'/>",
-    "param": "<subdialog name='s' src='#a'><param name='p' value='1' expr='2'/></subdialog>",
-    "transfer": "<transfer name='t' dest='tel:1' destexpr='1'/>",
-    "grammar": "<field name='f'><prompt>Q?</prompt><grammar src='a' srcexpr='1'/></field>",
-    "link": "<link next='#a' event='b'><grammar version='1.0' root='r'><rule id='r'>x</rule>"
-    "</grammar></link><field name='f'><prompt>Q?</prompt><option>y</option></field>",
-}
-
-
-@pytest.mark.parametrize("content", EITHER.values(), ids=EITHER)
-def test_attributes_that_exclude_each_other_are_badfetch_when_reached(content: str) -> None:
-    refused = '<catch event="error.badfetch"><log>refused</log><exit/></catch>'
-    other = '<form id="a"><block><return/></block></form>'
-    call = Call(f"{refused}<form><block><log>first</log></block>{content}</form>{other}")
-    before = [] if content.startswith("<script") else ["first"]
-    assert call.logs() == [*before, "refused"]
-    never = content.replace("<block>", '<block cond="false">')
-    if never != content:
-        assert Call(f"<form>{never}<block><log>on</log></block></form>{other}").logs() == ["on"]
-
-
-def test_a_choice_with_two_targets_is_badfetch() -> None:  # 2.2.2
-    call = Call(
-        '<catch event="error.badfetch"><log>refused</log><exit/></catch><menu><prompt>Q?</prompt>'
-        '<choice next="#a" event="b">x</choice></menu>'
-    )
-    assert call.logs() == ["refused"]
-
-
 # 3.1.4: grammars of one precedence ----------------------------------------------------------
 
 THIS, OTHER = grammar("go", "out='this'"), grammar("go", "out='other'")

@@ -5,6 +5,7 @@ Numbers are sections of VoiceXML 2.0; those with "2.1" are of VoiceXML 2.1.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from prima import loading
 from prima.errors import DocumentError, Problem
 from prima.messages import Ended, Heard
 from prima.voicexml.document import broken, join, read_page
+from prima.voicexml.vocabulary import ALTERNATIVES
 from tests.robot import Bench
 from tests.voice import HEAD, Call, voice, vxml
 from tests.work import steps
@@ -58,7 +60,7 @@ def problems(text: str) -> list[str]:
     """What is wrong with a document: line, column and code of each problem."""
     try:
         page = read_page("d.vxml", "d.vxml", text.encode())
-        found = [*page.problems, *page.later]
+        found = page.problems
     except DocumentError as error:
         found = error.problems
     return [f"{p.place.line}:{p.place.column} {p.code}" for p in sorted(found)]
@@ -2226,3 +2228,96 @@ def test_an_expression_of_an_attribute_may_have_commas() -> None:
         <form id="b"><block><log>b</log></block></form>"""
     )
     assert call.logs() == ["b"]
+
+
+# Attributes of which one element has just one ---------------------------------------------
+
+EITHER = {
+    "goto": "<block><goto next='#a' expr='1'/></block>",
+    "goto nextitem": "<block><goto next='#a' nextitem='b'/></block>",
+    "goto nowhere": "<block><goto/></block>",
+    "submit": "<block><submit next='a' expr='1'/></block>",
+    "submit nowhere": "<block><submit namelist='x'/></block>",
+    "throw": "<block><throw event='a' eventexpr='1'/></block>",
+    "throw nothing": "<block><throw message='m'/></block>",
+    "throw message": "<block><throw event='a' message='m' messageexpr='1'/></block>",
+    "return": "<block><return event='a' namelist='x'/></block>",
+    "return event": "<block><return event='a' eventexpr='x'/></block>",
+    "return message": "<block><return event='a' message='m' messageexpr='x'/></block>",
+    "exit": "<block><exit expr='1' namelist='x'/></block>",
+    "script": "<block><script src='a.js'>var x;</script></block>",
+    "script empty": "<block><script> </script></block>",
+    "form script": "<script src='a.js' srcexpr='1'/><block/>",
+    "data": "<block><data src='a' srcexpr='1'/></block>",
+    "data of nothing": "<block><data name='d'/></block>",
+    "audio": "<block><audio src='a' expr='1'/></block>",
+    "audio of nothing": "<block><prompt><audio>words</audio></prompt></block>",
+    "mark": "<block><prompt><mark name='a' nameexpr='1'/></prompt></block>",
+    "subdialog": "<subdialog name='s' src='#a' srcexpr='1'/>",
+    "subdialog nowhere": "<subdialog name='s'/>",
+    "param": "<subdialog name='s' src='#a'><param name='p' value='1' expr='2'/></subdialog>",
+    "param of nothing": "<subdialog name='s' src='#a'><param name='p'/></subdialog>",
+    "transfer": "<transfer name='t' dest='tel:1' destexpr='1'/>",
+    "transfer nowhere": "<transfer name='t'/>",
+    "transfer type": "<transfer name='t' dest='tel:1' bridge='true' type='blind'/>",
+    "grammar": "<field name='f'><prompt>Q?</prompt><grammar src='a' srcexpr='1'/></field>",
+    "grammar empty": "<field name='f'><prompt>Q?</prompt><grammar> <!-- --> </grammar></field>",
+    "grammar both": "<field name='f'><grammar src='a.gram'>#ABNF 1.0; $a = b;</grammar></field>",
+    "link": f"<link next='#a' event='b'>{rule('x')}</link><block/>",
+    "link nowhere": f"<link>{rule('x')}</link><block/>",
+}
+
+
+@pytest.mark.parametrize("content", EITHER.values(), ids=EITHER)
+def test_a_document_with_attributes_that_exclude_each_other_is_not_run(content: str) -> None:
+    other = '<form id="a"><block><return/></block></form>'
+    text = vxml(f"<form><block><log>runs</log></block>{content}</form>{other}")
+    errors = [one.partition(" ")[2] for one in problems(text)]
+    assert errors in (["exclusive"], ["missing-attribute"])
+    fetching = Call(
+        """<catch event="error.badfetch"><log>refused</log><exit/></catch>
+        <form><block><goto next="leaf.vxml"/></block></form>""",
+        leaf=text.replace("<log>runs</log>", '<log>runs</log><throw event="error.badfetch"/>'),
+    )
+    assert (fetching.logs(), fetching.ended) == (["refused"], "exit")
+
+
+@pytest.mark.parametrize("more", ['next="#a" event="b"', "", 'event="a" eventexpr="b"'])
+def test_a_choice_leads_to_one_target(more: str) -> None:  # 2.2.2
+    text = vxml(f"<menu id='a'><prompt>Q?</prompt><choice {more}>x</choice></menu>")
+    assert [one.partition(" ")[2] for one in problems(text)] in (
+        ["exclusive"],
+        ["missing-attribute"],
+    )
+
+
+def test_a_root_or_subdialog_that_is_no_valid_document_is_badfetch_where_it_is_fetched() -> None:
+    wrong = vxml('<form><block><goto next="#a" expr="1"/></block></form>')
+    head = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" application="wrong.vxml">'
+    refused = '<catch event="error.badfetch"><log expr="_message"/><exit/></catch>'
+    told = (
+        'wrong.vxml:1:106: error: <goto> has both "next" and "expr". Keep one of them. [exclusive]'
+    )
+    for leading in ('<block><goto next="leaf.vxml"/></block>', '<subdialog src="wrong.vxml"/>'):
+        call = Call(
+            f"{refused}<form>{leading}</form>",
+            wrong=wrong,
+            leaf=vxml("<form><block><log>leaf</log></block></form>", head),
+        )
+        assert [one.partition(" ")[2] for one in call.logs()] == [told]
+    own = Call(vxml(f"{refused}<form><block><log>runs</log></block></form>", head), wrong=wrong)
+    assert [one.partition(" ")[2] for one in own.logs()] == [told]
+
+
+def test_the_documentation_lists_the_attributes_that_exclude_each_other() -> None:
+    page = (Path(__file__).parent.parent / "docs" / "voicexml.md").read_text(encoding="utf-8")
+    table = page.partition("| Exactly one of |")[2].partition("\n\n")[0].splitlines()[2:]
+    told: dict[str, set[str]] = {}
+    for row in table:
+        names, needed, most = (
+            re.sub("[`,]", "", cell).split("|")[0] for cell in row.split("|")[1:4]
+        )
+        for name in names.split():
+            lines = [f"{needed.strip()} !"] if needed.strip() else []
+            told[name] = {*lines, *(one.strip() for one in most.split(";") if one.strip())}
+    assert told == {name: set(lines) for name, lines in ALTERNATIVES.items()}

@@ -64,6 +64,15 @@ limit_option = click.option(
     multiple=True,
     help="Raise a limit on documents: bytes, elements, attributes or depth.",
 )
+map_option = click.option(
+    "--map",
+    "maps",
+    metavar="URI=FOLDER",
+    multiple=True,
+    help="Read what VoiceXML documents name at this URI, or below, from this folder.",
+)
+MAPS = 'A scenario says itself where it is served: <application src="..." uri="https://..."/>.'
+"""What to write in place of ``--map`` in a scenario."""
 why_option = click.option(
     "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
 )

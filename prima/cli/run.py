@@ -10,12 +10,14 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
+    MAPS,
     POLICIES,
     POLICY_NAMES,
     check_output,
     columns,
     format_option,
     limit_option,
+    map_option,
     put,
     raise_limits,
     run_into,
@@ -79,6 +81,7 @@ ENDS_OF_FOLDERS = ("/", os.sep)
     help="Make so many runs at once; by default as many as there are cores.",
 )
 @click.option("--resume", is_flag=True, help="Leave out runs whose transcripts are up to date.")
+@map_option
 @limit_option
 @format_option
 def run(
@@ -94,6 +97,7 @@ def run(
     lists: tuple[str, ...],
     workers: int | None,
     resume: bool,
+    maps: tuple[str, ...],
     limits: tuple[str, ...],
     form: str,
 ) -> None:
@@ -123,6 +127,8 @@ def run(
         raise UsageError(
             "A scenario says itself what the user says; --say goes with --fa and --ea."
         )
+    if maps and not applications:
+        raise UsageError(MAPS)
     several = len(scenarios) > 1 or len(policies) > 1 or any(map(os.path.isdir, scenarios))
     if lists or workers or resume or several or (output and output.endswith(ENDS_OF_FOLDERS)):
         if applications:
@@ -147,7 +153,9 @@ def run(
     policy = policies[0] if policies else None
     if output == "-":
         output, form = None, "json"
-    _run_one(next(iter(scenarios), None), fas, eas, says, output, policy, bound, why, hosts, form)
+    _run_one(
+        next(iter(scenarios), None), fas, eas, says, output, policy, bound, why, hosts, form, maps
+    )
 
 
 def _run_one(
@@ -161,11 +169,16 @@ def _run_one(
     why: bool,
     hosts: tuple[str, ...],
     form: str,
+    maps: tuple[str, ...],
 ) -> None:
     """Run one scenario, or applications without one."""
     from prima import api
 
-    loaded = api.load_scenario(scenario) if scenario is not None else api.stage(fas, eas, says)
+    loaded = (
+        api.load_scenario(scenario)
+        if scenario is not None
+        else api.stage(fas, eas, says, maps=maps)
+    )
     if output is not None:
         if os.path.isdir(output):
             hint = f"For a transcript in it, write {output}/."

@@ -10,6 +10,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
+    MAPS,
     POLICIES,
     POLICY_NAMES,
     clean,
@@ -17,6 +18,7 @@ from prima.cli.common import (
     columns,
     format_option,
     limit_option,
+    map_option,
     put,
     raise_limits,
     start_watchdog,
@@ -67,6 +69,7 @@ COLOURS = {"U": "cyan", "E": "yellow"}
     multiple=True,
     help="Let VoiceXML documents fetch from this host; without, no network is used.",
 )
+@map_option
 @limit_option
 @format_option
 def talk(
@@ -82,6 +85,7 @@ def talk(
     policy: str | None,
     why: bool,
     hosts: tuple[str, ...],
+    maps: tuple[str, ...],
     limits: tuple[str, ...],
     form: str,
 ) -> None:
@@ -107,12 +111,14 @@ def talk(
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
     if scenario is not None and (world or robot):
         raise UsageError("A scenario names its own world and robot; leave out --world and --robot.")
+    if maps and scenario is not None:
+        raise UsageError(MAPS)
     if step and real_time:
         raise UsageError("Write --step or --real-time, not both.")
     if scenario is not None:
         loaded = api.load_scenario(scenario)
     else:
-        loaded = api.stage(fas, eas, (), world, robot)
+        loaded = api.stage(fas, eas, (), world, robot, maps)
     for problem in loaded.problems:
         if problem.severity != "note":
             tell(str(problem))

@@ -79,7 +79,11 @@ class _Reader:
             self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
             return
         self.space = node.namespace
-        self._attributes(node, VOICEXML if self.inline else set())
+        self._attributes(node, VOICEXML if self.inline else {"scope"})
+        if not self.inline and "scope" in node.attributes:
+            message = "scope says nothing in a grammar's file."
+            remedy = "Write it where VoiceXML names the file."
+            self.problems.warn(_where(node, "scope"), "unknown-attribute", message, remedy)
         self._version(node)
         self._mode(node)
         self._language(node)

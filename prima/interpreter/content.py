@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from prima.errors import Place
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -397,12 +398,15 @@ SIMPLE: dict[type, Callable[[Executor, Any, Fiber], Transfer | None]] = {
 
 
 def source(node: Node) -> str:
-    """The document and line of an element, for the transcript."""
-    place = node.place
-    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"
+    """The document, line and column of an element, for messages; records have its line."""
+    return short(node.place)
+
+
+def short(place: Place) -> str:
+    """A place with the name of its document alone: ``FILE:LINE:COLUMN``."""
+    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}:{place.column}"
 
 
 def where(expr: Expression, error: ScriptError) -> str:
-    """The document and line of what failed in an expression or script."""
-    place = expr.node.code_place(expr.attribute, error.line, error.column)
-    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}"
+    """The document, line and column of what failed in an expression or script."""
+    return short(expr.node.code_place(expr.attribute, error.line, error.column))

@@ -62,6 +62,29 @@ const copy = (v, done) => {
   for (const key of keys(v)) made[key] = copy(v[key], done);
   return made;
 };
+// Data that nobody may change, and that follows what it is a view of.
+const Weak = WeakMap, View = Proxy, Wrong = TypeError, descriptor = Reflect.getOwnPropertyDescriptor;
+const views = new Weak(), refuse = () => { throw new Wrong('session variables are read-only'); };
+const look = {
+  get: (own, key) => view(own[key]),
+  getOwnPropertyDescriptor: (own, key) => {
+    const found = descriptor(own, key);
+    if (found) found.value = view(found.value);
+    return found;
+  },
+  set: refuse, defineProperty: refuse, deleteProperty: refuse, setPrototypeOf: refuse,
+  preventExtensions: refuse,
+};
+const view = (v) => {
+  if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
+  let made = views.get(v);
+  if (made === undefined) {
+    made = new View(v, look);
+    views.set(v, made);
+    views.set(made, made);
+  }
+  return made;
+};
 const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
@@ -77,6 +100,7 @@ return {
   has: function (o, k) { return own(o, k); },
   defined: function (o, k) { return own(o, k) && o[k] !== undefined; },
   hand: function (o, k, from) { o[k] = from[k]; },
+  view: function (o) { return view(o); },
   detach: function (o, k) { o[k] = copy(o[k], new Known()); },
   text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
     ? stringify(v) : text(v); },
@@ -143,6 +167,7 @@ class Engine:
         """Seconds of evaluations since the owner last set it to nought."""
         # Functions by their code, for each use that is made of it.
         self._compiled: dict[str, Any] = {}
+        self._lenient: dict[str, str] = {}
         self._conditions: dict[tuple[str, int], Any] = {}
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
@@ -201,6 +226,16 @@ class Engine:
             self._compiled[code] = function
         return function
 
+    def lenient(self, code: str) -> str:
+        """An expression of other platforms as one of ECMAScript: ``x = 1; x + 1``, or nothing.
+
+        Several statements give the value of the last, no statement gives undefined.
+        """
+        kept = self._lenient.get(code)
+        if kept is None:
+            kept = self._lenient[code] = _single(self._context, code)
+        return kept
+
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
         """A function of scopes: of all of them, if nothing is said."""
         names, withs = (self._names, self._withs) if scopes is None else _head(scopes)
@@ -225,6 +260,13 @@ class Engine:
     def named(self, name: str) -> Scope:
         """A new scope that has itself as a variable, as a dialog's ``dialog`` (VoiceXML 5.1.2)."""
         return self._call(self._help["named"], (name,))
+
+    def view(self, scope: Scope) -> Scope:
+        """A scope that looks like another one and cannot be changed, nor can anything in it.
+
+        An attempt is an error; what is set in the other one is seen (VoiceXML 5.1.2).
+        """
+        return self._call(self._help["view"], (scope,))
 
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
@@ -483,6 +525,29 @@ def check_expression(context: Any, code: str) -> None:
     _check(context, code, f"return (\n{code}\n)", 1)
     _check(context, code, f"return [\n{code}\n]", 1)  # what closes one bracket fails in the other
     _remember("expression", code)
+
+
+def has_statements(context: Any, code: str) -> bool:
+    """Whether code that should be one expression is none, but could be a script."""
+    try:
+        check_expression(context, code)
+    except ScriptError:
+        try:
+            check_script(context, code)
+        except ScriptError:
+            return False
+        return True
+    return False
+
+
+def _single(context: Any, code: str) -> str:
+    """Code as one expression; its lines are counted as those of any (:func:`statement_place`)."""
+    return f"eval({json.dumps(chr(10) + code)})" if has_statements(context, code) else code
+
+
+def statement_place(error: ScriptError) -> tuple[int, int]:
+    """The line and column in several statements; around them are two functions of ours."""
+    return error.places[-3] if len(error.places) > 2 else (0, 0)
 
 
 def check_script(context: Any, code: str) -> None:

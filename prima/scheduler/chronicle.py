@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from prima.messages import Cue, Data, Json, Record
+from prima.messages import Cue, Data, Json, Record, line_of
 from prima.scheduler.behavior import Behavior, Stream
 
 LOSERS_NAMED: Final = 8
@@ -92,7 +92,7 @@ class Chronicle:
             hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
             connect=ab.connect or None if "x4" in self.extensions else None,
             motion=ab.motion or None if "x5" in self.extensions else None,
-            source=(command.source if command else ab.group.source if ab.group else None) or None,
+            source=line_of(command.source if command else ab.group.source if ab.group else ""),
         )
 
     def stream(self, phase: str, stream: Stream, rule: str, **fields: Json) -> None:

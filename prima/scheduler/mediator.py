@@ -17,6 +17,7 @@ from prima.messages import (
     OpenUnit,
     Order,
     Request,
+    line_of,
 )
 from prima.scheduler.behavior import GONE, Application, Behavior, Run, Stream
 from prima.scheduler.endings import Told
@@ -77,7 +78,7 @@ class Mediator(Failures):
                     rule="X6",
                     command=lacking,
                     by=command.type,
-                    source=command.source,
+                    source=line_of(command.source),
                 )
         unit = app.units.get(asked.unit) if asked.unit is not None else None
         try:
@@ -180,7 +181,7 @@ class Mediator(Failures):
             command=command.type if command else None,
             event=refused.event,
             message=refused.message,
-            source=command.source if command else None,
+            source=line_of(command.source) if command else None,
         )
         notice = Notice("failed", asked.run, command, event=refused.event, message=refused.message)
         notice.cause = asked.cause

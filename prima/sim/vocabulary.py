@@ -376,6 +376,8 @@ SCENARIO = Vocabulary(
                     default="ea",
                     choices=("fa", "ea"),
                 ),
+                attribute("uri", "text", "where a VoiceXML document is served as it runs for real"),
+                attribute("folder", "path", "its folder, or one above it, that is served there"),
             ),
         ),
         Element(

@@ -242,7 +242,7 @@ class _Files:
             path = Path(self._path)
             if page is not self._first:
                 path = path.parent / page.root.source.file
-            if page is self._first or ("://" not in page.uri and path.is_file()):
+            if page is self._first or ("://" not in page.root.source.file and path.is_file()):
                 self._known[id(page.root.source)] = (page.root.source, str(path))
                 self._marks.document(str(path), page.root)
 

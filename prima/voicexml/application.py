@@ -32,10 +32,12 @@ from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown
+from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown, thrown_of_event
 
 Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
+BRIEF_MS, MOST_BRIEF = 50, 1000
+"""How long a wait must last (ms), or how many may be shorter in a row."""
 
 
 class VoiceInterpreter(Bounds["Engine"]):
@@ -61,6 +63,8 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._state = 0
         self._cause: int | None = None
         self._marked: str | None = None
+        self._brief = 0
+        """How many waits in a row lasted almost no time."""
         self._sends = count(1)
         self.connection: Data = {}
         """What is known of the user's connection (5.1.4)."""
@@ -89,9 +93,9 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._drive(None)
 
     def takes(self, name: str) -> bool:
-        """Whether a handler in scope takes an event."""
-        context = self._machine.context
-        return context is not None and self._machine.events.takes(context, Thrown(name, ""))
+        """Whether a handler in scope takes an event of the robot."""
+        context, thrown = self._machine.context, thrown_of_event(Event(name, 0, shared=True))
+        return context is not None and self._machine.events.takes(context, thrown)
 
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
@@ -106,7 +110,7 @@ class VoiceInterpreter(Bounds["Engine"]):
         context = self._machine.context
         if self.over or context is None or not (self._run or self._calling):
             return
-        thrown = Thrown(event.name, str(event.data.get("message", "")))
+        thrown = thrown_of_event(event)
         if not _hangs_up(event) and not self._machine.events.takes(context, thrown):
             return
         self._cause = event.serial if event.reactive else None
@@ -117,9 +121,8 @@ class VoiceInterpreter(Bounds["Engine"]):
 
     def _tell(self, event: Event) -> None:
         """Give an event's data as ``session.event``: VoiceXML's own variables have none."""
-        context = self._machine.context
-        assert context is not None
-        self.engine.set(context.session, "event", {"name": event.name, "data": dict(event.data)})
+        session = self._machine.documents.session
+        self.engine.set(session, "event", {"name": event.name, "data": dict(event.data)})
 
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
@@ -243,9 +246,22 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._marked, content.mark = content.mark, None
         self.actions.append(Request(self._run, steps_of(commands), self._state, cause))
         self._open, self._queue = open_to_answers, commands
+        began = self.now
         resume = yield
         self._run, self._open, self._queue = 0, (), ()
+        self._count_wait(self.now - began)
         return resume
+
+    def _count_wait(self, lasted: int) -> None:
+        """Bound waits that last (ms) almost no time: each makes records, which the run has few of."""
+        self._brief = self._brief + 1 if lasted < BRIEF_MS else 0
+        if self._brief > MOST_BRIEF:
+            context = self._machine.context
+            item = context.item if context is not None else None
+            reason = (
+                f"it waited for less than {BRIEF_MS} ms more than {MOST_BRIEF:,} times in a row"
+            )
+            self.give_up(item or self.document.node, f"{reason}: set a longer timeout")
 
     def send(self, service: str, data: Data, node: Node) -> int:
         """Send something to a service, or to a URI; gives its serial."""

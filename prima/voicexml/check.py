@@ -16,6 +16,7 @@ from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.expressions import (
     check_expression,
     check_script,
+    has_statements,
     plain_context,
 )
 from prima.markup.slips import meant
@@ -25,6 +26,7 @@ from prima.names import IDENTIFIER, RESERVED
 from prima.values import NUMBER, read_value
 from prima.voicexml.arranging import ARRANGING, check_arranged
 from prima.voicexml.cues import is_rate
+from prima.voicexml.upgrade import version_problem
 from prima.voicexml.vocabulary import (
     ALTERNATIVES,
     COMMANDS,
@@ -37,7 +39,6 @@ from prima.voicexml.vocabulary import (
 )
 
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
-VERSIONS = ("2.0", "2.1")
 MOST_ALIKE = 5
 """Of problems that say the same, so many are told, each with its place."""
 HABITS = {
@@ -101,28 +102,23 @@ def _entry(element: Element) -> Entry:
 ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 
-def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
+def check_tree(root: Node) -> list[Problem]:
     """Give every node its key, take out what is of foreign namespaces, and tell what is wrong.
 
-    The second list has, as warnings, elements whose attributes exclude each other, or lack one
-    of several: they are ``error.badfetch`` when they are reached (5.3.7 and others), and no
-    error before.
+    A document with an error is not run: who fetches it gets ``error.badfetch`` (5.2.6).
     """
     root.key = "vxml"
-    if problem := version_problem(root):
-        return [problem], []  # of another version, what else seems wrong may be right
-    problems: list[Problem] = []
-    later: list[Problem] = []
+    problems = [problem] if (problem := version_problem(root)) else []
+    if problem is not None and problem.severity == "error":
+        return problems  # of another version, what else seems wrong may be right
     stack = [root]
     while stack:
         node = stack.pop()
         entry = ENTRIES[node.key]
         if node.attributes or entry.required or entry.alternatives:
             _check_attributes(node, entry, problems)
-            if node.key == "meta":  # which nothing reaches
-                problems += alternatives(node)
-            else:
-                later += map(_when_reached, alternatives(node))
+            for names in entry.alternatives:
+                _check_alternatives(node, names, problems)
         check = RULES.get(node.key)
         if check is not None:
             check(node, problems)
@@ -131,28 +127,7 @@ def check_tree(root: Node) -> tuple[list[Problem], list[Problem]]:
             problems.append(Problem(node.place, "error", "stray-text", message))
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
-    return few(problems, MOST_ALIKE), few(later, MOST_ALIKE)
-
-
-def _when_reached(problem: Problem) -> Problem:
-    """A problem as a warning of what it is at run time."""
-    remedy = f"{problem.remedy} Reached, it is error.badfetch.".strip()
-    return problem._replace(severity="warning", remedy=remedy)
-
-
-def version_problem(root: Node) -> Problem | None:
-    """What is wrong with a document's version, if it is none that is run (1.5)."""
-    version = root.get("version").strip()
-    if "version" not in root.attributes:
-        message, remedy = '<vxml> needs the attribute "version".', 'Write version="2.0" or "2.1".'
-        return Problem(root.place, "error", "missing-attribute", message, remedy)
-    if version in VERSIONS:
-        return None
-    message = f'version "{version}" is not a version of VoiceXML that is run here.'
-    remedy = "Write 2.0 or 2.1."
-    if version == "1.0":
-        remedy = "Its elements are others in part: rewrite it in 2.0 or 2.1, and say so here."
-    return Problem(root.attribute_place("version"), "error", "bad-value", message, remedy)
+    return few(problems, MOST_ALIKE)
 
 
 def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:
@@ -201,15 +176,29 @@ def _misplaced(child: Node, node: Node) -> Problem:
 
 def _check_attributes(node: Node, entry: Entry, problems: list[Problem]) -> None:
     for name, text in node.attributes.items():
-        if name in entry.kinds:
+        if name == "method" and text != text.lower():
+            problems.append(_capitals(node, name))
+        elif name in entry.kinds:
             if not _fits(entry.kinds[name], text):
                 problems.append(_bad_value(node, name, text, entry.kinds[name]))
         elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
             problems.append(_unknown(node, name))
     for name in entry.required:
-        if name not in node.attributes:
+        if name not in node.attributes and node.key != "vxml":  # told already
             message = f'<{node.tag}> needs the attribute "{name}".'
             problems.append(Problem(node.place, "error", "missing-attribute", message))
+
+
+def _capitals(node: Node, name: str) -> Problem:
+    """Words of HTTP in capitals, which other platforms take: they are read as if in small letters."""
+    text = node.attributes[name]
+    node.attributes[name] = small = text.lower()
+    kind = ENTRIES[node.key].kinds[name]
+    if not _fits(kind, small):
+        return _bad_value(node, name, text, kind)
+    message = f'{name} "{text}" is read as "{small}".'
+    place = node.attribute_place(name)
+    return Problem(place, "warning", "bad-value", message, f'Write "{small}".')
 
 
 _REMEDIES = {
@@ -266,27 +255,22 @@ def _unknown(node: Node, name: str) -> Problem:
     return Problem(place, "error", "unknown-attribute", message, hint)
 
 
-def alternatives(node: Node) -> list[Problem]:
-    """Attributes of an element that exclude each other, or none where one is needed."""
-    problems: list[Problem] = []
-    entry = ENTRIES.get(node.key)  # what a Command of PRIMA holds has no key
-    for names in entry.alternatives if entry is not None else ():
-        _check_alternatives(node, names, problems)
-    return problems
-
-
 def _check_alternatives(node: Node, names: tuple[str, ...], problems: list[Problem]) -> None:
+    """Attributes of an element that exclude each other, or none where one is needed."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names
     given = [name for name in names if name in node.attributes]
     if "content" in names and (node.nodes or node.text):
         given.append("content")
     if len(given) > 1:
-        message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'
+        other = "content of its own" if given[1] == "content" else f'"{given[1]}"'
+        message = f'<{node.tag}> has both "{given[0]}" and {other}.'
         place = node.place if given[1] == "content" else node.attribute_place(given[1])
         problems.append(Problem(place, "error", "exclusive", message, "Keep one of them."))
     elif needed and not given:
-        message = f"<{node.tag}> needs one of {', '.join(names)}."
+        words = [f'"{name}"' for name in names if name != "content"]
+        own = ["content of its own"] if "content" in names else []
+        message = f"<{node.tag}> needs {', '.join([*words, *own][:-1])} or {[*words, *own][-1]}."
         problems.append(Problem(node.place, "error", "missing-attribute", message))
 
 
@@ -535,6 +519,15 @@ def grammar_problems(
 LATER = "When it is to listen, this will be error.badfetch or error.unsupported."
 
 
+def _statements(node: Node, name: str) -> Problem:
+    """An expression that is a script: other platforms take it, and so does this one."""
+    message = f"{name} holds several statements: the value of the last counts."
+    remedy = "Write one expression."
+    if not node.get(name).strip():
+        message, remedy = f"{name} is empty: its value is undefined.", "Write an expression."
+    return Problem(node.attribute_place(name), "warning", "bad-expression", message, remedy)
+
+
 def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> None:
     try:
         if name:
@@ -542,6 +535,9 @@ def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> No
         else:
             check_script(context, node.own_text)
     except ScriptError as error:
+        if name not in ("", "cond") and has_statements(context, node.get(name)):
+            problems.append(_statements(node, name))
+            return
         place = node.code_place(name, error.line, error.column)
         code = " ".join((node.get(name) if name else node.own_text).split())[:60]
         message = f'"{code}" is not ECMAScript: {error}. This will be error.semantic.'

@@ -73,7 +73,6 @@ class Content(Speaker):
 
     def act(self, node: Node, context: Context, local: Scope) -> Flow:
         """One element that is not said."""
-        self.demand(node)
         match node.tag:
             case "var":
                 self.declare(node, local, context, local)
@@ -134,14 +133,15 @@ class Content(Speaker):
     ) -> None:
         """Give a variable of a scope the value of an expression."""
         try:
-            self.engine.assign(scope, name, node.get(attribute), context.scopes(local))
+            self.engine.assign(scope, name, self.code(node, attribute), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
     def assign(self, node: Node, context: Context, local: Scope) -> None:
         """Give a declared variable a value (5.3.2)."""
         try:
-            self.engine.assign_declared(node.get("name"), node.get("expr"), context.scopes(local))
+            code = self.code(node, "expr")
+            self.engine.assign_declared(node.get("name"), code, context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, "expr") from None
 
@@ -163,7 +163,10 @@ class Content(Speaker):
             if scope is None:
                 message = f'{source(node)}: the variable "{name}" is not declared'
                 raise Thrown("error.semantic", message, source(node))
-            self.engine.unset(scope, name)
+            try:
+                self.engine.unset(scope, name)
+            except ScriptError as error:  # the session's
+                raise self.failure(error, node, "namelist") from None
             for item in items if scope is scopes.get("dialog") else ():
                 if item.get("name") == name:
                     self.forget(item, context)
@@ -283,22 +286,22 @@ class Content(Speaker):
         held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
         blank = self.engine.scope()
         try:
-            self.engine.put(held, "dom", self._dom(context))
+            self.engine.put(held, "dom", self._dom())
             scopes = (blank, blank, blank, blank, held)
             self.engine.assign(scope, node.get("name"), "dom.whole(tree)", scopes)
         except ScriptError as error:
             raise self.failure(error, node, "src") from None
 
-    def _dom(self, context: Context) -> Scope:
+    def _dom(self) -> Scope:
         """What makes documents; its classes are there once there is a document (2.1, D)."""
         if self._maker is None:
             blank = self.engine.scope()
             scopes = (blank, blank, blank, blank, blank)
             self._maker = self.engine.raw(DOM, scopes)
-            maker = self.engine.scope()
+            maker, session = self.engine.scope(), self.owner.documents.session
             self.engine.put(maker, "dom", self._maker)
             for name in ("Node", "DOMException"):
-                self.engine.assign(context.session, name, f"dom.{name}", (*scopes[:-1], maker))
+                self.engine.assign(session, name, f"dom.{name}", (*scopes[:-1], maker))
         return self._maker
 
     def report(self, node: Node, context: Context, local: Scope) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from urllib.parse import urldefrag
+from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError, Problem
 from prima.markup.check import check_root
@@ -12,7 +13,9 @@ from prima.markup.reader import parse
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
-from prima.voicexml.check import check_code, check_tree, version_problem
+from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.site import Site
+from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 __all__ = [
@@ -25,8 +28,10 @@ __all__ = [
     "join",
     "read_page",
 ]
+REMOTE = frozenset(["http", "https", "service"])
+"""Schemes of URIs that are asked for outside the application."""
 Fetch = Callable[[str], bytes]
-"""Gives the bytes of a resource by its URI, relative to the application's folder."""
+"""Gives the bytes of a file by its name in the application's folder."""
 
 Glance = Callable[[str, int], tuple[bytes, int]]
 """Gives a file's first bytes, at most so many, and its size; raises :class:`FetchError`."""
@@ -49,8 +54,6 @@ class Page:
     dialogs: dict[str, Node] = field(default_factory=dict)
     """Forms and menus by their id, in document order; those without one by a number."""
     problems: list[Problem] = field(default_factory=list)
-    later: list[Problem] = field(default_factory=list)
-    """What is ``error.badfetch`` when it is reached, and no error before."""
 
     @property
     def lang(self) -> str:
@@ -80,7 +83,7 @@ class Page:
 
     def warnings(self) -> list[Problem]:
         """What is no error until it is reached; found only for who asks."""
-        return [*self.later, *check_code(self.root, set(self.dialogs))]
+        return check_code(self.root, set(self.dialogs))
 
 
 def read_page(uri: str, file: str, data: bytes) -> Page:
@@ -92,8 +95,9 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     root = parse(file, data, (VOICEXML,))
     bare = _without_namespace(root)
     check_root(root, (VOICEXML,))
-    problems, later = check_tree(root)
-    page = Page(uri, root, problems=[*bare, *problems], later=later)
+    if old(root):
+        upgrade(root)
+    page = Page(uri, root, problems=[*bare, *check_tree(root)])
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:
@@ -116,8 +120,8 @@ def _without_namespace(root: Node) -> list[Problem]:
         node = stack.pop()
         node.namespace = node.namespace or NAMESPACE
         stack.extend(node.nodes)
-    if version_problem(root):
-        return []  # a document of VoiceXML 1.0 has no namespace
+    if root.get("version", VERSIONS[0]).strip() not in VERSIONS:
+        return []  # VoiceXML 1.0 has no namespace
     message = "The root element <vxml> has no namespace: it is read as VoiceXML."
     remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
     return [Problem(root.place, "warning", "no-namespace", message, remedy)]
@@ -135,8 +139,38 @@ class VoiceDocument:
     node: Node
     glance: Glance | None = None
     """Where recordings are looked at; without it they are fetched."""
+    site: Site | None = None
+    """Where its folder was copied from: URIs in it are files of the folder."""
     watches: list[Json] = field(default_factory=list)
     forms: dict[str, Json] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> str:
+        """The folder whose files it may name."""
+        return self.site.folder if self.site is not None else os.path.dirname(self.file)
+
+    def name(self, uri: str) -> str | None:
+        """The name in the folder of what a URI leads to; None for what is asked for outside."""
+        if urlsplit(uri).scheme not in REMOTE:
+            return uri
+        name = self.site.name(uri) if self.site is not None else None
+        if name is None:
+            return None
+        try:
+            if self.glance is None:
+                self.fetch(name)
+            else:
+                self.glance(name, 0)
+        except FetchError:
+            return None
+        return name
+
+    def place(self, uri: str) -> str:
+        """How messages name what a URI has led to: as a file, seen from the first document."""
+        name = self.name(uri)
+        if name is None or self.site is None:
+            return uri
+        return self.site.seen(self.file, name)
 
     @property
     def lang(self) -> str:

@@ -73,7 +73,7 @@ class Events:
         fitting: list[tuple[int, Node]] = []
         for handler in _handlers(context):
             least = _number(handler)
-            if least <= self._seen(context, handler, thrown.name) and self.owner.content.holds(
+            if least <= self._seen(context, handler, thrown) and self.owner.content.holds(
                 handler, context, local
             ):
                 fitting.append((least, handler))
@@ -107,13 +107,13 @@ class Events:
         where = _place(context)
         named = {name for handler in _handlers(context) for name in _names(handler)}
         for name in named:
-            if takes(name, thrown.name):
+            if _takes(name, thrown):
                 context.counters[where, name] = context.counters.get((where, name), 0) + 1
 
-    def _seen(self, context: Context, handler: Node, event: str) -> int:
+    def _seen(self, context: Context, handler: Node, thrown: Thrown) -> int:
         """How often a handler's event has been counted; 0 where it does not take this one."""
         where, names = _place(context), _names(handler)
-        counts = [context.counters.get((where, one), 0) for one in names if takes(one, event)]
+        counts = [context.counters.get((where, one), 0) for one in names if _takes(one, thrown)]
         return max(counts, default=0)
 
     def _scope(self, thrown: Thrown) -> Scope:
@@ -175,6 +175,11 @@ def _names(handler: Node) -> list[str]:
     if handler.tag != "catch":
         return [handler.tag]
     return [name.rstrip(".") for name in handler.get("event").split()] or [""]
+
+
+def _takes(name: str, thrown: Thrown) -> bool:
+    """Whether a handler of a name takes an event; the empty name takes VoiceXML's own alone."""
+    return takes(name, thrown.name) and bool(name or not thrown.shared)
 
 
 def _place(context: Context) -> int:

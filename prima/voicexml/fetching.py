@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-from urllib.parse import urldefrag, urlsplit
+from urllib.parse import urldefrag
 
 from prima.errors import DocumentError
 from prima.interpreter.content import source
@@ -22,8 +22,6 @@ from prima.voicexml.state import Flow, Resume, Thrown
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
-REMOTE = frozenset(["http", "https", "service"])
-"""Schemes of URIs that are asked for outside the application."""
 STEP_BYTES = 200
 """Bytes of a resource that count as one step."""
 FETCH_TIMEOUT = 10_000
@@ -47,11 +45,6 @@ class Missing(Thrown):
         self.node = node
 
 
-def remote(uri: str) -> bool:
-    """Whether a URI is no file's."""
-    return urlsplit(uri).scheme in REMOTE
-
-
 def load_page(
     owner: Machine, uri: str, node: Node, request: Request | None = None
 ) -> Generator[None, Resume, Page]:
@@ -61,12 +54,12 @@ def load_page(
         Thrown: ``error.badfetch``, with what is wrong with the document; ``error.semantic``
             for an application root that names a root itself (1.5.2).
     """
-    asks = request is not None and remote(uri)
+    asks = request is not None and owner.document.name(uri) is None
     page = None if asks else owner.pages.get(uri)
     if page is None:
         data = yield from fetch(owner, uri, node, request)
         try:
-            page = read_page(uri, uri, data)
+            page = read_page(uri, owner.document.place(uri), data)
             error = broken(page)
         except DocumentError as failure:
             error = failure
@@ -90,13 +83,21 @@ def fetch(
         Thrown: ``error.badfetch``, with ``.http.STATUS`` where a host has answered so (5.2.6).
     """
     whole = urldefrag(uri)[0]
-    if not remote(whole):
-        return _weighed(owner, _file(owner, whole, node), node)
+    name = owner.document.name(whole)
+    if name is not None:
+        return _weighed(owner, _file(owner, name, node), node)
     answer = yield from _asked(owner, whole, node, request or Request())
     if answer.problem:
         name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
-        raise Thrown(name, f"{source(node)}: {whole}: {answer.problem}", source(node))
+        where = f"{source(node)}: {whole}: {_missing(owner, whole)}"
+        raise Thrown(name, f"{where}{answer.problem}", source(node))
     return _weighed(owner, answer.body.encode(answer.charset), node)
+
+
+def _missing(owner: Machine, uri: str) -> str:
+    """What to say first where a file of the folder could have been meant."""
+    site = owner.document.site
+    return "the folder has no such file; " if site and site.name(uri) is not None else ""
 
 
 def _weighed(owner: Machine, data: bytes, node: Node) -> bytes:
@@ -145,8 +146,9 @@ def held(owner: Machine, uri: str, node: Node) -> bytes:
         Thrown: ``error.badfetch``; :class:`Missing` while nobody has asked for it.
     """
     whole = urldefrag(uri)[0]
-    if not remote(whole):
-        return _file(owner, whole, node)
+    name = owner.document.name(whole)
+    if name is not None:
+        return _file(owner, name, node)
     found = owner.resources.get(whole)
     if found is None:
         raise Missing(whole, node)

@@ -166,7 +166,6 @@ class Inputs:
                 yield Active(phrase(name, name, False), link, context.page, root)
 
     def _link(self, context: Context, link: Node, page: Page, level: Node) -> Iterator[Active]:
-        self.owner.content.demand(link)
         for grammar in link.all("grammar"):
             yield self._grammar(context, grammar, link, page, level)
         if link.get("dtmf"):
@@ -190,7 +189,6 @@ class Inputs:
     def _option(
         self, context: Context, option: Node, node: Node, page: Page, level: Node, dtmf: str
     ) -> Iterator[Active]:
-        self.owner.content.demand(option)
         target = option if option.tag == "choice" else node
         words = words_of(option)
         value: Json = option.get("value") or words or dtmf
@@ -213,7 +211,6 @@ class Inputs:
     def _grammar(
         self, context: Context, node: Node, owner: Node, page: Page, level: Node
     ) -> Active:
-        self.owner.content.demand(node)
         uri = node.get("src")
         if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
             local = self.owner.local()

@@ -179,7 +179,6 @@ class Items:
         """What a subdialog is given, by value (6.4)."""
         local, given = self.owner.local(), Params(self.engine.scope())
         for param in item.all("param"):
-            self.owner.content.demand(param)
             name = param.get("name")
             given.names[name] = None
             if "expr" in param.attributes:

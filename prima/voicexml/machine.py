@@ -177,7 +177,7 @@ class Machine:
     def start(self) -> Flow:
         """Run the application from its first dialog to its end (1.5.1)."""
         page, blank = self.document.page, self.engine.scope()
-        context = Context(self.documents.session(), page, blank, blank, self.engine.named("dialog"))
+        context = Context(self.documents.begin(), page, blank, blank, self.engine.named("dialog"))
         self.context = context
         reason = GoOut()
         try:
@@ -327,7 +327,6 @@ class Machine:
             self.items_of.mark(context, item)
             yield from self.content.run(item, context, self.local())
             return
-        self.content.demand(item)
         if not quiet:
             yield from self._prompt(context, item)
         match item.tag:

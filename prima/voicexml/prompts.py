@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.commands import TABLE_4_2
-from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, source
+from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
 from prima.interpreter.evaluation import Scope, ScriptError
+from prima.interpreter.expressions import statement_place
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.values import shown
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, said_last
-from prima.voicexml.check import alternatives
 from prima.voicexml.cues import (
     MAX_CUES,
     MAX_NAME,
@@ -142,15 +142,23 @@ class Speaker:
 
     def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
         """``error.semantic`` with the place of what failed (5.2.6)."""
-        place = node.code_place(attribute, error.line, error.column)
-        where = f"{place.file.rpartition('/')[2]}:{place.line}"
+        line, column = error.line, error.column
+        if attribute not in ("", "cond") and self.engine.lenient(node.get(attribute)) != node.get(
+            attribute
+        ):
+            line, column = statement_place(error)
+        where = short(node.code_place(attribute, line, column))
         code = node.get(attribute) if attribute else node.tag
         return Thrown("error.semantic", f"{where}: {code.strip()[:80]}: {error}", where)
+
+    def code(self, node: Node, attribute: str) -> str:
+        """An attribute's expression; several statements, as other platforms take them, give one."""
+        return self.engine.lenient(node.get(attribute))
 
     def value(self, node: Node, attribute: str, context: Context, local: Scope) -> Json:
         """An attribute's expression as plain data."""
         try:
-            return self.engine.value(node.get(attribute), context.scopes(local))
+            return self.engine.value(self.code(node, attribute), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
 
@@ -181,7 +189,7 @@ class Speaker:
 
     def _said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
         """What a function of the engine makes of the value of an attribute's expression."""
-        code = node.get(attribute)
+        code = self.code(node, attribute)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place
             return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
@@ -192,7 +200,9 @@ class Speaker:
         """The elements of a foreach's array, as the engine's values."""
         self.check_name(node, "item")
         try:
-            found = self.engine.elements(node.get("array"), context.scopes(local), MAX_REPEATS)
+            found = self.engine.elements(
+                self.code(node, "array"), context.scopes(local), MAX_REPEATS
+            )
         except ScriptError as error:
             raise self.failure(error, node, "array") from None
         for _ in found:
@@ -206,15 +216,6 @@ class Speaker:
         if "." in name:
             message = f'{source(node)}: "{name}" names a scope; declare it there'
             raise Thrown("error.semantic", message, source(node))
-
-    def demand(self, node: Node) -> None:
-        """See that an element has just one of the attributes that exclude each other.
-
-        Raises:
-            Thrown: ``error.badfetch``, as the element's own section says.
-        """
-        for problem in alternatives(node):
-            raise Thrown("error.badfetch", problem.message, source(node))
 
     # Prompts ------------------------------------------------------------------------
 
@@ -311,12 +312,10 @@ class Speaker:
             case "value":
                 speech.parts.append(self.text(node, context, local))
             case "audio":
-                self.demand(node)
                 self.audio(node, context, local, speech)
             case "sub":
                 speech.parts.append(f" {node.get('alias', node.text)} ")
             case "mark":
-                self.demand(node)
                 self.mark_here(node, context, local, speech)
             case "break":
                 ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
@@ -341,7 +340,7 @@ class Speaker:
 
     def text(self, node: Node, context: Context, local: Scope) -> str:
         """What a value says (4.1.4)."""
-        code, scopes = node.get("expr"), context.scopes(local)
+        code, scopes = self.code(node, "expr"), context.scopes(local)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place
             return self.engine.text(f"({SHOWN})({code}\n)", scopes)
@@ -414,9 +413,12 @@ class Speaker:
 
     def _look_at(self, uri: str) -> int | None:
         document = self.owner.document
+        name = document.name(uri)
+        if name is None:
+            return None
         if document.glance is not None:
-            return length_ms(*document.glance(uri, HEADER_BYTES))
-        whole = document.fetch(uri)
+            return length_ms(*document.glance(name, HEADER_BYTES))
+        whole = document.fetch(name)
         return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------

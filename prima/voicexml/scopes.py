@@ -17,17 +17,11 @@ from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
-CONNECTION = """Object.defineProperty(session, 'connection', (function (held) {
-  return {
-    enumerable: true,
-    get: function () { return held; },
-    set: function () { throw new TypeError('session variables are read only'); },
-  };
-})((function (held) {
+CONNECTION = """session.connection = (function (held) {
   for (const name of ['local', 'remote', 'protocol']) held[name] = held[name] || {};
   if (held.originator) held.originator = held[held.originator];
   return held;
-})(given)))"""
+})(given)"""
 """What is known of the user's connection; what is not is undefined (5.1.4)."""
 TELEPHONE = """session.telephone =
   { ani: session.connection.remote.uri, dnis: session.connection.local.uri }"""
@@ -40,16 +34,18 @@ class Documents:
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
         self.engine = owner.engine
+        self.session = owner.engine.nothing
+        """The session's variables, for the platform alone (5.1.2)."""
 
-    def session(self) -> Scope:
-        """The scope of the whole session (5.1.4)."""
-        session = self.engine.scope()
+    def begin(self) -> Scope:
+        """Make the scope of the whole session (5.1.4); documents see it and cannot change it."""
+        session, blank = self.engine.scope(), self.engine.scope()
         self.engine.put(session, "session", session)
-        blank = self.engine.scope()
         given = self.engine.scope(given=dict(self.owner.owner.connection))
         for code in (CONNECTION, TELEPHONE):
             self.engine.raw(code, (session, blank, blank, blank, given))
-        return session
+        self.session = session
+        return self.engine.view(session)
 
     def enter(self, context: Context, page: Page, submitted: bool = False) -> Flow:
         """Make a document the active one, with what it keeps of its application (1.5.2)."""
@@ -109,7 +105,6 @@ class Documents:
     def declare(self, node: Node, scope: Scope, context: Context) -> Flow:
         """What a document or form declares: a variable, a script's variables, or data."""
         content, local = self.owner.content, self.owner.local()
-        content.demand(node)
         match node.tag:
             case "script":
                 yield from content.script(node, scope, context, local)

@@ -92,6 +92,10 @@ class Context:
 class Thrown(Exception):
     """An event (5.2.1)."""
 
+    shared = False
+    """Whether it is of the robot or its surroundings, for every application: only handlers that
+    name it take it, as VoiceXML knows no such events (5.2)."""
+
     def __init__(self, name: str, message: str = "", source: str = "") -> None:
         super().__init__(name)
         self.name = name
@@ -112,10 +116,17 @@ class HungUp(Thrown):
 def thrown_outside(resume: Resume) -> Thrown:
     """The event that has ended a wait."""
     assert resume.event is not None
-    name, message = resume.event.name, str(resume.event.data.get("message", ""))
-    if name.startswith("connection.disconnect"):
-        return HungUp(name, message, outside=True)
-    return Thrown(name, message)
+    return thrown_of_event(resume.event)
+
+
+def thrown_of_event(event: Event) -> Thrown:
+    """An event of the session as one of VoiceXML."""
+    message = str(event.data.get("message", ""))
+    if event.name.startswith("connection.disconnect"):
+        return HungUp(event.name, message, outside=True)
+    thrown = Thrown(event.name, message)
+    thrown.shared = event.shared and not event.name.startswith("connection.")
+    return thrown
 
 
 class Unasked(Thrown):

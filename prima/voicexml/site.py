@@ -1,0 +1,93 @@
+"""A folder of files that stands for what is served at a URI (2.0, 6.1.1)."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from urllib.parse import quote, unquote, urlsplit
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Where an application was copied from.
+
+    ``uri`` is that of its first document, ``root`` that of its folder, with a ``/`` at its end.
+    """
+
+    uri: str
+    root: str
+    folder: str
+
+    def name(self, uri: str) -> str | None:
+        """The name of a URI's file, seen from the folder; None for a URI beside or above it."""
+        return uri[len(self.root) :] if uri.startswith(self.root) else None
+
+    def seen(self, file: str, name: str) -> str:
+        """A name in the folder, seen from the folder of another file."""
+        return os.path.relpath(os.path.join(self.folder, name), os.path.dirname(file) or ".")
+
+
+def site_of(file: str, uri: str, folder: str = "") -> Site:
+    """The site of a first document's file; without a folder its own stands for that of the URI.
+
+    Raises:
+        ValueError: with a message and a remedy: no such document can be at that URI.
+    """
+    parts = urlsplit(uri)
+    if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
+        raise ValueError(
+            f'"{uri}" is no URI of a document.',
+            'Write the whole one, such as "https://example.org/app/main.vxml".',
+        )
+    if not folder:
+        root = uri[: uri.rindex("/") + 1] if parts.path else f"{uri}/"
+        return Site(uri, root, os.path.dirname(file) or ".")
+    inside = within(file, folder)
+    if inside is None:
+        raise ValueError(f'"{file}" is not in the folder "{folder}".', "Name a folder above it.")
+    if not unquote(uri).endswith(f"/{inside}"):
+        raise ValueError(
+            f'"{uri}" does not end as the document\'s path in "{folder}".',
+            f'It should end with "/{inside}".',
+        )
+    return Site(uri, uri[: len(uri) - len(_written(uri, inside))], folder)
+
+
+def _written(uri: str, inside: str) -> str:
+    """The end of a URI that means a path, with what is written as ``%20`` or the like."""
+    for start in range(len(uri) - len(inside), -1, -1):
+        if uri[start - 1 : start] == "/" and unquote(uri[start:]) == inside:
+            return uri[start:]
+    return inside
+
+
+def within(file: str, folder: str) -> str | None:
+    """A file's path seen from a folder above it, with ``/`` between; None if it is not in it."""
+    path = os.path.relpath(os.path.abspath(file), os.path.abspath(folder))
+    return None if path.split(os.sep)[0] == os.pardir else path.replace(os.sep, "/")
+
+
+def mapping_of(text: str) -> tuple[str, str]:
+    """The URI and the folder of a mapping on the command line, ``URI=FOLDER``.
+
+    Raises:
+        ValueError: it is no such mapping.
+    """
+    uri, mark, folder = text.partition("/=")
+    if not mark:
+        uri, mark, folder = text.partition("=")
+    parts = urlsplit(uri)
+    if not mark or parts.scheme not in ("http", "https") or not parts.netloc or not folder:
+        raise ValueError(
+            f'"{text}" maps no URI to a folder.', 'Write "https://example.org/app/=folder/".'
+        )
+    return f"{uri.rstrip('/')}/", folder
+
+
+def mapped(file: str, maps: dict[str, str]) -> tuple[str, str] | None:
+    """The URI of a file by the mapping whose folder holds it, the innermost one, and that folder."""
+    found = [(uri, folder) for uri, folder in maps.items() if within(file, folder) is not None]
+    if not found:
+        return None
+    uri, folder = max(found, key=lambda one: len(os.path.abspath(one[1])))
+    return uri + quote(within(file, folder) or ""), folder

@@ -1,0 +1,119 @@
+"""Versions of VoiceXML: documents of 1.0, and those that name none, are read as later ones."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from prima.errors import Problem
+from prima.markup.tree import Node
+
+VERSIONS = ("2.0", "2.1")
+OLD = "1.0"
+JSGF = "application/x-jsgf"
+RENAMED = {
+    "vxml": {"base": "xml:base", "lang": "xml:lang"},
+    "pros": {"vol": "volume"},
+}
+"""Attributes of VoiceXML 1.0 with their later names."""
+DROPPED = {"subdialog": ("modal",)}
+"""Attributes of VoiceXML 1.0 that have no meaning any more; ``caching`` is one of all elements."""
+EVENTS = re.compile(r"(?<!\S)(error\.)?telephone(?=[.\s]|$)")
+"""Events of the telephone, which are those of a connection now (2.0, 5.2.6)."""
+
+
+def old(root: Node) -> bool:
+    """Whether a document is of VoiceXML 1.0, which has no namespace and other elements in part."""
+    return root.get("version").strip() == OLD
+
+
+def version_problem(root: Node) -> Problem | None:
+    """What is to be said of a document's version: an error if it is none that can be run (1.5)."""
+    version = root.get("version").strip()
+    if version in VERSIONS:
+        return None
+    if "version" not in root.attributes:
+        message = '<vxml> needs the attribute "version": the document is read as VoiceXML 2.1.'
+        remedy = 'Write version="2.0" or "2.1".'
+        return Problem(root.place, "warning", "missing-attribute", message, remedy)
+    place = root.attribute_place("version")
+    if version == OLD:
+        message = "The document is of VoiceXML 1.0: it is read as 2.0, its older elements as newer."
+        return Problem(place, "warning", "bad-value", message, "Rewrite it in 2.0 or 2.1.")
+    message = f'version "{version}" is not a version of VoiceXML that is run here.'
+    return Problem(place, "error", "bad-value", message, "Write 2.0 or 2.1.")
+
+
+def upgrade(root: Node) -> None:
+    """Turn the elements and attributes of VoiceXML 1.0 into those of 2.0, where they differ."""
+    for node in root.walk():
+        attributes = node.attributes
+        for name in ("caching", *DROPPED.get(node.tag, ())):
+            attributes.pop(name, None)
+        for name, later in RENAMED.get(node.tag, {}).items():
+            if name in attributes:
+                attributes.setdefault(later, attributes.pop(name))
+        if attributes.get("fetchhint") == "stream":
+            del attributes["fetchhint"]
+        if "event" in attributes:
+            attributes["event"] = EVENTS.sub(r"\1connection", attributes["event"])
+        change = CHANGED.get(node.tag)
+        if change is not None:
+            change(node)
+
+
+def _dtmf(node: Node) -> None:
+    node.tag = "grammar"
+    node.attributes["mode"] = "dtmf"
+    _grammar(node)
+
+
+def _grammar(node: Node) -> None:
+    """A grammar's text without a type is in the form that 1.0 shows; it is not supported."""
+    written = node.text and not node.nodes and not node.text.startswith("#ABNF")
+    if written and "type" not in node.attributes:
+        node.attributes["type"] = JSGF
+
+
+def _div(node: Node) -> None:
+    node.tag = "s" if node.attributes.pop("type", "") == "sentence" else "p"
+
+
+def _emp(node: Node) -> None:
+    node.tag = "emphasis"
+
+
+def _pros(node: Node) -> None:
+    """Rates were words per minute; only a change in percent means the same."""
+    node.tag = "prosody"
+    if not node.get("rate").endswith("%"):
+        node.attributes.pop("rate", None)
+
+
+def _break(node: Node) -> None:
+    ms = node.attributes.pop("msecs", "").strip()
+    if ms.isdecimal():
+        node.attributes.setdefault("time", f"{ms}ms")
+
+
+def _sayas(node: Node) -> None:
+    """One element for what are three: words in place of others, sounds, and kinds of text."""
+    given = {name: node.attributes.pop(name, "") for name in ("sub", "phon", "class")}
+    for name, tag, later in SAID_AS:
+        if given[name]:
+            node.tag, node.attributes[later] = tag, given[name]
+            return
+    node.tag = "prosody"
+
+
+SAID_AS = (("sub", "sub", "alias"), ("phon", "phoneme", "ph"), ("class", "say-as", "interpret-as"))
+CHANGED: dict[str, Callable[[Node], None]] = {
+    "dtmf": _dtmf,
+    "grammar": _grammar,
+    "div": _div,
+    "emp": _emp,
+    "pros": _pros,
+    "break": _break,
+    "sayas": _sayas,
+}
+"""What becomes of elements of VoiceXML 1.0."""
