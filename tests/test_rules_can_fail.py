@@ -121,7 +121,11 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("f1", "no floor", put(Selector, "take_floor", nothing)),
     ("f1", "nobody is suspended", put(Selector, "_suspend_others", nothing)),
     ("f2", "dropped", put(rules, "f2", nothing)),
-    ("f2", "priority does not count", put(rules, "outranks", lambda priority, stream: False)),
+    (
+        "f2",
+        "priority does not count",
+        put(rules, "outranks", lambda priority, stream, memory: False),
+    ),
     ("f3", "never", put(rules, "f3", lambda ab, reacts, memory: False)),
     ("f3", "always", put(rules, "f3", lambda ab, reacts, memory: True)),
     ("f5", "dropped", put(Mediator, "_stop_rolling", nothing)),

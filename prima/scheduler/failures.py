@@ -155,6 +155,10 @@ class Failures(Endings):
             return
         self.halted = False
         if not resume:
+            for name in list(self.holds):
+                self._let_go(self.memory.streams[name], "left")
+            for stream in self.memory.streams.values():
+                stream.hold = None
             for ab in reversed(list(self.memory.behaviors.values())):
                 if ab.state is not GONE and not in_group(ab):
                     self._delete(ab, "E5")

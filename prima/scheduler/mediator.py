@@ -216,13 +216,14 @@ class Mediator(Failures):
 
     def _stream(self, app: Application, reaction: int | None) -> Stream:
         """The stream that a tree without a parent goes on with, or a new one."""
-        held = [self.memory.streams[name] for name in self.holds]
-        for stream in reversed(held):
-            if stream.app is app:
-                return stream
         if reaction is None and app.window is not None:
             return app.window
-        return app.continuing or self._maker.stream(app)
+        return self._held(app) or app.continuing or self._maker.stream(app)
+
+    def _held(self, app: Application) -> Stream | None:
+        """X3: the application's stream that is held, the latest of several."""
+        held = (self.memory.streams[name] for name in reversed(self.holds))
+        return next((stream for stream in held if stream.app is app), None)
 
     def _root(self, ab: Behavior, parent: Behavior | None, reaction: int | None) -> None:
         """Give a root its parent by O1, its reactive flag by C5, or its place by C3."""
@@ -238,7 +239,7 @@ class Mediator(Failures):
     ) -> Stream:
         """O2: cancel this application's trees that want a device of the new Command.
 
-        Gives the stream that goes on: of those cancelled, if any was.
+        Gives the stream that goes on: the one that is held (X3), or one of those cancelled.
         """
         devices = self._maker.table[command.type].occupied(command.text)
         if unit is not None:
@@ -249,9 +250,10 @@ class Mediator(Failures):
             for ab in self.memory.of_app(app)
             if ab.devices & devices and ab.unit is None
         }
-        if not streams:
-            return self._opened(self._stream(app, reaction))
-        stream = going_on(list(streams.values()))
+        if streams and self._held(app) is None:
+            stream = going_on(list(streams.values()))
+        else:
+            stream = self._stream(app, reaction)
         for one in streams.values():
             self._cancel(list(one.members.values()), devices)
         return self._opened(stream)

@@ -68,6 +68,7 @@ class Memory:
     def wait(self, ab: Behavior) -> None:
         """Let the AB compete. Commands inside a unit compete within it only."""
         ab.state = WAITING
+        ab.blocked = ("", "")
         if ab.unit is None:
             self.waiting[ab.name] = ab
 

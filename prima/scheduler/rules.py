@@ -51,9 +51,16 @@ def s2f(ab: Behavior) -> tuple[int, int]:
     return (ab.app.order, ab.serial)
 
 
-def outranks(priority: int, stream: Stream) -> bool:
-    """F2: whether a priority is higher than that of all that the floor's stream has."""
+def outranks(priority: int, stream: Stream, memory: Memory) -> bool:
+    """F2: whether a priority is higher than that of all that the floor's stream has.
+
+    A way back that X1 has put in and K1 keeps counts as itself: else the floor's stream
+    would wait for the one that engages the user, and that one for the floor.
+    """
     contending = stream.contending()
+    ways = [ab for ab in stream.members.values() if ab.inserted and not ab.dormant]
+    if any(k1(ab, memory) is not None for ab in ways):
+        contending = [ab for ab in stream.members.values() if not ab.dormant]
     return bool(contending) and all(priority > other.priority for other in contending)
 
 
@@ -65,7 +72,7 @@ def f2(ab: Behavior, memory: Memory) -> Refusal | None:
     if ab.reaction is not None and ab.reaction not in holder.causes:
         return None
     priority = max(one.priority for one in ab.meant())
-    return None if outranks(priority, holder) else ("F2", holder.name)
+    return None if outranks(priority, holder, memory) else ("F2", holder.name)
 
 
 def f3(ab: Behavior, reacts: bool, memory: Memory) -> bool:

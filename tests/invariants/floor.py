@@ -35,6 +35,9 @@ class Floor(Channel):
         if ab.cause is not None and ab.cause not in held:
             return None
         contending = holder.contending()
+        if any(one.inserted and self.refused_by_channel(one) for one in holder.members.values()):
+            # A way back that K1 keeps counts as itself, so that the two do not wait for each other.
+            contending = [one for one in holder.members.values() if one.contends]
         high = ab.tree.meant(ab).high
         if contending and all(high and not other.high for other in contending):
             return None

@@ -154,7 +154,8 @@ class Selection(Streams):
             self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
-        if any(self.abs[base(name)].inserted for name in losers):
+        named = [self.abs[base(name)] for name in losers if base(name) in self.abs]
+        if any(loser.inserted for loser in named):
             return  # whether what X1 or X4 has put in competes for itself is left open
         rivals = [other for other in rivals if other.shown in losers | needed] or [
             other

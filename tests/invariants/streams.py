@@ -94,7 +94,7 @@ class Streams(Extensions):
                 other.phase == RUNNING for other in one.ab.tree.members.values() if other is not ab
             )
         }
-        if trees and ab.tree.name not in (ran or trees):
+        if trees and ab.tree.name not in (ran or trees) and not self.joined_now(ab.tree):
             text = f"{ab.name} is of {ab.tree.name}, but cancels {', '.join(self.ordered(trees))}"
             self.report(15, "O2", text)
         for tree in self.trees.values():
