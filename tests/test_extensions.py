@@ -514,3 +514,25 @@ def test_all_extensions_together_leave_a_plain_run_as_it_is() -> None:
         rests_on = {"restartable", "hold", "connect", "motion"}
         runs.append([{k: v for k, v in r.items() if k not in rests_on} for r in stage.records])
     assert runs[0] == runs[1]
+
+
+def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:
+    # fa would wait to drive back until ea no longer engages the user, ea for fa's floor.
+    stage = Stage("prima+x1", apps={"fa": "fa", "ea": "ea", "xa": "ea"})
+    stage.request("fa", command("set-position", x=2, y=0), say("a"))
+    stage.select()
+    stage.at(100).end("fa#1.1", x=2.0, y=0.0, heading=0.0)
+    stage.request("ea", command("tracking-human"))
+    assert stage.select() == ["fa#2", "ea#1.1"]
+    stage.at(200).leave("fa")
+    stage.request("fa", say("b"), say("c"), state=2, cause=1)
+    stage.at(300).end("fa#2")
+    assert stage.select() == ["fa#3"]
+    stage.request("xa", command("turn", angle=10), cause=2)
+    stage.at(500).end("ea#1.1", goal=False, x=2.0, y=0.0, heading=0.0)
+    assert stage.select() == ["xa#1"]
+    stage.at(600).end("fa#3")
+    stage.select()
+    stage.at(700).end("xa#1", x=5.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#1.2"]
+    assert [r["behavior"] for r in stage.phases("request") if r.get("inserted")] == ["fa#5"]
