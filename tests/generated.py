@@ -327,7 +327,8 @@ HINTS = re.compile(r' (stream|hold-for|channel|restartable)="[^"]*"')
 
 def without_hints(play: Play) -> Play:
     """The same play, but its applications tell the mediator nothing of what they would like."""
-    return replace(play, documents=tuple(HINTS.sub("", text) for text in play.documents))
+    blank = tuple(HINTS.sub(lambda hint: " " * len(hint[0]), text) for text in play.documents)
+    return replace(play, documents=blank)
 
 
 class Author:

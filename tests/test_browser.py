@@ -129,10 +129,8 @@ def test_a_click_shows_why_and_moves_the_cursor(browser: Browser, pages: dict[st
         for words in (
             "Why row 14 came at 18.57 s",
             "navigate.xml:61",
-            "selected by rule S2c before follow#2.5",
-            "what follows an AB that has ended in this instant",
-            "Active Sensing Human",
-            "follow.xml:40",
+            "selected by rule S1; nothing else could start in its place",
+            "an AB starts when no running AB occupies one of its devices",
             "follow:1 is suspended by navigate:1",
         ):
             assert words in why

@@ -104,7 +104,7 @@ def test_the_demo_has_what_a_reader_of_its_table_expects(demo: api.Transcript) -
         (4.147, 5.304, "navigate"),
     ]
     assert of(found, "reactions")[1] == (18.481, 18.567, "message: navigate after 0.086 s")
-    assert (18.568, 18.568, "S2c navigate#5") in of(found, "why")
+    assert (18.568, 18.568, "S1 navigate#5") in of(found, "why")
     assert of(found, "device: locomotion")[0][2] == "navigate: Topological Move (to kidode-room)"
 
 
@@ -600,7 +600,7 @@ def test_a_transcript_that_was_cut_off_is_written_as_far_as_it_goes(tmp_path: Pa
     for length in range(20_000, 20_006):  # within a letter of several bytes, too
         (tmp_path / "cut.jsonl").write_bytes(whole[:length])
         done = run("cut.jsonl", "-o", "cut.csv", folder=tmp_path)
-        assert done.returncode == 2 and "cut.jsonl:101: the record is cut off" in done.stderr
+        assert done.returncode == 2 and "cut.jsonl:102: the record is cut off" in done.stderr
         assert "木戸出".encode() in (tmp_path / "cut.csv").read_bytes()
 
 

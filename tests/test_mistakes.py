@@ -135,11 +135,12 @@ def test_no_code_is_emitted_that_is_not_explained() -> None:
 def test_explain_lists_all_codes() -> None:
     listed = prima("explain")
     assert listed.returncode == 0 and listed.stderr == ""
-    lines = listed.stdout.splitlines()
+    lines = listed.stdout.partition("Codes of problems:\n")[2].splitlines()
     assert [line.split()[0] for line in lines] == sorted(CODES)
     assert all(len(line) <= 100 for line in lines)
     told = json.loads(prima("explain", "--format", "json").stdout)
-    assert {one["code"]: one["explanation"] for one in told} == CODES
+    codes = {one["code"]: one["explanation"] for one in told if one["kind"] == "problem"}
+    assert codes == CODES
 
 
 def test_explain_shows_the_wrong_example_the_message_and_the_right_one() -> None:
@@ -157,7 +158,7 @@ def test_explain_shows_the_wrong_example_the_message_and_the_right_one() -> None
 def test_explain_guesses_a_misspelt_code() -> None:
     told = prima("explain", "no-anser")
     assert told.returncode == 2 and told.stdout == ""
-    assert 'There is no code "no-anser". Did you mean "no-answer"?' in told.stderr
+    assert 'There is no rule, code or file "no-anser". Did you mean "no-answer"?' in told.stderr
     with pytest.raises(UsageError, match="prima explain lists them"):
         examples("zzz")
 

@@ -81,7 +81,7 @@ def test_the_recogniser_of_a_scenario_may_be_unsure(tmp_path: Path) -> None:
         <alternative confidence="0.6">Austin</alternative>
         <alternative confidence="0.2">Houston</alternative></say></when>"""
     transcript = rehearse(tmp_path, body, script)
-    table = transcript.table()
+    table = transcript.table(columns=200)
     assert '"Boston" (confidence 0.4, or "Austin" 0.3)' in table
     assert '"Bosten" (confidence 0.7, or "Austin" 0.6, or "Houston" 0.2)' in table
     assert "log: Austin 0.6" in table
