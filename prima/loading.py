@@ -125,13 +125,12 @@ def read_application(
     from prima.voicexml.document import VoiceDocument, read_page
 
     file = _path(path)
-    page = read_page(site.uri if site else file.name, path, data)
+    page = read_page(site.name(site.uri) if site else file.name, path, data, site)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
     folder = _path(site.folder) if site else file.parent
     document = VoiceDocument(
         own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
     )
-    document.site = site
     document.glance = lambda uri, most: _glance(folder, uri, most)
     return document, page.problems
 
@@ -309,14 +308,19 @@ def _application_problems(path: str, data: bytes) -> list[Problem]:
     return problems + _prices(document) if b"<iu" in data else problems
 
 
-def _voicexml_problems(path: str, data: bytes) -> Iterator[Problem]:
-    """The problems of a VoiceXML document, and of those of its folder that it leads to."""
+def _voicexml_problems(
+    path: str, data: bytes, site: Site | None = None, answered: tuple[str, ...] = ()
+) -> Iterator[Problem]:
+    """The problems of a VoiceXML document, and of those of its folder that it leads to.
+
+    URIs that begin like one of ``answered`` are a service's.
+    """
     from prima.voicexml.document import FetchError, read_page
     from prima.voicexml.pages import Pages
     from prima.voicexml.variables import check_variables
 
-    folder = _path(path).parent
-    first = read_page(_path(path).name, path, data)
+    folder = _path(site.folder) if site else _path(path).parent
+    first = read_page(site.name(site.uri) if site else _path(path).name, path, data, site)
     pages = Pages(first, path, lambda uri: _fetch(folder, uri))
 
     def script(page: Page, node: Node) -> str | None:
@@ -327,7 +331,7 @@ def _voicexml_problems(path: str, data: bytes) -> Iterator[Problem]:
             return None
 
     for page in pages:
-        yield from (*page.problems, *page.warnings(), *_not_there(page, folder))
+        yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
         yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
     yield from (*pages.problems, *pages.between())
 
@@ -340,7 +344,7 @@ NAMING_FILES = {
 """Attributes of VoiceXML elements that name a file, where they name nothing else."""
 
 
-def _not_there(page: Page, folder: Path) -> Iterator[Problem]:
+def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[Problem]:
     """Warn of files that a VoiceXML document names and that are not in its folder."""
     from urllib.parse import unquote
 
@@ -352,6 +356,8 @@ def _not_there(page: Page, folder: Path) -> Iterator[Problem]:
             whole = page.resolve(uri, node)
             file = unquote(whole.partition("#")[0].partition("?")[0])
             inside = not file.startswith(("/", "../"))
+            if page.site is not None and page.site.whole(whole).startswith(answered):
+                continue
             if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
                 continue
             message = f'There is no file "{file[:80]}" here: this will be error.badfetch.'
@@ -398,13 +404,13 @@ def _in_folder(folder: Path, problem: Problem) -> Problem:
     return problem._replace(place=problem.place._replace(file=str(folder / problem.place.file)))
 
 
-def _fetcher(folder: Path) -> Callable[[str], bytes]:
-    """Gives the bytes of grammars in a folder."""
+def _fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
+    """Gives the bytes of grammars in a folder, of one that was copied from a site by their URIs."""
     from prima.voicexml.document import FetchError
 
     def fetch(uri: str) -> bytes:
         try:
-            return _fetch(folder, uri)
+            return _fetch(folder, site.name(uri) if site else uri)
         except FetchError as error:
             raise LookupError(str(error).rstrip(".")) from None
 
@@ -415,14 +421,17 @@ def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
     """What is wrong with the grammars in files that a VoiceXML document names."""
     from prima.voicexml.check import grammar_problems
 
-    fetch = _fetcher(folder)
+    site = page.site
+    fetch, base = _fetcher(folder, site), site.whole(page.base()) if site else page.base()
     for node in page.root.walk():
         uri = node.get("src").strip()
         if node.tag != "grammar" or not uri or SCHEME.match(page.resolve(uri, node)):
             continue
-        for problem in grammar_problems(node, page.lang, page.base(), fetch):
+        for problem in grammar_problems(node, page.lang, base, fetch):
             if problem.place.file != node.source.file:
-                yield _in_folder(folder, problem)
+                file = problem.place.file
+                place = problem.place._replace(file=site.name(file) if site else file)
+                yield _in_folder(folder, problem._replace(place=place))
             elif problem.code != "no-such-file":  # which is told already
                 yield problem
 
@@ -585,6 +594,7 @@ def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
 
     scenario, told = look_at_scenario(str(path), data)
     reading = _Reading(path, {path.name: _digest(data)}, [*told], whole=whole)
+    reading.answered = tuple(one.uri for one in scenario.services if one.uri)
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
@@ -626,6 +636,8 @@ class _Reading:
     documents: list[AnyDocument] = field(default_factory=list)
     whole: bool = False
     """Whether all documents of VoiceXML applications are looked into, not only the first."""
+    answered: tuple[str, ...] = ()
+    """How URIs begin that the scenario's services answer."""
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
@@ -652,7 +664,9 @@ class _Reading:
 
         def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
             document, problems = read_application(path, data, *own, site)
-            further = _voicexml_problems(path, data) if self.whole and is_voicexml(data) else ()
+            further: Iterable[Problem] = ()
+            if self.whole and is_voicexml(data):
+                further = _voicexml_problems(path, data, site, self.answered)
             return document, [*problems, *further]
 
         read = self.read(src, place, made_of)

@@ -176,7 +176,7 @@ XML = [
     ("binary", bytes(range(128, 256)) * 9, "1:1", "Save it as UTF-8"),
     ("null-byte", b"<a>\0</a>", "1:4", "Invalid character"),
     ("control", app(block("<log>\x01</log>")), "2:", "not well-formed"),
-    ("voicexml", '<vxml xmlns="http://www.w3.org/2001/vxml"/>', "1:1", 'needs the attribute "version"'),
+    ("voicexml", '<vxml version="3.0" xmlns="http://www.w3.org/2001/vxml"/>', "1:16", 'is not a version of VoiceXML'),
     ("not-closed", app(form("<block>")), "2:21", "not well-formed"),
     ("mismatch", app(block("<speak>日本</speek>")), "2:30", "</speek> does not end <speak>"),
     ("no-namespace", "<prima/>", "1:1", "has no namespace"),

@@ -108,6 +108,32 @@ def test_a_service_answers_what_a_copy_lacks(tmp_path: Path) -> None:
     assert logged(api.rehearse(served(tmp_path, URI, more))) == ["the shop", "ordered"]
 
 
+def test_validation_looks_into_a_copy_as_a_run_does(tmp_path: Path) -> None:
+    copied(tmp_path, "there.vxml")
+    assert loading.validate([served(tmp_path, URI)]) == []
+    wrong = tmp_path / "site" / "voice" / "there.vxml"
+    wrong.write_text(vxml("<form><block><goto next='/app/gone.vxml'/><nothing/></block></form>"))
+    found = loading.validate([served(tmp_path, URI)])
+    assert [(str(one.place), one.code) for one in found] == [
+        (f"{wrong}:1:96", "no-such-file"),
+        (f"{wrong}:1:113", "unknown-element"),
+    ]
+    service = '<service name="s" uri="https://example.org/app/gone"/>'
+    found = loading.validate([served(tmp_path, URI, service)])
+    assert [one.code for one in found] == ["unknown-element"]
+
+
+def test_grammars_of_a_copy_name_each_other_by_their_uris(tmp_path: Path) -> None:
+    site = copied(tmp_path, "there.vxml")
+    drinks = (site / "grammars" / "a b.grxml").read_text()
+    (site / "grammars" / "tea.grxml").write_text(drinks.replace('id="r"', 'id="r" scope="public"'))
+    (site / "grammars" / "a b.grxml").write_text(
+        drinks.replace(">tea<", '><ruleref uri="/app/grammars/tea.grxml#r"/><')
+    )
+    assert loading.validate([served(tmp_path, URI)]) == []
+    assert logged(api.rehearse(served(tmp_path, URI))) == ["the shop", "there"]
+
+
 def test_without_a_folder_the_document_s_own_is_served(tmp_path: Path) -> None:
     copied(tmp_path, "there.vxml")
     (tmp_path / "site" / "voice" / "main.vxml").write_text(
@@ -131,7 +157,8 @@ def test_a_wrong_place_of_a_copy_is_an_error(
     tmp_path: Path, attributes: str, code: str, message: str
 ) -> None:
     copied(tmp_path, "there.vxml")
-    [problem] = loading.validate([served(tmp_path, attributes)])
+    found = loading.validate([served(tmp_path, attributes)])
+    [problem] = [one for one in found if one.severity == "error"]
     assert (problem.severity, problem.code) == ("error", code)
     assert message in problem.message
 

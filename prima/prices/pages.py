@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Iterator
 from urllib.parse import urldefrag, urlsplit
@@ -9,7 +10,6 @@ from urllib.parse import urldefrag, urlsplit
 from prima.deferred import dataclass
 from prima.errors import DocumentError
 from prima.markup.tree import Node
-from prima.markup.uris import join
 from prima.prices.model import Gap
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
@@ -94,10 +94,9 @@ class Pages:
         if uri not in self._known:
             self._known[uri] = None
             if len(self._known) <= MOST_PAGES:
-                file = f"{self.document.file.rpartition('/')[0]}/{uri}".lstrip("/")
-                file = uri if "/" not in self.document.file else file
+                file, site = posixpath.join(self.document.folder, uri), self.document.page.site
                 try:
-                    self._known[uri] = read_page(uri, file, self.document.fetch(uri))
+                    self._known[uri] = read_page(uri, file, self.document.fetch(uri), site)
                 except (FetchError, DocumentError):
                     return None  # the application is told of it: error.badfetch
         return self._known[uri]
@@ -110,7 +109,7 @@ class Pages:
     def recording(self, page: Page, node: Node, name: str) -> int | None:
         """How long (ms) a recording of the application's folder plays, if it can be played."""
         try:
-            uri = urldefrag(join(page.base(), name))[0]
+            uri = urldefrag(page.join(page.base(), name))[0]
             if self.document.glance is not None:
                 return length_ms(*self.document.glance(uri, HEADER_BYTES))
             whole = self.document.fetch(uri)

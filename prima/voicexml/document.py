@@ -54,6 +54,8 @@ class Page:
     dialogs: dict[str, Node] = field(default_factory=dict)
     """Forms and menus by their id, in document order; those without one by a number."""
     problems: list[Problem] = field(default_factory=list)
+    site: Site | None = None
+    """Where the application's folder was copied from."""
 
     @property
     def lang(self) -> str:
@@ -68,14 +70,20 @@ class Page:
 
     def base(self, node: Node | None = None) -> str:
         """What relative URIs are relative to, seen from the application's folder (1.5.1)."""
-        base = join(self.uri, self.root.get("xml:base"))
+        base = self.join(self.uri, self.root.get("xml:base"))
         if node is not None and node is not self.root:
-            base = join(base, node.get("xml:base"))
+            base = self.join(base, node.get("xml:base"))
         return base
 
     def resolve(self, uri: str, node: Node | None = None) -> str:
         """A URI written in this document, seen from the application's folder (6.1.1)."""
-        return join(self.base(node), uri)
+        return self.join(self.base(node), uri)
+
+    def join(self, base: str, uri: str) -> str:
+        """A URI seen from its base; what the folder stands for is a name in it."""
+        if not uri or self.site is None:
+            return join(base, uri)
+        return self.site.join(base, uri)
 
     def dialog(self, name: str) -> Node | None:
         """The dialog of that id, or the first one where there is no name."""
@@ -86,8 +94,8 @@ class Page:
         return check_code(self.root, set(self.dialogs))
 
 
-def read_page(uri: str, file: str, data: bytes) -> Page:
-    """Read a VoiceXML document.
+def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Page:
+    """Read a VoiceXML document, of a folder that was perhaps copied from a site.
 
     Raises:
         DocumentError: it is not well-formed, or no VoiceXML at all.
@@ -97,7 +105,7 @@ def read_page(uri: str, file: str, data: bytes) -> Page:
     check_root(root, (VOICEXML,))
     if old(root):
         upgrade(root)
-    page = Page(uri, root, problems=[*bare, *check_tree(root)])
+    page = Page(uri, root, problems=[*bare, *check_tree(root)], site=site)
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:
@@ -139,38 +147,37 @@ class VoiceDocument:
     node: Node
     glance: Glance | None = None
     """Where recordings are looked at; without it they are fetched."""
-    site: Site | None = None
-    """Where its folder was copied from: URIs in it are files of the folder."""
     watches: list[Json] = field(default_factory=list)
     forms: dict[str, Json] = field(default_factory=dict)
 
     @property
     def folder(self) -> str:
         """The folder whose files it may name."""
-        return self.site.folder if self.site is not None else os.path.dirname(self.file)
+        site = self.page.site
+        return site.folder if site is not None else os.path.dirname(self.file)
 
-    def name(self, uri: str) -> str | None:
-        """The name in the folder of what a URI leads to; None for what is asked for outside."""
-        if urlsplit(uri).scheme not in REMOTE:
+    def outside(self, uri: str) -> str:
+        """The URI to ask for outside the application's folder; nothing where it has the file."""
+        if urlsplit(uri).scheme in REMOTE:
             return uri
-        name = self.site.name(uri) if self.site is not None else None
-        if name is None:
-            return None
+        site = self.page.site
+        return site.whole(uri) if site is not None and not self._has(uri) else ""
+
+    def _has(self, name: str) -> bool:
         try:
             if self.glance is None:
                 self.fetch(name)
             else:
                 self.glance(name, 0)
         except FetchError:
-            return None
-        return name
+            return False
+        return True
 
-    def place(self, uri: str) -> str:
-        """How messages name what a URI has led to: as a file, seen from the first document."""
-        name = self.name(uri)
-        if name is None or self.site is None:
-            return uri
-        return self.site.seen(self.file, name)
+    def seen(self, name: str) -> str:
+        """A name in the folder as messages have it: seen from the first document's folder."""
+        if self.page.site is None or urlsplit(name).scheme in REMOTE:
+            return name
+        return os.path.relpath(os.path.join(self.folder, name), os.path.dirname(self.file) or ".")
 
     @property
     def lang(self) -> str:

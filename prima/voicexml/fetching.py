@@ -54,12 +54,12 @@ def load_page(
         Thrown: ``error.badfetch``, with what is wrong with the document; ``error.semantic``
             for an application root that names a root itself (1.5.2).
     """
-    asks = request is not None and owner.document.name(uri) is None
+    asks = request is not None and bool(owner.document.outside(uri))
     page = None if asks else owner.pages.get(uri)
     if page is None:
         data = yield from fetch(owner, uri, node, request)
         try:
-            page = read_page(uri, owner.document.place(uri), data)
+            page = read_page(uri, owner.document.seen(uri), data, owner.document.page.site)
             error = broken(page)
         except DocumentError as failure:
             error = failure
@@ -83,21 +83,16 @@ def fetch(
         Thrown: ``error.badfetch``, with ``.http.STATUS`` where a host has answered so (5.2.6).
     """
     whole = urldefrag(uri)[0]
-    name = owner.document.name(whole)
-    if name is not None:
-        return _weighed(owner, _file(owner, name, node), node)
-    answer = yield from _asked(owner, whole, node, request or Request())
+    asked = owner.document.outside(whole)
+    if not asked:
+        return _weighed(owner, _file(owner, whole, node), node)
+    answer = yield from _asked(owner, asked, node, request or Request())
     if answer.problem:
         name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
-        where = f"{source(node)}: {whole}: {_missing(owner, whole)}"
-        raise Thrown(name, f"{where}{answer.problem}", source(node))
+        missing = "the folder has no such file; " if asked != whole else ""
+        message = f"{source(node)}: {asked}: {missing}{answer.problem}"
+        raise Thrown(name, message, source(node))
     return _weighed(owner, answer.body.encode(answer.charset), node)
-
-
-def _missing(owner: Machine, uri: str) -> str:
-    """What to say first where a file of the folder could have been meant."""
-    site = owner.document.site
-    return "the folder has no such file; " if site and site.name(uri) is not None else ""
 
 
 def _weighed(owner: Machine, data: bytes, node: Node) -> bytes:
@@ -146,9 +141,11 @@ def held(owner: Machine, uri: str, node: Node) -> bytes:
         Thrown: ``error.badfetch``; :class:`Missing` while nobody has asked for it.
     """
     whole = urldefrag(uri)[0]
-    name = owner.document.name(whole)
-    if name is not None:
-        return _file(owner, name, node)
+    site = owner.document.page.site
+    if site is not None:
+        whole = site.name(whole)  # which a grammar has named
+    if not owner.document.outside(whole):
+        return _file(owner, whole, node)
     found = owner.resources.get(whole)
     if found is None:
         raise Missing(whole, node)

@@ -109,6 +109,8 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
             name, rule = urldefrag(uri)
             what = fetch(name)
         base = urldefrag(uri)[0] or page.base()
+        if page.site is not None:
+            base = page.site.whole(base)
         made = load(
             what,
             base=base,

@@ -24,6 +24,9 @@ class Pages:
 
     def __init__(self, first: Page, file: str, fetch: Fetch) -> None:
         self._folder = file[: len(file) - len(first.uri)] if file.endswith(first.uri) else ""
+        if first.site is not None:
+            self._folder = f"{first.site.folder}/"
+        self._site = first.site
         self._fetch = fetch
         self._pages: dict[str, Page | None] = {first.uri: first}
         self.problems: list[Problem] = []
@@ -52,7 +55,8 @@ class Pages:
             return None
         page: Page | None = None
         try:
-            page = read_page(uri, f"{self._folder}{unquote(uri)}", self._fetch(uri))
+            file = f"{self._folder}{unquote(uri)}"
+            page = read_page(uri, file, self._fetch(uri), self._site)
         except FetchError:
             pass  # told where it is named
         except DocumentError as error:

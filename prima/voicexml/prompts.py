@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
@@ -13,7 +12,6 @@ from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
 from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.expressions import statement_place
 from prima.markup.tree import Node
-from prima.markup.uris import join
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.values import shown
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, said_last
@@ -27,7 +25,7 @@ from prima.voicexml.cues import (
     milliseconds,
     rate_of,
 )
-from prima.voicexml.document import FetchError
+from prima.voicexml.document import FetchError, Page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -382,7 +380,7 @@ class Speaker:
                 speech.parts.append(f" {name} ")
                 speech.close(opened)
                 return
-        ms = self.recording(context.page.base(), speech.base, name)
+        ms = self.recording(context.page, speech.base, name)
         speech.parts.append(" ")
         if node.text or any(one.tag not in SILENT for one in node.nodes):
             silent, speech.silent = speech.silent, speech.silent or ms is not None
@@ -396,13 +394,13 @@ class Speaker:
             speech.close(opened)
         speech.parts.append(" ")
 
-    def recording(self, *uris: str) -> int | None:
+    def recording(self, page: Page, base: str, name: str) -> int | None:
         """How long (ms) a recording of the application's folder plays, if it can be played.
 
-        ``uris`` are its URI and before it the bases that it is relative to, outermost first.
+        ``name`` is relative to a prompt's own ``base``, and that to the page's.
         """
         try:
-            uri = urldefrag(reduce(join, uris))[0]
+            uri = urldefrag(page.join(page.join(page.base(), base), name))[0]
             if uri not in self._known:
                 if len(self._known) >= MAX_KNOWN:
                     self._known.clear()
@@ -413,12 +411,9 @@ class Speaker:
 
     def _look_at(self, uri: str) -> int | None:
         document = self.owner.document
-        name = document.name(uri)
-        if name is None:
-            return None
         if document.glance is not None:
-            return length_ms(*document.glance(name, HEADER_BYTES))
-        whole = document.fetch(name)
+            return length_ms(*document.glance(uri, HEADER_BYTES))
+        whole = document.fetch(uri)
         return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from urllib.parse import quote, unquote, urlsplit
+from urllib.parse import quote, unquote, urljoin, urlsplit
+
+from prima.markup.uris import legal
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,13 +20,20 @@ class Site:
     root: str
     folder: str
 
-    def name(self, uri: str) -> str | None:
-        """The name of a URI's file, seen from the folder; None for a URI beside or above it."""
-        return uri[len(self.root) :] if uri.startswith(self.root) else None
+    def whole(self, uri: str) -> str:
+        """The URI of a name in the folder; any other one as it is."""
+        return uri if urlsplit(legal(uri)).scheme else f"{self.root}{uri}"
 
-    def seen(self, file: str, name: str) -> str:
-        """A name in the folder, seen from the folder of another file."""
-        return os.path.relpath(os.path.join(self.folder, name), os.path.dirname(file) or ".")
+    def name(self, uri: str) -> str:
+        """The name in the folder of a URI's file; a URI beside or above it as it is."""
+        if not uri.startswith(self.root):
+            return uri
+        name = uri[len(self.root) :]
+        return f"./{name}" if ":" in name.partition("/")[0] else name  # it is no scheme
+
+    def join(self, base: str, uri: str) -> str:
+        """A URI seen from its base, a name in the folder where it leads there."""
+        return self.name(urljoin(self.whole(base), legal(uri)))
 
 
 def site_of(file: str, uri: str, folder: str = "") -> Site:
