@@ -56,8 +56,8 @@ def one_by_one(patch: pytest.MonkeyPatch) -> None:
     def number(self: Selector, stream: Stream, rule: str) -> None:
         take(self, stream, rule)
         for other in self.memory.streams.values():
-            if other.suspended == self._suspensions:
-                other.suspended = self._suspensions * 100 + other.turn
+            if other.place == self._suspensions:
+                other.place = self._suspensions * 100 + other.turn
 
     patch.setattr(Selector, "take_floor", number)
 
@@ -109,7 +109,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("s2c", "dropped", put(rules, "s2c", lambda ab, now: 0)),
     ("s2c", "reversed", wrapped(rules, "s2c", lambda r: -r)),
     ("s2d", "dropped", put(rules, "s2d", lambda ab: 0)),
-    ("s2d", "reversed", put(rules, "s2d", lambda ab: ab.stream.suspended or 99)),
+    ("s2d", "reversed", put(rules, "s2d", lambda ab: ab.stream.place or 99)),
     ("s2d", "what has not begun is suspended", everything_begun),
     ("s2d", "one by one", one_by_one),
     ("s2e", "dropped", put(rules, "s2e", lambda ab: 0)),

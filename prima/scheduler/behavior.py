@@ -53,8 +53,11 @@ class Stream:
     engaged: bool = False
     causes: set[int] = field(default_factory=set)
     """Serial numbers of the events that the stream has reacted to (F2)."""
-    suspended: int | None = None
-    """When the stream was suspended, as a counter: the greatest was suspended last (S2d)."""
+    suspended: bool = False
+    """Whether another stream has taken the floor and nothing of this one has started since (C2)."""
+    place: int = 0
+    """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
+    that resumes keeps its place until the selection is over; 0 for others."""
     effects: Effects = field(default_factory=Effects)
     hold: int | None = None
     """How long (ms) the stream is kept open for an event, by its latest request (X3)."""

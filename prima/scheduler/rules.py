@@ -36,9 +36,8 @@ def s2c(ab: Behavior, now: int) -> int:
 
 
 def s2d(ab: Behavior) -> int:
-    """Then the stream suspended last; the numbers of suspensions begin with 1."""
-    suspended = ab.stream.suspended
-    return 1 if suspended is None else -suspended
+    """Then the stream suspended last; those that are not come after them."""
+    return -ab.stream.place
 
 
 def s2e(ab: Behavior) -> int:

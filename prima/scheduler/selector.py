@@ -59,6 +59,9 @@ class Selector:
                 self._advance(unit, now)
         while memory.waiting and self._pass(now):
             pass
+        for name, stream in self.turns:
+            if name == "resumed" and not stream.suspended:
+                stream.place = 0
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true if another pass may find one that may start.
@@ -200,7 +203,7 @@ class Selector:
         if ab.inserted:
             return False
         on_its_way = any(one.inserted == "X1" for one in ab.stream.members.values())
-        if ab.stream.suspended is not None and self.policy.has("x1") and not on_its_way:
+        if ab.stream.suspended and self.policy.has("x1") and not on_its_way:
             own = ab.type.effects if ab.type is not None else frozenset()
             commands = ab.stream.effects.missing(own, self.body)
             if self._insert(ab, commands, "X1", now):
@@ -310,7 +313,7 @@ class Selector:
             stream.spoken = True
         if ab.engages:
             self.memory.engage(stream)
-        if stream.suspended is not None and ab.unit is None:
+        if stream.suspended and ab.unit is None:
             self._resume(stream, ab)
         if ab.command is not None:
             order = Order(
@@ -359,14 +362,14 @@ class Selector:
         ]
         self._suspensions += 1
         for other in begun:
-            if other.suspended is None:
-                other.suspended = self._suspensions
+            if not other.suspended:
+                other.suspended, other.place = True, self._suspensions
                 self.turns.append(("suspended", other))
                 self.chronicle.stream("suspend", other, "C2", by=stream.name)
 
     def _resume(self, stream: Stream, ab: Behavior) -> None:
         """C2: a suspended stream goes on with an AB."""
-        stream.suspended = None
+        stream.suspended = False
         self.turns.append(("resumed", stream))
         self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
 

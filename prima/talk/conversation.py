@@ -318,7 +318,7 @@ def _situation(game: Game) -> list[str]:
     for stream in memory.streams.values():
         if stream.open:
             held = " has the floor" if stream is memory.holder else ""
-            held = " is suspended" if stream.suspended is not None else held
+            held = " is suspended" if stream.suspended else held
             lines.append(f"  stream {stream.name}{held}: {', '.join(stream.members) or 'held'}")
     if game.asks is not None:
         options = game.options()

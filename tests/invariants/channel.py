@@ -36,6 +36,9 @@ class Channel(Memory):
         """E5: the record has the number that reactions to it name."""
         self.halted = record["outcome"] == "pressed"
         self.released = self.released or not self.halted
+        if not self.halted and not (record.get("data") or {}).get("resume", True):
+            for tree in self.trees.values():
+                tree.hold = None  # X3 holds none that the operator does not resume
         if record.get("serial") is None:
             self.report(15, "E5", f"the emergency stop is {record['outcome']} without a number")
         self.note_serial(record)
