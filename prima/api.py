@@ -53,6 +53,8 @@ class Transcript:
     name: str = ""
     failures: list[str] = field(default_factory=list)
     """Applications that ended by an error, as ``NAME: what``."""
+    defects: list[Exception] = field(default_factory=list)
+    """What has gone wrong in PRIMA itself, and ended applications."""
     outcome: str = ""
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
     unfinished: list[str] = field(default_factory=list)
@@ -196,6 +198,7 @@ def rehearse(
             if sink is not None:
                 sink(line(record))
     made.failures = list(rehearsal.session.failures)
+    made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome
     if made.outcome == "until":
         made.unfinished = _unfinished(rehearsal)

@@ -198,7 +198,10 @@ def _inside(folder: Path, uri: str) -> Path:
     if parts.scheme not in ("", "file"):
         raise FetchError(f"{parts.scheme}: is not fetched: no network is used", "error.badfetch")
     root = folder.resolve()
-    target = (root / unquote(parts.path).lstrip("/")).resolve()
+    try:
+        target = (root / unquote(parts.path).lstrip("/")).resolve()
+    except (OSError, ValueError, RuntimeError) as error:  # a NUL, links that lead round
+        raise FetchError(f"it names no file: {error}", "error.badfetch") from None
     if root != target and root not in target.parents:
         raise FetchError("it is outside the application's folder")
     return target

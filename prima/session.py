@@ -10,7 +10,8 @@ the inbound values is a journal, and feeding them again a replay.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -105,6 +106,8 @@ class Session:
         self.unheard = ""
         """What the user said last that nobody took."""
         """Applications that ended by an error, as ``NAME: what``."""
+        self.defects: list[Exception] = []
+        """What has gone wrong in interpreters themselves: each has ended its application."""
         self._serial = 0
         self._promoted = 0
         """The serial number of the event that was promoted last."""
@@ -144,12 +147,8 @@ class Session:
         orders: list[Order] = []
         if mediator.changed:  # else it has given no orders either
             mediator.select()
+            self._note_turns()
             orders = mediator.drain_orders()
-            self._turns += [
-                (name, stream)
-                for name, stream in mediator.drain_turns()
-                if self.apps[stream.app.name].takes(name)
-            ]
         if self._sends:
             orders += self._sends
             self._sends = []
@@ -256,7 +255,8 @@ class Session:
                 self._record("unload", "environment", app=value.app, data=place_data(value))
                 app = self.apps.get(value.app)
                 if app is not None and value.app in self._loaded:
-                    app.stop()
+                    with self._contained(app):
+                        app.stop()
                     self._act(app)
 
     def _emergency(self, value: Emergency) -> None:
@@ -266,9 +266,22 @@ class Session:
         name = "emergency.stop" if value.pressed else "emergency.release"
         event = Event(name, self._serial, {}, reactive=True, shared=True)
         for app in self._in_order():
-            app.event(self.chronicle.now, event)
+            with self._contained(app):
+                app.event(self.chronicle.now, event)
             self._act(app)
         self._settle()
+
+    @contextmanager
+    def _contained(self, app: App) -> Iterator[None]:
+        """E2: what goes wrong in an application's interpreter ends that application alone."""
+        try:
+            yield
+        except Exception as error:
+            self._defect(app, error)
+
+    def _defect(self, app: App, error: Exception) -> None:
+        self.defects.append(error)
+        app.fail(error)
 
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
         self.chronicle.add(phase, actor, inbound=True, **fields)
@@ -289,7 +302,8 @@ class Session:
         if not isinstance(app, Interpreter):
             app.connection = value.connection
         self.mediator.load(name, app.kind, app.document.lang, self.order[name])
-        app.start(self.chronicle.now)
+        with self._contained(app):
+            app.start(self.chronicle.now)
         self._act(app)
         if self._sensors:  # what it watches for may be so already
             self._look(app, {})
@@ -308,7 +322,10 @@ class Session:
             apps = self._in_order()
         event = Event(name, serial, data, True, shared=app is None)
         for one in apps:
-            one.event(self.chronicle.now, event)
+            try:
+                one.event(self.chronicle.now, event)
+            except Exception as error:  # as _contained does, which takes longer
+                self._defect(one, error)
             if one.actions or self._due or one.deadline is not None:
                 self._act(one)
 
@@ -338,11 +355,14 @@ class Session:
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
             return
         if question is not None and question.run is not None:
-            answer = self.apps[question.app.name].answer(question.run.number, said)
+            asking, answer, link = self.apps[question.app.name], None, None
+            with self._contained(asking):
+                answer = asking.answer(question.run.number, said)
             if answer is not None:
                 self._conclude(question.id, value.filled(answer))
                 return
-            link = self.apps[question.app.name].listens_to(said)
+            with self._contained(asking):
+                link = asking.listens_to(said)
             if link is not None and link.event:
                 # As in VoiceXML, a link ends the input of the field that is being visited.
                 self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
@@ -371,10 +391,14 @@ class Session:
             if isinstance(app, Interpreter) or ab.command is None or ab.silent:
                 continue
             during: Command | None = ab.command
-            if ab.state is WAITING:  # between two prompts, the first of which has just ended
-                during = app.before(ab.command) if ab.freed == now else None
-            if during is not None and app.breaks_in(now, during, value, said):
+            taken = False
+            with self._contained(app):
+                if ab.state is WAITING:  # between two prompts, the first of which has just ended
+                    during = app.before(ab.command) if ab.freed == now else None
+                taken = during is not None and app.breaks_in(now, during, value, said)
+            if taken or app.over:
                 self._act(app)
+            if taken:
                 return True
         return False
 
@@ -382,18 +406,20 @@ class Session:
         taken = False
         event = Event("speech", self._serial, {"text": text})
         for app in self._in_order():
-            link = app.listens_to(said)
-            if link is not None:
-                taken = True
-                app.follow(self.chronicle.now, link, event)
-                self._act(app)
+            with self._contained(app):
+                link = app.listens_to(said)
+                if link is not None:
+                    taken = True
+                    app.follow(self.chronicle.now, link, event)
+            self._act(app)
         return taken
 
     def _answered(self, value: Fetched | Transferred) -> None:
         """An answer goes to the application that has asked."""
         app = self.apps.get(value.app)
         if app is not None and not isinstance(app, Interpreter) and value.app in self._loaded:
-            app.replied(self.chronicle.now, value)
+            with self._contained(app):
+                app.replied(self.chronicle.now, value)
             self._act(app)
             self._settle()
 
@@ -413,7 +439,10 @@ class Session:
 
     def _look(self, app: App, values: Data) -> None:
         """C6: an application is told of sensors, and its conditions on them may have turned true."""
-        for name in app.sensed(self.chronicle.now, values):
+        raised: list[str] = []
+        with self._contained(app):
+            raised = app.sensed(self.chronicle.now, values)
+        for name in raised:
             self._own_event(app, name, {}, reactive=True)
         self._act(app)
 
@@ -425,7 +454,8 @@ class Session:
     def _handle_own(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
         """Let the application handle its own event; what it wants then is still to be done."""
         serial = self._record_own(app, name, data, "environment")
-        app.event(self.chronicle.now, Event(name, serial, data, reactive))
+        with self._contained(app):
+            app.event(self.chronicle.now, Event(name, serial, data, reactive))
 
     def _record_own(self, app: App, name: str, data: Data, actor: str) -> int:
         """Record an event that one application alone has defined; gives its serial number."""
@@ -447,7 +477,10 @@ class Session:
         if not self._due or min(self._due.values()) > now:
             return
         for app in self._in_order():
-            for name, data in app.expire(now):
+            due: list[tuple[str, Data]] = []
+            with self._contained(app):
+                due = app.expire(now)
+            for name, data in due:
                 self._own_event(app, name, dict(data), reactive=False)
             self._act(app)
 
@@ -466,9 +499,20 @@ class Session:
             return
         self.mediator.open_window(told)
         for notice in told.notices:
-            app.notice(self.chronicle.now, notice)
+            with self._contained(app):
+                app.notice(self.chronicle.now, notice)
             self._act(app)
         self.mediator.close_window(told)
+
+    def _note_turns(self) -> None:
+        """Keep the streams that were suspended or have resumed of which an application will hear."""
+        for name, stream in self.mediator.drain_turns():
+            app = self.apps[stream.app.name]
+            with self._contained(app):
+                if app.takes(name):
+                    self._turns.append((name, stream))
+            if app.over and app.actions:
+                self._act(app)
 
     def _tell_turns(self) -> None:
         """Tell applications that their streams were suspended or have resumed (C2).
@@ -480,7 +524,8 @@ class Session:
             app = self.apps[stream.app.name]
             told = Told(app.name, stream if stream.open else None, [])
             self.mediator.open_window(told)
-            app.event(self.chronicle.now, Event(name, 0, {}, reactive=False, shared=True))
+            with self._contained(app):
+                app.event(self.chronicle.now, Event(name, 0, {}, reactive=False, shared=True))
             self._act(app)
             self.mediator.close_window(told)
 
@@ -522,7 +567,8 @@ class Session:
                 case Promote():
                     self._promoted = self._record_own(app, action.event, {}, "robot")
                 case GoOn() if isinstance(app, Interpreter):
-                    app.go_on_entering(action.state)
+                    with self._contained(app):
+                        app.go_on_entering(action.state)
                 case Quit():
                     self._quit(app, action)
 

@@ -262,6 +262,7 @@ def perform(play: Play, policy: str = "prima", bound: int | None = None) -> Run:
             devices.order(now, order)
         records += session.drain()
     run = Run(records, steps < STEPS, _orders_match(records, devices.starts))
+    run.problems += [f"a defect: {error!r}" for error in session.defects]
     if run.complete:
         run.problems += _stuck(session)
     return run

@@ -202,6 +202,8 @@ def _run_one(
         put(transcript.table(why, columns()))
     if transcript.unfinished:
         tell(f"{_stopped(transcript)} {'; '.join(transcript.unfinished)}.")
+    if transcript.defects and "PRIMA_DEBUG" in os.environ:
+        raise transcript.defects[0]
     if transcript.failures:
         from prima.batch import told_failure
 

@@ -44,7 +44,6 @@ from prima.interpreter.reactions import DONE
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.messages import (
     PROMOTED,
-    Action,
     CloseUnit,
     Command,
     Data,
@@ -91,8 +90,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         super().__init__(evaluator_of(document, engine))
         self.quick = isinstance(self.engine, PlainEngine) == document.plain
         """Whether what an event does may be done by a function, where nobody can look into it."""
-        self.actions: list[Action] = []
-        self.over = False
         self.application = self.engine.named("application")
         self.execute = Executor(self)
         self.handling = Handling(self)
@@ -105,8 +102,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         self._sends = count(1)
         self._timers: list[tuple[int, int, str, Data, int]] = []
         """Delayed events: when, serial number, name, data, and the state they belong to."""
-        self.deadline: int | None = None
-        """When :meth:`expire` wants to be called, if ever."""
         self._timer_serial = count(1)
         self.armed: dict[int, Armed] = {}
         self.sensors: dict[str, Json] = {}

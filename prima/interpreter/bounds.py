@@ -9,7 +9,7 @@ from prima.interpreter.content import source
 from prima.interpreter.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Notice
+from prima.messages import Action, Notice, Quit, Say
 from prima.prelude import START
 from prima.values import moment
 
@@ -33,6 +33,11 @@ class Bounds(Generic[Evaluator]):
 
     def __init__(self, engine: Evaluator) -> None:
         self.engine = engine
+        self.actions: list[Action] = []
+        """What the application wants, for the session to carry out."""
+        self.over = False
+        self.deadline: int | None = None
+        """When the application wants to be called, if ever (ms)."""
         self.began = moment(START)
         """When the run began by its own calendar (ms since 1970, UTC)."""
         self.now = -1
@@ -44,6 +49,8 @@ class Bounds(Generic[Evaluator]):
         self.hurried = -1
         """An instant that is none of its own: of an event sent without delay just before."""
         self._failures = 0
+        self._latest: Node | None = None
+        """What was gone through last."""
         self._output = 0
         self._spent = 0.0
         """Seconds of scripts in the instants before."""
@@ -63,6 +70,7 @@ class Bounds(Generic[Evaluator]):
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""
         self.steps += steps
+        self._latest = node
         if self.steps > MAX_STEPS:
             self.give_up(node, "it loops without ever waiting")
         if self._spent > MAX_RUN_SECONDS:
@@ -87,6 +95,13 @@ class Bounds(Generic[Evaluator]):
             place = notice.command.source if notice.command is not None else ""
             reason = f"{MAX_FAILURES:,} Commands in a row failed, were refused or cancelled"
             raise GoOut(f"error.semantic: {place}: {reason}", True, place)
+
+    def fail(self, error: Exception) -> None:
+        """E2: the interpreter itself has failed, and ends the application, wherever it was."""
+        place = source(self._latest) if self._latest is not None else ""
+        reason = f"{place}: this is a defect of prima: {type(error).__name__}: {error}"
+        self.over, self.deadline = True, None
+        self.actions[:] = [Say("error", reason, place), Quit(reason, True, place)]
 
     def give_up(self, node: Node, reason: str) -> NoReturn:
         """End the application: it has gone past a limit that no handler can mend."""

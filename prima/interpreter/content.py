@@ -325,8 +325,9 @@ class Executor:
 
     def commands(self, act: Run, fiber: Fiber) -> Content:
         """Request Commands as one tree and wait for their end (U3, O4)."""
-        number = self.owner.request(self.steps(act.steps, fiber), fiber)
-        yield from self.await_run(number, fiber)
+        steps = self.steps(act.steps, fiber)
+        if steps:  # else it is a par or seq without Commands
+            yield from self.await_run(self.owner.request(steps, fiber), fiber)
 
     def await_run(self, number: int, fiber: Fiber) -> Content:
         """Wait for a run's fate; a failure becomes an event, a cancellation ends the content."""

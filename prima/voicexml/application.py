@@ -12,7 +12,6 @@ from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import (
-    Action,
     Command,
     Data,
     Event,
@@ -51,11 +50,8 @@ class VoiceInterpreter(Bounds["Engine"]):
         self.kind = document.kind
         self.arguments = arguments or {}
         super().__init__(Engine(SCOPES))
-        self.actions: list[Action] = []
         self.sensors: dict[str, Json] = {}
-        self.over = False
         self.heard: Heard | None = None
-        self.deadline: int | None = None
         self._machine = Machine(self)
         self._flow: Flow | None = None
         self._runs = count(1)

@@ -1,0 +1,95 @@
+"""What goes wrong in one application ends that application alone (E2)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.interpreter.application import Interpreter
+from prima.messages import Ended, Event, Sensed
+from tests.robot import Bench, document
+
+HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="x">'
+VXML = (
+    '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form><block>{}</block></form></vxml>'
+)
+HELLO = '<form id="f"><on event="touch"><speak>Hello.</speak></on></form>'
+
+
+@pytest.mark.parametrize(
+    "content", ["<par/>", "<seq/>", "<par><seq/></par>", "<par><seq/><seq/></par>"]
+)
+def test_branches_without_commands_take_no_time(content: str) -> None:
+    bench = Bench(f'<form id="f"><block>{content}<speak>Hi.</speak></block></form>')
+    assert bench.saying() == ["Hi."]
+
+
+def test_a_watch_that_fails_leaves_the_others_alone() -> None:
+    bench = Bench(
+        """<watch name="one" when="sensor.arm.joint.angle > 1"/><watch name="two" when="sensor.light &lt; 5"/>
+        <on event="error"><log>failed</log></on><on event="two"><log>dark</log></on>
+        <form id="f"/>"""
+    )
+    bench.step(Sensed({"light": 3}))
+    assert sorted(bench.logs()) == ["dark", "failed"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<goto next="%00"/>',
+        "<goto expr=\"'a%00.vxml'\"/>",
+        "<script srcexpr=\"'a%00b'\"/>",
+        '<goto next="round.vxml"/>',
+    ],
+)
+def test_what_names_no_file_is_badfetch(content: str, tmp_path: Path) -> None:
+    (tmp_path / "round.vxml").symlink_to("about.vxml")
+    (tmp_path / "about.vxml").symlink_to("round.vxml")
+    (tmp_path / "y.vxml").write_text(VXML.format(content))
+    (tmp_path / "fa.xml").write_text(HEAD.replace("ea", "fa") + HELLO + "</prima>")
+    loaded = api.stage([str(tmp_path / "fa.xml")], [str(tmp_path / "y.vxml")])
+    made = api.rehearse(loaded)
+    assert made.defects == []
+    assert len(made.failures) == 1 and "error.badfetch" in made.failures[0]
+
+
+@pytest.mark.parametrize("where", ["event", "start", "takes", "notice", "sensed"])
+def test_a_defect_of_an_interpreter_costs_its_application_alone(
+    where: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = getattr(Interpreter, where)
+
+    def broken(self: Interpreter, *given: object) -> object:
+        if self.name == "bad":
+            raise IndexError("list index out of range")
+        return whole(self, *given)
+
+    monkeypatch.setattr(Interpreter, where, broken)
+    bad = '<form id="f"><block><speak>One.</speak><speak>Two.</speak></block></form>'
+    bench = Bench(document(bad, "ea", "bad"), document(HELLO, "fa", "good"))
+    for _ in range(3):
+        bench.event("touch.head")
+        while bench.running():
+            bench.step(*[Ended(name) for name in bench.running()])
+        bench.step(Sensed({"light": 1}))
+    assert bench.said().count("Hello.") == 3
+    assert {type(error) for error in bench.session.defects} == {IndexError}
+    (over,) = bench.phases("unload")
+    assert over["app"] == "bad" and "this is a defect of prima: IndexError" in over["outcome"]
+
+
+def test_a_defect_names_the_line_that_was_gone_through(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench(
+        '<form id="f">\n<block><log>on</log></block>\n<on event="a"><log>b</log></on></form>'
+    )
+
+    def broken(self: Interpreter, now: int, event: Event) -> None:
+        raise KeyError("b")
+
+    monkeypatch.setattr(Interpreter, "event", broken)
+    bench.event("a")
+    (error,) = bench.phases("error")
+    assert error["message"].startswith("app.xml:2:8: this is a defect of prima")
