@@ -85,10 +85,16 @@ class Ignores:
         self._settings: dict[str, Settings | None] = {}
         self._checked: dict[str, str] = {}
         """The documents that have been checked, by the names by which they are told."""
+        self._errors: dict[str, set[str]] = {}
+        """The codes of errors by document: who knows which warnings it would get without them."""
 
     def left(self, problems: Iterable[Problem]) -> list[Problem]:
         """The problems that nobody ignores."""
-        return [problem for problem in problems if not self._ignored(problem)]
+        found = list(problems)
+        for problem in found:
+            if problem.severity == "error":
+                self._errors.setdefault(absolute(problem.place.file), set()).add(problem.code)
+        return [problem for problem in found if not self._ignored(problem)]
 
     def check(self, file: str) -> None:
         """Look at the ignores of a document itself, once its problems have been sifted."""
@@ -101,7 +107,9 @@ class Ignores:
         for path, file in self._checked.items():
             ignores, problems = self._of_document(path, file)
             found += problems
-            found += [_unused(one) for one in ignores if self._is_idle(one)]
+            errors = self._errors.get(path)
+            idle = [one for one in ignores if self._is_idle(one)]
+            found += [_unused(one) for one in idle if errors is None or one.code in errors]
             if (own := self._of_folder(dirname(path))) is not None:
                 settings[own.path] = own
         for own in settings.values():
@@ -122,7 +130,7 @@ class Ignores:
         return not ignore.used and (empty or ignore.code not in OF_SCENARIOS)
 
     def _is_over(self, ignore: Ignore, settings: Settings) -> bool:
-        """Whether an entry has no use, and all documents that it names have been checked."""
+        """Whether an entry has no use, and all documents that it names are checked, and right."""
         if ignore.used:
             return False
         from pathlib import Path  # seldom needed
@@ -130,7 +138,7 @@ class Ignores:
         within = Path(settings.path).parent.rglob("*")
         documents = (str(one) for one in within if one.suffix in KINDS)
         return all(
-            one in self._checked
+            one in self._checked and one not in self._errors
             for one in documents
             if any(ignore is other for other in settings.for_file(one))
         )

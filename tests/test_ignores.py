@@ -148,6 +148,15 @@ def test_an_entry_is_unused_only_when_all_its_files_have_been_checked(tmp_path: 
     assert Path(problem.place.file) == tmp_path / "prima.toml" and problem.place.line == 1
 
 
+def test_beside_an_error_nothing_is_said_to_be_ignored_in_vain(tmp_path: Path) -> None:
+    # The error keeps the checks from running whose warning is ignored.
+    ignore = "<!-- prima-ignore: no-noinput Next guest, please. -->"
+    field = '<field name="a" type="boolean"><prompt>Yes?</prompt><filled>{}</filled></field>'
+    for content, codes in (("<exit/>", []), ("<speek/>", ["unknown-element"])):
+        path = write(tmp_path, ignore + field.format(content))
+        assert told(path) == codes
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -17,7 +17,7 @@ SMALL = frozenset({"a", "an", "and", "at", "by", "for", "of", "on", "the", "to",
 """Words of a title that have no capital."""
 COLUMNS = 80
 """Of a table that is not shown on a terminal, or on one that does not say how wide it is."""
-NARROWEST = 24
+NARROWEST = 20
 """Columns of the behaviour, however long the names of applications are."""
 CLOSING = frozenset(
     "\u3001\u3002\uff0c\uff0e\uff01\uff1f\u300d\u300f\uff09\u30fc\u3083\u3085\u3087\u3063\u30e3\u30e5\u30e7\u30c3,.!?)\"'"
