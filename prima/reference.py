@@ -259,6 +259,11 @@ def limits() -> str:
             f"{bounds.MAX_STEPS:,}",
             "the application ends",
         ),
+        (
+            f"waits of less than {bounds.BRIEF_MS} ms in a row, each begun as soon as the last is over",
+            f"{bounds.MOST_BRIEF:,}",
+            "the application ends",
+        ),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
         ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),

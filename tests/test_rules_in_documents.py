@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from prima.interpreter.bounds import MAX_FAILURES
-from prima.messages import Ended, Occurred, Sensed
+from prima.interpreter.bounds import MOST_BRIEF
+from prima.messages import Ended, Failed, Occurred, Sensed
 from tests.robot import Bench, document
 
 IDLE = '<form id="sleep"/>'
@@ -191,98 +191,38 @@ def test_c5_a_reaction_to_an_end_has_a_cause_of_its_own() -> None:
     assert request["reactive"] and events[request["cause"]] == "end.speak"
 
 
-def test_e1_an_application_whose_commands_all_fail_ends_alone() -> None:
-    bench = pair(
-        """<form id="a"><block name="b"><gesture name="fly"/></block>
-        <on event="error"><clear namelist="b"/></on></form>""",
-        HELLO,
-    )
-    for _ in range(MAX_FAILURES + 1):
-        if "gesture" in bench.saying():
-            bench.fail("gesture", "arm")
-    assert bench.saying() == []
+BUSY = {
+    "refused": """<block name="b"><turn angle-expr="'left'"/></block>
+        <on event="error"><clear namelist="b"/></on>""",
+    "failed": """<block name="b"><gesture name="fly"/></block>
+        <on event="error"><clear namelist="b"/></on>""",
+    "failed beside others": """<block name="b"><gesture name="fly"/></block>
+        <on event="error"><move-head pan="10"/><clear namelist="b"/></on>""",
+    "done at once": """<block name="b"><stop-moving/><clear namelist="b"/></block>""",
+    "paused": """<block name="b"><pause time="1ms"/><clear namelist="b"/></block>""",
+    "asked": """<field name="a" type="boolean"><property name="timeout" value="1ms"/>
+        <noinput/></field>""",
+}
+
+
+@pytest.mark.parametrize("body", BUSY.values(), ids=BUSY.keys())
+def test_e2_an_application_that_hardly_waits_ends_alone(body: str) -> None:
+    bench = pair(f'<form id="a">\n{body}</form>', HELLO)
+    for _ in range(3 * MOST_BRIEF):
+        for name, what in bench.running().items():
+            fails = what == "gesture"
+            end = Failed(name, "arm", "no such gesture") if fails else Ended(name)
+            bench.step(end, at=bench.now + 1)
     (over,) = bench.phases("unload")
-    assert over["app"] == "ea" and "ea.xml:1" in over["outcome"]
+    assert over["app"] == "ea" and f"{MOST_BRIEF:,} times in a row" in over["outcome"]
+    assert over["outcome"].startswith("error.semantic: ea.xml:2:")
     bench.event("touch")
     assert bench.saying() == ["Hello."]
 
 
-def test_e3_an_application_whose_commands_are_all_refused_ends_alone() -> None:
-    bench = pair(
-        """<form id="a"><block name="b"><turn angle-expr="'left'"/></block>
-        <on event="error"><clear namelist="b"/></on></form>""",
-        HELLO,
-    )
-    assert [r["app"] for r in bench.phases("unload")] == ["ea"]
-    bench.event("touch")
-    assert bench.saying() == ["Hello."]
-
-
-# Pauses -------------------------------------------------------------------------------------------
-
-COUNTS = """<form id="a"><block>
-  <speak>Three.</speak><pause time="2s"/><speak>Two.</speak><exit/>
-</block></form>"""
-TALKS = """<form id="a"><on event="train"><speak>I like trains.</speak></on>
-  <on event="touch"><speak>Ouch.</speak></on>
-  <on event="later" reactive="false"><speak>By the way.</speak></on></form>"""
-
-
-def test_s4_a_reaction_starts_at_once_in_a_pause_which_goes_on() -> None:
-    bench = pair(COUNTS, TALKS)
-    bench.finish("Three.")
-    assert bench.saying() == ["pause"]
-    bench.event("touch")
-    assert bench.saying() == ["Ouch.", "pause"]
-    bench.finish("pause")
-    assert bench.saying() == ["Ouch."]
-    bench.finish("Ouch.")
-    assert bench.saying() == ["Two."]
-
-
-def test_f6_nobody_speaks_into_a_pause_between_two_sentences() -> None:
-    bench = pair(COUNTS, TALKS)
-    bench.event("later")
-    bench.finish("Three.")
-    assert bench.saying() == ["pause"]
-    bench.finish("pause")
-    assert bench.saying() == ["Two."]
-    bench.finish("Two.")
-    assert bench.saying() == ["By the way."]
-
-
-def test_u3_a_pause_delays_its_branch_alone() -> None:
-    bench = pair(
-        """<form id="a"><block><par><speak>Look there.</speak>
-        <seq><pause time="1s"/><move-head pan="30"/></seq></par><speak>Good.</speak></block></form>"""
-    )
-    assert bench.saying() == ["Look there.", "pause"]
-    bench.finish("pause")
-    assert bench.saying() == ["Look there.", "move-head"]
-    bench.finish("Look there.")
-    bench.finish("move-head")
-    assert bench.saying() == ["Good."]
-
-
-def test_u4_a_pause_in_a_unit_lets_nobody_in() -> None:
-    bench = pair(
-        """<form id="a"><block><iu><speak>Smile!</speak><pause time="1s"/><gesture name="bow"/></iu>
-        <exit/></block></form>""",
-        TALKS,
-    )
-    bench.finish("Smile!")
-    bench.event("touch")
-    assert bench.saying() == ["iu", "pause"]
-    bench.finish("pause")
-    assert bench.saying() == ["gesture", "iu"]
-    bench.finish("gesture")
-    assert bench.saying() == ["Ouch."]
-
-
-def test_e3_a_pause_has_a_time_within_its_bounds() -> None:
-    bench = pair(
-        """<form id="a"><block><pause time-expr="'90s'"/></block>
-        <error><log expr="event.name + ': ' + event.message"/><exit/></error></form>"""
-    )
-    (told,) = bench.logs()
-    assert told.startswith("error.semantic: ") and "from 1ms to 60s" in told
+def test_e2_brief_commands_with_time_between_them_are_no_loop() -> None:
+    bench = pair('<form id="a"><on event="door"><stop-moving/></on></form>')
+    for _ in range(MOST_BRIEF + 10):
+        bench.event("door")
+        bench.step(*map(Ended, bench.running()), at=bench.now + 1)
+    assert bench.phases("unload") == []

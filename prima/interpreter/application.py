@@ -42,6 +42,7 @@ from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.reactions import DONE
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
+from prima.markup.tree import Node
 from prima.messages import (
     PROMOTED,
     CloseUnit,
@@ -163,7 +164,6 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
         self._tick(now)
-        self._guard(self.count_fate, notice)
         if self.over:
             return
         if notice.what == "unit-timeout":
@@ -174,11 +174,20 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
         else:
             fiber = self._waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
+                self._guard(self.count_wait, fiber.began, self._going_on_at(fiber))
+                if self.over:
+                    return
                 self.cause = notice.cause
                 self._guard(self._resume, fiber, notice)
                 self.cause = None
             if notice.what == "cancelled":
                 self._guard(self.handling.command_event, notice, "cancel")
+
+    @staticmethod
+    def _going_on_at(fiber: Fiber) -> Node:
+        """The element in which a piece of content goes on."""
+        frame = fiber.frame
+        return frame.item.node if frame.item is not None else frame.form.node
 
     def sensed(self, now: int, values: Data) -> list[str]:
         """Sensor values changed: gives the events whose conditions turned true (C6)."""
@@ -286,7 +295,7 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             frame.connected = True
         self.actions.append(asked)
         self._waiting[number] = fiber
-        fiber.waiting = number
+        fiber.waiting, fiber.began = number, self.now
         return number
 
     def take_cause(self) -> int | None:

@@ -9,7 +9,7 @@ from prima.interpreter.content import source
 from prima.interpreter.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Action, Notice, Quit, Say
+from prima.messages import Action, Quit, Say
 from prima.prelude import START
 from prima.values import moment
 
@@ -24,8 +24,8 @@ MAX_STEPS = 20_000
 MAX_OUTPUT = 1_000_000
 """Characters that an application may say, log and send in one instant."""
 
-MAX_FAILURES = 1_000
-"""Commands of an application that may fail, be refused or be cancelled with none done in between."""
+BRIEF_MS, MOST_BRIEF = 50, 1_000
+"""How long a wait must last (ms), or how many may be shorter in a row."""
 
 
 class Bounds(Generic[Evaluator]):
@@ -48,7 +48,10 @@ class Bounds(Generic[Evaluator]):
         """Pieces of content gone through in this instant."""
         self.hurried = -1
         """An instant that is none of its own: of an event sent without delay just before."""
-        self._failures = 0
+        self._brief = 0
+        """How many waits in a row lasted almost no time."""
+        self._waited = 0
+        """When the latest wait ended."""
         self._latest: Node | None = None
         """What was gone through last."""
         self._output = 0
@@ -85,16 +88,18 @@ class Bounds(Generic[Evaluator]):
         if self._output > MAX_OUTPUT:
             self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
 
-    def count_fate(self, notice: Notice) -> None:
-        """Bound how often an application asks for what cannot be done (E1, E3, E5, O2)."""
-        if notice.what in ("ended", "done"):
-            self._failures = 0
-        elif notice.what in ("failed", "cancelled"):
-            self._failures += 1
-        if self._failures > MAX_FAILURES:
-            place = notice.command.source if notice.command is not None else ""
-            reason = f"{MAX_FAILURES:,} Commands in a row failed, were refused or cancelled"
-            raise GoOut(f"error.semantic: {place}: {reason}", True, place)
+    def count_wait(self, began: int, node: Node) -> None:
+        """Bound waits that last almost no time, one after the other (ms, when the wait began).
+
+        Commands that fail or are refused at once, and questions that time out at once, make
+        records for ever, of which a run may have so many.
+        """
+        brief = self.now - began < BRIEF_MS and began - self._waited < BRIEF_MS
+        self._brief = self._brief + 1 if brief else 0
+        self._waited = self.now
+        if self._brief > MOST_BRIEF:
+            reason = f"it waited for less than {BRIEF_MS} ms {MOST_BRIEF:,} times in a row"
+            self.give_up(node, f"{reason}: let what comes again and again wait longer")
 
     def fail(self, error: Exception) -> None:
         """E2: the interpreter itself has failed, and ends the application, wherever it was."""

@@ -60,6 +60,8 @@ class Fiber:
     content: Content | None = None
     unit: int | None = None
     waiting: int | None = None
+    began = 0
+    """When it began to wait (ms)."""
 
     def __init__(
         self,

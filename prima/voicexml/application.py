@@ -35,8 +35,6 @@ from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown, thrown_of_
 
 Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
-BRIEF_MS, MOST_BRIEF = 50, 1000
-"""How long a wait must last (ms), or how many may be shorter in a row."""
 
 
 class VoiceInterpreter(Bounds["Engine"]):
@@ -59,8 +57,6 @@ class VoiceInterpreter(Bounds["Engine"]):
         self._state = 0
         self._cause: int | None = None
         self._marked: str | None = None
-        self._brief = 0
-        """How many waits in a row lasted almost no time."""
         self._sends = count(1)
         self.connection: Data = {}
         """What is known of the user's connection (5.1.4)."""
@@ -123,10 +119,6 @@ class VoiceInterpreter(Bounds["Engine"]):
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
         self._tick(now)
-        try:
-            self.count_fate(notice)
-        except GoOut as out:
-            self._quit(out.reason, out.failed, out.source)
         if self.over or notice.run != self._run or notice.what in ("ended", "interrupted"):
             return
         if notice.what == "failed":
@@ -245,19 +237,10 @@ class VoiceInterpreter(Bounds["Engine"]):
         began = self.now
         resume = yield
         self._run, self._open, self._queue = 0, (), ()
-        self._count_wait(self.now - began)
+        context = self._machine.context
+        item = context.item if context is not None else None
+        self.count_wait(began, item or self.document.node)
         return resume
-
-    def _count_wait(self, lasted: int) -> None:
-        """Bound waits that last (ms) almost no time: each makes records, which the run has few of."""
-        self._brief = self._brief + 1 if lasted < BRIEF_MS else 0
-        if self._brief > MOST_BRIEF:
-            context = self._machine.context
-            item = context.item if context is not None else None
-            reason = (
-                f"it waited for less than {BRIEF_MS} ms more than {MOST_BRIEF:,} times in a row"
-            )
-            self.give_up(item or self.document.node, f"{reason}: set a longer timeout")
 
     def send(self, service: str, data: Data, node: Node) -> int:
         """Send something to a service, or to a URI; gives its serial."""

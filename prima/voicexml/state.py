@@ -125,7 +125,8 @@ def thrown_of_event(event: Event) -> Thrown:
     if event.name.startswith("connection.disconnect"):
         return HungUp(event.name, message, outside=True)
     thrown = Thrown(event.name, message)
-    thrown.shared = event.shared and not event.name.startswith("connection.")
+    own = event.name == "message" or event.name.startswith("connection.")
+    thrown.shared = event.shared and not own
     return thrown
 
 
