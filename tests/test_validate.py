@@ -593,6 +593,71 @@ def test_what_another_document_takes_is_fine(tmp_path: Path) -> None:
     assert told(tmp_path, content, second=CALLED) == []
 
 
+ROBOT = ' xmlns:p="urn:prima:dialogue:1" xml:lang="en"'
+STANDING = [
+    "<form><block>{}</block></form>",
+    "<form><block><prompt>Look {}</prompt></block></form>",
+    "<form><field name='f' type='boolean'><prompt>Well? {}</prompt></field></form>",
+    "<form><field name='f' type='boolean'><filled>{}</filled></field></form>",
+    "<catch event='e'>{}</catch><form/>",
+    "<form><block><if cond='true'>{}</if></block></form>",
+    "<form><block><foreach item='i' array='[1]'>{}</foreach></block></form>",
+    "<form><block><p:par>{}</p:par></block></form>",
+    "<form><block><p:seq>{}</p:seq></block></form>",
+    "<form><block><p:iu><p:seq>{}</p:seq></p:iu></block></form>",
+]
+
+
+@pytest.mark.parametrize("around", STANDING)
+@pytest.mark.parametrize(
+    ("command", "code", "at"),
+    [
+        ("<p:gesture/>", "missing-attribute", "<p:gesture"),
+        ("<p:pause/>", "missing-attribute", "<p:pause"),
+        ("<p:point-by-hand/>", "missing-attribute", "<p:point"),
+        ("<p:point-by-hand angle='900'/>", "out-of-range", "900"),
+        ("<p:turn angle='far'/>", "bad-value", "far"),
+        ("<p:gesture><param name='name' value='4 2'/></p:gesture>", "bad-value", "4 2"),
+        ("<p:point-by-hand angle='3' toward='a'/>", "exclusive", "<p:point"),
+        ("<p:gesture name='nod'>Hi.</p:gesture>", "stray-text", "<p:gesture"),
+        ("<p:speak/>", "nothing-to-say", "<p:speak"),
+    ],
+)
+def test_wrong_arguments_of_commands_in_voicexml_are_told(
+    tmp_path: Path, around: str, command: str, code: str, at: str
+) -> None:
+    path = tmp_path / "main.vxml"
+    path.write_text(text := VXML.format(ROBOT, around.format(command)))
+    [one] = [one for one in loading.validate([path]) if one.code == code]
+    assert one.severity == "warning", "at run time it is an event, which may be handled"
+    assert one.place.column == text.index(at) + 1
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "<p:gesture name='nod'/>",
+        "<p:gesture name-expr='1 + 1'/>",
+        "<p:gesture><param name='name' expr='1 + 1'/></p:gesture>",
+        "<p:point-by-hand angle-expr='900'/>",
+        "<p:point-by-hand toward='door'/>",
+        "<p:pause time='1s'/>",
+        "<p:speak><value expr='1'/></p:speak>",
+    ],
+)
+def test_right_arguments_of_commands_in_voicexml_are_none_to_tell(
+    tmp_path: Path, command: str
+) -> None:
+    assert told(tmp_path, f"<form><block>{command}<exit/></block></form>", ROBOT) == []
+
+
+def test_the_name_of_a_gesture_is_no_variable(tmp_path: Path) -> None:
+    content = '<form><block><p:gesture name="zz1"/><log expr="zz1 + zz2"/><exit/></block></form>'
+    first, second = told(tmp_path, content, ROBOT)
+    assert '"zz1" is not declared' in first
+    assert 'Declare it: <var name="zz2"/>.' in second
+
+
 SECOND = VXML.format(
     "", '<form><field name="x"><grammar src="gone.grxml"/><prompt>Hm?</prompt></field></form>'
 )

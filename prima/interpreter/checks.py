@@ -154,21 +154,23 @@ def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
 def given_to(
     node: Node, row: CommandType, given: Mapping[str, object], says: bool
 ) -> Iterator[Problem]:
-    """What is wrong with the motion arguments and the text of a ``<command>``.
+    """What is wrong with the motion arguments and the text of a Command's element.
 
     Args:
         node: the element.
         row: what the robot's profile says of the Command.
-        given: its params, by name; only those are looked at whose values are texts.
+        given: its arguments, by name; only those are looked at whose values are texts.
         says: whether it has a text.
     """
     for name, value in given.items():
         if name in row.arguments and isinstance(value, str):
-            yield from _argument(_param_place(node, name), name, row.arguments[name], value)
+            yield from _argument(_given_place(node, name), name, row.arguments[name], value)
     if missing := missing_argument(row, given):
         needed = [name for name, one in row.arguments.items() if one.required or one.choice]
         lacking = next(name for name in needed if name not in given)
-        remedy = f'Write <param name="{lacking}" value="..."/> into it.'
+        remedy = f'Write {lacking}="...".'
+        if node.tag == "command":
+            remedy = f'Write <param name="{lacking}" value="..."/> into it.'
         yield Problem(node.place, "error", "missing-attribute", missing, remedy)
     if row.text == "none" and says:
         remedy = "Say it with <speak>."
@@ -188,9 +190,11 @@ def _argument(place: Place, name: str, argument: Argument, text: str) -> Iterato
         yield Problem(place, "error", code, wrong, remedy)
 
 
-def _param_place(node: Node, name: str) -> Place:
-    """Where a param's value stands."""
-    param = next((one for one in node.all("param") if one.get("name") == name), node)
+def _given_place(node: Node, name: str) -> Place:
+    """Where the value of an argument stands: of a param, or of the element's own attribute."""
+    param = next((one for one in node.all("param") if one.get("name") == name), None)
+    if param is None:
+        return node.attribute_place(name)
     return param.attribute_place("value") if "value" in param.attributes else param.place
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal
 
-from prima.commands import TABLE_4_2, CommandType
+from prima.commands import TABLE_4_2, CommandType, excluding_arguments
 from prima.errors import Problem, did_you_mean, few, one_of
 from prima.interpreter.checks import given_to
 from prima.interpreter.evaluation import ScriptError
@@ -396,6 +396,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         if node.get(naming):
             problems += _name_problems(node, naming)
         problems += _value_problems(node)
+        if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
+            problems += _command_problems(node, TABLE_4_2[node.tag])
         if node.key == "property":
             problems += _property_problems(node)
         for name in ("next", "src"):
@@ -560,8 +562,30 @@ def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Prob
             place = node.attribute_place("type")
             problems.append(Problem(place, "warning", "unsupported-command", message, hint))
         else:
-            given = {one.get("name"): one.attributes.get("value") for one in node.all("param")}
-            says = bool(node.own_text.strip() or node.all("value"))
-            found = given_to(node, row, given, says)
-            problems += [one._replace(severity="warning") for one in found]
+            problems += _command_problems(node, row)
     return problems
+
+
+def _command_problems(node: Node, row: CommandType) -> list[Problem]:
+    """Arguments and texts for which a Command is an event when it is asked for."""
+    given: dict[str, str | None] = {}
+    for name, text in node.attributes.items():
+        bare = name.removesuffix("-expr")
+        if bare in row.arguments and node.tag != "command":
+            given[bare] = text if bare == name else None
+    given |= {one.get("name"): one.attributes.get("value") for one in node.all("param")}
+    says = bool(node.own_text.strip() or node.all("value"))
+    found = [
+        one._replace(severity="warning", remedy=one.remedy.replace("<speak>", "<p:speak>"))
+        for one in given_to(node, row, given, says)
+    ]
+    if excluding := excluding_arguments(row, given):
+        found.append(_warned(node, "exclusive", excluding, "Keep one of them."))
+    if row.text == "required" and not says and not node.nodes:
+        message = f"<p:{node.tag}> has nothing to say."
+        found.append(_warned(node, "nothing-to-say", message, "Write its text inside it."))
+    return found
+
+
+def _warned(node: Node, code: str, message: str, remedy: str) -> Problem:
+    return Problem(node.place, "warning", code, message, remedy)

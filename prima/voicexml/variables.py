@@ -12,6 +12,7 @@ from prima.errors import Problem, did_you_mean
 from prima.interpreter.compiling import compiled
 from prima.markup.tree import Node
 from prima.names import IDENTIFIER, assigned_names, declared_names, free_names
+from prima.voicexml.check import NAMING
 from prima.voicexml.document import Page
 from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE
 
@@ -77,9 +78,8 @@ def _declared(page: Page, top: Node, text: Text) -> set[str]:
                 raise Unknown
             code = code or node.own_text
             found |= declared_names(code) | assigned_names(code) | set(free_names(code))
-        for name in (node.get("name"), node.get("item")):
-            if name and node.key not in ("assign", "param", "property", "meta"):
-                found |= {name, f"{name}$"}
+        if name := node.get(NAMING.get(node.key, "")):
+            found |= {name, f"{name}$"}
     return found
 
 
