@@ -26,6 +26,7 @@ from prima.messages import Record
 from prima.prices import Price, outline, prices
 from prima.sim.scenario import read_robot
 from prima.sim.voice import duration
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 from tests.certified import faults
 from tests.generated_pairs import pair
 
@@ -267,6 +268,73 @@ COMMANDS = {
 def test_commands_of_the_robot_in_voicexml_are_seen_everywhere(tmp_path: Path, body: str) -> None:
     found, _, _ = voiced(tmp_path, body)
     assert {"arm", "neck"} <= {*found.both, *found.only_ea}
+
+
+SPOKEN = "This is a rather long sentence that takes some seconds to say."
+ARRANGED = {
+    "par": "<par><speak>{}</speak><point-by-hand angle='40'/></par>",
+    "seq": "<par><seq><speak>{0}</speak><speak>{0}</speak></seq><gesture name='nod'/></par>",
+    "unit": "<iu longest='40s'><gesture name='nod'/><speak>{0}</speak><speak>{0}</speak></iu>",
+    "cut": "<iu longest='1s'><speak>{0}</speak><speak>{0}</speak><speak>{0}</speak></iu>",
+    "branches": "<iu><par><speak>{}</speak><seq><pause time='9s'/><gesture name='nod'/></seq></par></iu>",
+    "inner": "<iu><par><iu><speak>{}</speak></iu><gesture name='bow'/></par></iu>",
+}
+"""Commands that are arranged, in PRIMA's language; with prefixes, in VoiceXML."""
+
+
+def prefixed(content: str) -> str:
+    return content.replace("</", "<!").replace("<", "<p:").replace("<p:!", "</p:")
+
+
+def told(price: Price) -> tuple[object, ...]:
+    inner = [told(one) for one in price.inner]
+    return price.node.tag, price.what, price.devices, price.lasts, price.unknown, inner
+
+
+@pytest.mark.parametrize("content", ARRANGED.values(), ids=ARRANGED)
+@pytest.mark.parametrize("around", ["{}", "<prompt>{}</prompt>", "<prompt><p>{}</p></prompt>"])
+def test_arranged_commands_cost_the_same_in_both_languages(
+    tmp_path: Path, content: str, around: str
+) -> None:
+    content = content.format(SPOKEN)
+    own = priced(tmp_path, block(content))
+    body = f"<form><block>{around.format(prefixed(content))}<exit/></block></form>"
+    found, fa, ea = voiced(tmp_path, body)
+    document, _ = read_application(ea, read_file(Path(ea)))
+    theirs = [one for one in prices(document, PROFILE) if one.node.namespace == PRIMA_NAMESPACE]
+    assert list(map(told, own)) == list(map(told, theirs))
+    units = [one.place for one in theirs if one.what == "unit"]
+    assert (found.longest_unit is None) == (not units)
+    assert found.longest_unit is None or [found.longest_unit.place] == units
+    assert found.lacks["papero"] == []
+    (delay,) = found.delays
+    at = TOUCH.replace("1s", "10ms")
+    assert 0 < waited(run(tmp_path, fa, ea, at)) * 1000 <= delay.lasts + 10
+
+
+def test_a_robot_has_to_have_the_commands_in_a_unit_of_voicexml(tmp_path: Path) -> None:
+    unit = '<p:iu><p:command type="hum"/><p:speak>So.</p:speak></p:iu>'
+    found, _, _ = voiced(tmp_path, f"<form><block>{unit}</block></form>")
+    assert found.lacks["papero"] == ["hum"]
+
+
+def test_a_unit_of_voicexml_ends_after_a_minute_as_in_primas_language(tmp_path: Path) -> None:
+    unit = ARRANGED["unit"].replace(" longest='40s'", "").replace("{0}", SPOKEN * 30)
+    body = f"<form><block>{prefixed(unit)}</block></form>"
+    found, fa, ea = voiced(tmp_path, body)
+    assert found.longest_unit is not None
+    assert found.longest_unit.lasts == 60_000 + lasting(SPOKEN * 30)
+    records = run(tmp_path, fa, ea, TOUCH, "300s")
+    assert any(one.get("event") == "error.unit.timeout" for one in records)
+
+
+def test_a_reaction_of_voicexml_begins_with_all_branches_of_a_par(tmp_path: Path) -> None:
+    par = '<p:par><p:seq><p:speak>Oh.</p:speak><p:gesture name="nod"/></p:seq><p:turn angle="5"/></p:par>'
+    body = f'<form><block/></form><catch event="bell">{par}</catch>'
+    _, _, ea = voiced(tmp_path, body)
+    document, _ = read_application(ea, read_file(Path(ea)))
+    (reaction,) = outline(document, PROFILE).reactions
+    assert [one.what for one in reaction.firsts] == ["speak", "turn"]
 
 
 @pytest.mark.parametrize(

@@ -309,6 +309,13 @@ def test_ordinals() -> None:
 # VoiceXML ------------------------------------------------------------------------------------
 
 
+def test_what_commands_of_voicexml_say_is_shown(tmp_path: Path) -> None:
+    par = '<p:par><p:speak>One <value expr="n"/>.</p:speak><p:gesture name="nod"/></p:par>'
+    said = f"<form><block>{par}<p:speak>Two.</p:speak></block></form>"
+    graph = drawn(tmp_path, vxml(said, 'xmlns:p="urn:prima:dialogue:1"'), "a.vxml")
+    assert graph.nodes[next(iter(graph.nodes))].notes == ['says "One {n}. Two."']
+
+
 def test_voicexml_menus_links_submits_and_ends(tmp_path: Path) -> None:
     graph = drawn(
         tmp_path,

@@ -79,7 +79,7 @@ def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
     """Commands that a robot cannot do, or devices of theirs that it has not."""
     if not isinstance(document, Document):
         rows = profile.commands
-        asked = {part.what for part in told.parts if part.what not in NO_COMMANDS}
+        asked = set().union(*(part.names for part in told.parts)) - NO_COMMANDS
         return sorted(
             name for name in asked if name not in rows or not rows[name].devices <= profile.devices
         )
@@ -89,7 +89,7 @@ def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
     return sorted(names) or sorted({problem.message for problem in problems})
 
 
-NO_COMMANDS = ("unit", "question", "recording", "call")
+NO_COMMANDS = {"unit", "question", "recording", "call"}
 """Parts of applications that are called otherwise than the Commands that they are."""
 
 

@@ -439,6 +439,8 @@ def _said(node: Node, depth: int = 0) -> str:
             parts.append(f"{{{item.get('expr')}}}")
         elif item.tag == "enumerate":
             parts.append("...")
-        elif depth < 40 and item.tag in (*TEXT, "prompt", "audio"):
+        elif depth < 40 and (
+            item.namespace == PRIMA_NAMESPACE or item.tag in (*TEXT, "prompt", "audio")
+        ):
             parts.append(" " + _said(item, depth + 1) + " ")
     return clean(" ".join("".join(parts).split()))

@@ -56,7 +56,7 @@ from prima.interpreter.grammar import (
     fold,
 )
 from prima.interpreter.srgs import read_grammar
-from prima.interpreter.units import Finder, Reached, unit_problem, units_of
+from prima.interpreter.units import LONGEST_UNIT_MS, Finder, Reached, unit_problem, units_of
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
@@ -66,7 +66,6 @@ from prima.values import XML_SPACE, nearest, outside, read_value, within
 if TYPE_CHECKING:
     from prima.messages import Json
 
-LONGEST_MS = 60_000
 HOLD_MS = 15_000
 """How long a stream is held for an event unless hold-for says otherwise (X3)."""
 
@@ -511,7 +510,7 @@ class Builder:
         """A unit around form items; what they reach is known when the document is whole."""
         parts = self.parts(node)
         unit = Unit(*self.item(node, parts), items=self.items(parts))
-        unit.longest = self.value(node, "longest", "duration", LONGEST_MS)
+        unit.longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
         return unit
 
     def settle_units(self, document: Document) -> None:
@@ -622,7 +621,7 @@ class Builder:
             self.problem(
                 node, "empty", "This <iu> holds no Command.", "Write what must not be cut into it."
             )
-        longest = self.value(node, "longest", "duration", LONGEST_MS)
+        longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
         return GroupTemplate(tuple(steps), longest, node, node.get("restartable") == "true")
 
     def command(self, node: Node) -> CommandTemplate:

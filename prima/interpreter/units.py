@@ -32,6 +32,8 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.selection import taking
 
+LONGEST_UNIT_MS = 60_000
+"""The longest duration of a unit unless ``longest`` says otherwise."""
 QUESTION = "q-and-a"
 UNANSWERED = ("noinput", "nomatch")
 """What a question throws in itself."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from prima.commands import TABLE_4_2, Argument, CommandType, check_argument
 from prima.markup.tree import Node
-from prima.prices.model import Price
+from prima.prices.model import Price, devices_of
 from prima.sim.robot import BRAKING_MS
 from prima.sim.scenario import POINTING_MS, Profile
 
@@ -47,6 +47,47 @@ def command_price(
         moves = max(_motion(row, args, profile), 1)
     lasts = max(said, moves)
     return Price(node, name, devices, lasts, unknown, row.leaves, row.engages, row.feedback)
+
+
+def group_price(
+    node: Node, longest: int, inner: Sequence[Price], afters: Sequence[tuple[int, ...]]
+) -> Price:
+    """What a unit around Commands costs others (U4).
+
+    Args:
+        node: its element.
+        longest: its longest duration (ms), after which what runs then still runs to its end.
+        inner: what its steps cost.
+        afters: the indices of the steps that each of them waits for.
+    """
+    last = max((one.lasts for one in inner), default=0)
+    lasts = min(_together(inner, afters), longest + last)
+    return unit_price(node, devices_of(inner), lasts, inner)
+
+
+def unit_price(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[Price]) -> Price:
+    """What a unit costs others that keeps devices for a time (ms), by what is in it."""
+    unknown = next((one.unknown for one in inner if one.unknown), "")
+    return Price(
+        node,
+        "unit",
+        devices,
+        lasts,
+        unknown,
+        engages=any(one.engages for one in inner),
+        listens=any(one.listens for one in inner),
+        inner=tuple(inner),
+    )
+
+
+def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int:
+    """How long the steps of a unit take; those that share a device go one after the other."""
+    ends: list[int] = []
+    for index, (price, after) in enumerate(zip(prices, afters, strict=True)):
+        before = [ends[one] for one in after]
+        before += [ends[one] for one in range(index) if prices[one].devices & price.devices]
+        ends.append(max(before, default=0) + price.lasts)
+    return max(ends, default=0)
 
 
 def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:

@@ -33,8 +33,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import takes
 from prima.interpreter.units import reach_of
-from prima.markup.tree import Node
-from prima.prices.commands import command_price
+from prima.prices.commands import command_price, group_price, unit_price
 from prima.prices.contents import (
     again,
     contents_of,
@@ -111,9 +110,7 @@ class _Reader:
         if isinstance(what, CommandTemplate):
             return self.command(what)
         inner = [self.step(one) for one in what.steps]
-        lasts = _together(what.steps, inner)
-        last = max((one.lasts for one in inner), default=0)
-        return _unit(what.node, devices_of(inner), min(lasts, what.longest + last), inner)
+        return group_price(what.node, what.longest, inner, [one.after for one in what.steps])
 
     def command(self, command: CommandTemplate) -> Price:
         """A Command by itself."""
@@ -174,7 +171,7 @@ class _Reader:
         lasts = unit.longest + last
         if once and not unit.handlers and not any(again(item) for item in unit.items):
             lasts = min(lasts, sum(one.lasts for one in inner))
-        return _unit(unit.node, unit.devices | devices_of(inner), lasts, inner)
+        return unit_price(unit.node, unit.devices | devices_of(inner), lasts, inner)
 
     def _within(self, part: Item | Handler, unit: Unit) -> list[Price]:
         own = self.of_items.get(part.node.index) if part is not unit else None
@@ -310,22 +307,6 @@ class _Reader:
         """Whether it may take an event of what the application is doing, without a wait."""
         names = [name for name in handler.events if not name.startswith((*BROKEN, SERVICES))]
         return any(_is_inner(name) or name in self.thrown for name in names)
-
-
-def _unit(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[Price]) -> Price:
-    unknown = next((one.unknown for one in inner if one.unknown), "")
-    engages, listens = any(one.engages for one in inner), any(one.listens for one in inner)
-    return Price(node, "unit", devices, lasts, unknown, engages=engages, listens=listens)
-
-
-def _together(steps: Sequence[StepTemplate], prices: Sequence[Price]) -> int:
-    """How long the steps of a unit take; those that share a device go one after the other."""
-    ends: list[int] = []
-    for index, (step, price) in enumerate(zip(steps, prices, strict=True)):
-        before = [ends[one] for one in step.after]
-        before += [ends[one] for one in range(index) if prices[one].devices & price.devices]
-        ends.append(max(before, default=0) + price.lasts)
-    return max(ends, default=0)
 
 
 def _is_inner(name: str) -> bool:

@@ -30,6 +30,13 @@ class Price:
     """Whether it works in loops, between which it gives way: ``lasts`` is one loop."""
     listens: bool = False
     """Whether the user may speak in it: what they say comes on top."""
+    inner: tuple[Price, ...] = ()
+    """What is in a unit."""
+
+    @property
+    def names(self) -> set[str]:
+        """What it and all in it is called."""
+        return {self.what}.union(*(one.names for one in self.inner))
 
     @property
     def known(self) -> bool:

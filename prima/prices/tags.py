@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.events import HANDLERS
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
 HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
@@ -23,6 +24,15 @@ def holders(node: Node) -> Iterator[Node]:
         yield node
         for inner in node.nodes:
             yield from holders(inner)
+
+
+def commands_in(node: Node) -> Iterator[Node]:
+    """The outermost elements of PRIMA's namespace in an element, or the element itself."""
+    if node.namespace == PRIMA_NAMESPACE:
+        yield node
+        return
+    for inner in node.nodes:
+        yield from commands_in(inner)
 
 
 def says(pieces: Iterable[Node | str]) -> bool:

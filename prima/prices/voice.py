@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from prima.commands import TABLE_4_2
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
-from prima.prices.commands import command_price
+from prima.prices.commands import command_price, group_price
 from prima.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
 from prima.prices.model import Gap, Outline, Price, Reaction, State
 from prima.prices.pages import TARGETS, Pages
 from prima.prices.speech import Reader, Said, utterances
 from prima.prices.tags import (
     ITEMS,
+    commands_in,
     holders,
     is_foreign,
     leaves,
@@ -26,6 +27,7 @@ from prima.prices.tags import (
 from prima.sim.scenario import Profile
 from prima.sim.voice import duration
 from prima.values import milliseconds
+from prima.voicexml.arranging import arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.events import HANDLERS, WORDS
@@ -109,8 +111,7 @@ class _Reader:
             said = isinstance(piece, str) or piece.tag in SPOKEN
             if said and not (isinstance(piece, Node) and piece.get("cond")):
                 return [Price(handler, "question", QUESTION.devices, 1, engages=True)]
-            command = [] if isinstance(piece, str) else list(self._command(piece))
-            return command[:1]
+            return [] if isinstance(piece, str) else [*self._steps(piece, first=True)]
         return []
 
     # Dialogs ----------------------------------------------------------------------------
@@ -201,17 +202,30 @@ class _Reader:
             said = self._read_aloud(node, pieces, menu)
             yield Price(node, "speak", SPEAKER, said[0], said[1])
             for piece in pieces:
-                for one in piece.walk() if isinstance(piece, Node) else ():
-                    yield from self._command(one)
+                for one in commands_in(piece) if isinstance(piece, Node) else ():
+                    yield from self._steps(one)
         for node in holder.nodes:
-            yield from self._command(node)
+            yield from self._steps(node)
             audio = node.get("fetchaudio") or node.get("transferaudio")
             yield from self._waiting(node, audio)
 
-    def _command(self, node: Node) -> Iterator[Price]:
+    def _steps(self, node: Node, first: bool = False) -> Iterator[Price]:
+        """What an element of PRIMA's namespace asks for; ``first`` for what waits for no other."""
+        if node.namespace == PRIMA_NAMESPACE and node.tag != "param":
+            for price, after in arrange([node], self._step):
+                if not (first and after):
+                    yield price
+
+    def _step(self, node: Node) -> Price:
+        """A Command, or a unit of them (U4)."""
+        if node.tag != "iu":
+            return self._command(node)
+        steps = arrange(node.nodes, self._step)
+        inner, afters = [one for one, _ in steps], [one for _, one in steps]
+        return group_price(node, longest_of(node), inner, afters)
+
+    def _command(self, node: Node) -> Price:
         """A Command of PRIMA's namespace."""
-        if node.namespace != PRIMA_NAMESPACE or node.tag == "param":
-            return
         name = node.get("type") if node.tag == "command" else node.tag
         row = self.profile.commands.get(name) or TABLE_4_2.get(name)
         args: dict[str, object | None] = {}
@@ -223,7 +237,7 @@ class _Reader:
             args[param.get("name")] = param.attributes.get("value")
         pieces = [one for one in node.content if isinstance(one, str) or one.tag != "param"]
         said = self._read_aloud(node, pieces, None) if says(pieces) else None
-        yield command_price(node, name, args, said, self.profile)
+        return command_price(node, name, args, said, self.profile)
 
     def _read_aloud(
         self, node: Node, pieces: list[Node | str], menu: Node | None

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import TypeVar
 
 from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of
-from prima.interpreter.units import not_in_unit
+from prima.interpreter.units import LONGEST_UNIT_MS, not_in_unit
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
-from prima.values import read_value
+from prima.values import milliseconds, read_value
 from prima.voicexml.vocabulary import COMMANDS, PRIMA_NAMESPACE
 
 ARRANGING = ("par", "seq", "iu")
+Made = TypeVar("Made")
 DEEPEST = 50
 """Such elements inside each other."""
 
@@ -37,6 +39,43 @@ class Arranged:
 
 Queued = Command | Arranged
 """What is played on reaching a wait."""
+
+
+def arrange(
+    nodes: Iterable[Node],
+    make: Callable[[Node], Made],
+    visit: Callable[[Node], None] = lambda _: None,
+) -> list[tuple[Made, tuple[int, ...]]]:
+    """Commands and units one after another, each with the indices of those that it waits for (U3).
+
+    Args:
+        nodes: the elements, ``p:par`` and ``p:seq`` among them.
+        make: makes a step of a Command or of a ``p:iu``.
+        visit: is called for each element before what is in it.
+    """
+    found: list[tuple[Made, tuple[int, ...]]] = []
+
+    def add(nodes: Iterable[Node], after: tuple[int, ...]) -> tuple[int, ...]:
+        """Gives what whatever follows has to wait for."""
+        for node in nodes:
+            visit(node)
+            if node.tag == "par":
+                ends = [end for branch in node.nodes for end in add([branch], after)]
+                after = tuple(dict.fromkeys(ends)) or after
+            elif node.tag == "seq":
+                after = add(node.nodes, after)
+            else:
+                found.append((make(node), after))
+                after = (len(found) - 1,)
+        return after
+
+    add(nodes, ())
+    return found
+
+
+def longest_of(unit: Node) -> int:
+    """The longest duration (ms) of a ``p:iu``."""
+    return milliseconds(unit.get("longest"), LONGEST_UNIT_MS)
 
 
 def said_last(queue: Sequence[Queued]) -> Command | None:

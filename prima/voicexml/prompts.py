@@ -14,7 +14,7 @@ from prima.interpreter.expressions import statement_place
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.values import shown
-from prima.voicexml.arranging import ARRANGING, Arranged, Queued, said_last
+from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
 from prima.voicexml.cues import (
     MAX_CUES,
     MAX_NAME,
@@ -423,36 +423,23 @@ class Speaker:
         if node.tag not in ARRANGING:
             self.owner.queue.append(self.command(node, context, local, lang))
             return
-        steps: list[Step] = []
-        self.arrange([node], (), steps, lambda one: self.command(one, context, local, lang))
+        steps = self.steps([node], lambda one: self.command(one, context, local, lang))
         if steps:
             self.owner.queue.append(Arranged(steps, source(node)))
 
-    def arrange(
-        self, nodes: list[Node], after: tuple[int, ...], steps: list[Step], make: Maker
-    ) -> tuple[int, ...]:
-        """Add Commands one after another; gives what whatever follows has to wait for (U3)."""
-        for node in nodes:
-            self.owner.count_step(node)
-            if node.tag == "par":
-                ends: list[int] = []
-                for branch in node.nodes:
-                    ends += self.arrange([branch], after, steps, make)
-                after = tuple(dict.fromkeys(ends)) or after
-            elif node.tag == "seq":
-                after = self.arrange(node.nodes, after, steps, make)
-            else:
-                what = self.unit(node, make) if node.tag == "iu" else make(node)
-                steps.append(Step(what, after))
-                after = (len(steps) - 1,)
-        return after
+    def steps(self, nodes: list[Node], make: Maker) -> list[Step]:
+        """Commands and units of them, one after another but for branches (U3)."""
+        made = arrange(
+            nodes,
+            lambda one: self.unit(one, make) if one.tag == "iu" else make(one),
+            self.owner.count_step,
+        )
+        return [Step(what, after) for what, after in made]
 
     def unit(self, node: Node, make: Maker) -> Group:
         """Commands that are one unit (U4)."""
-        steps: list[Step] = []
-        self.arrange(node.nodes, (), steps, make)
-        longest = milliseconds(node.get("longest")) if "longest" in node.attributes else None
-        return Group(steps, longest, source(node), node.get("restartable") == "true")
+        steps = self.steps(node.nodes, make)
+        return Group(steps, longest_of(node), source(node), node.get("restartable") == "true")
 
     def command(self, node: Node, context: Context, local: Scope, lang: str = "") -> Command:
         """A Command of PRIMA's namespace among executable content."""
