@@ -12,9 +12,10 @@ import pytest
 
 from prima import api, cli
 from prima.errors import UsageError
-from prima.messages import Command, Occurred
+from prima.messages import Command, Emergency, Ended, Occurred
 from prima.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.transcript.criteria import Criteria, observe
+from prima.transcript.measures import Measure
 from prima.transcript.table import read_table
 from tests.robot import Bench, document
 from tests.stage import Stage, ask, command, move, say
@@ -341,3 +342,14 @@ def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
     (tmp_path / "s.txt").write_text("nothing\n")
     with pytest.raises(UsageError, match="no table"):
         list(study([tmp_path / "s.xml"]))
+
+
+def test_the_emergency_stop_is_an_event_that_may_be_reacted_to() -> None:
+    bench = Bench('<form id="f"><on event="emergency.release"><speak>Released.</speak></on></form>')
+    bench.step(Emergency(True))
+    bench.step(Emergency(False))
+    bench.step(*map(Ended, bench.running()))
+    figures = Measure()
+    for record in bench.records:
+        figures.add(record, record["time"] / 1000)
+    assert figures.summary().reactions == 1

@@ -54,7 +54,7 @@ class Policy:
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, F6, K1)."""
-        if self.has("x5") and rules.x5(ab, memory):
+        if self.extensions and self.has("x5") and rules.x5(ab, memory):
             return rules.k1(ab, memory)
         return rules.f2(ab, memory) or rules.f6(ab, memory) or rules.k1(ab, memory)
 

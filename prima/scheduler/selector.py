@@ -81,7 +81,10 @@ class Selector:
                 self._hold(ab, refusal)
             elif self._start(rank, ab, ranked[index + 1 :], held, now):
                 return True
-        return len(self.started) > before
+        # A start may change whose stream is active, and so how reactions rank (S2b).
+        return len(self.started) > before and any(
+            ab.reaction is not None for ab in self.memory.waiting.values()
+        )
 
     def _ranked(self, found: dict[str, Behavior], now: int) -> list[Ranked]:
         policy, memory = self.policy, self.memory
@@ -271,8 +274,7 @@ class Selector:
         beside = composed or not rules.f3(ab, reaction is not None, memory)
         self._run(ab, now)
         changed = self._take_floor(ab, reaction, beside)
-        still = self._able(lower, held) if rivals else []
-        losers = [one for one in rivals if one not in still]
+        losers = self._outdone(rivals, ab, lower, held)
         rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
         self.chronicle.decision(ab, rule, [loser.id for _, loser in losers])
         self.chronicle.start(ab, rule, reaction)
@@ -281,6 +283,15 @@ class Selector:
         if ab.feedback and ab.loop > 1:
             changed = self._count_starving(ab, now) or changed
         return changed or policy.turning
+
+    def _outdone(
+        self, rivals: list[Ranked], ab: Behavior, lower: list[Ranked], held: Held
+    ) -> list[Ranked]:
+        """Of those that could have started in an AB's place, those that cannot beside it."""
+        if all(other.devices & ab.devices for _, other in rivals) and not self._composing:
+            return rivals
+        still = self._able(lower, held)
+        return [one for one in rivals if one not in still]
 
     def _admitted_by(self, ab: Behavior, composed: bool) -> str:
         """The rule by which an AB may start with which nothing competes."""

@@ -171,6 +171,9 @@ class Observer:
                 self._forget(record["tree"])
             case "event":
                 self._event(record)
+            case "emergency":
+                pressed = record["outcome"] == "pressed"
+                self._event({**record, "event": f"emergency.{'stop' if pressed else 'release'}"})
             case "send":
                 app = record["app"]
                 talking = any(tree.begun for tree in self._trees.values() if tree.app == app)
