@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import count
 from typing import Any
 
 import pytest
 
-from prima.scheduler import mediator, rules
-from prima.scheduler.behavior import Behavior, Stream
+from prima.commands import CommandType
+from prima.interpreter.application import Interpreter
+from prima.interpreter.handling import Handling
+from prima.messages import Command, Data
+from prima.scheduler import intake, mediator, rules
+from prima.scheduler.behavior import Application, Behavior, Stream
+from prima.scheduler.endings import Endings
 from prima.scheduler.failures import Failures
+from prima.scheduler.intake import Maker
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.selection import Policy
@@ -98,6 +105,43 @@ def ended_is_active(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(Memory, "active", property(lambda memory: latest[-1].app if latest else None))
 
 
+def only_placed(
+    self: Mediator,
+    app: Application,
+    command: Command,
+    reaction: int | None,
+    unit: Behavior | None,
+) -> Stream:
+    """O2: what is wanted now cancels nothing."""
+    return unit.stream if unit else self._opened(self._stream(app, reaction))
+
+
+ended = Endings.ended
+
+
+def always_at_the_goal(
+    self: Endings, behavior: str, goal: bool, data: Data, inbound: bool = True
+) -> bool:
+    """U2: a feedback Command has met its goal after one loop."""
+    return ended(self, behavior, True, data, inbound)
+
+
+def any_running(memory: Memory, ab: Behavior) -> Behavior | None:
+    """S4: whatever runs keeps everything from starting."""
+    return next(iter(memory.running.values()), None)
+
+
+def waits_for_what_runs(ab: Behavior, memory: Memory) -> tuple[str, str] | None:
+    """F4: whatever runs of another application holds a floor."""
+    return next((("F2", one.id) for one in memory.running.values() if one.app is not ab.app), None)
+
+
+def chance(patch: pytest.MonkeyPatch) -> None:
+    """S5: what was decided before has a part in it."""
+    asked = count()
+    patch.setattr(rules, "s2f", lambda ab: (ab.serial * (-1) ** (next(asked) // 7 % 2), 0))
+
+
 MUTANTS: list[tuple[str, str, Patch]] = [
     ("s1", "dropped", put(Memory, "conflict", nothing)),
     ("s2a", "dropped", put(rules, "s2a", lambda ab: 0)),
@@ -163,7 +207,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         ),
     ),
     ("o1", "dropped", put(Mediator, "_parent", nothing)),
-    ("o2", "dropped", put(Mediator, "_order_now", nothing)),
+    ("o2", "nothing is cancelled", put(Mediator, "_order_now", only_placed)),
     ("o3", "dropped", put(Mediator, "leave_state", nothing)),
     ("o3", "nothing goes on", put(Mediator, "_continue", nothing)),
     ("c2", "nobody is told", put(Session, "_tell_turns", nothing)),
@@ -174,7 +218,37 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         put(Behavior, "dormant", property(lambda ab: ab.state == "linked")),
     ),
     ("u5", "anything goes in a unit", put(mediator, "check_steps", nothing)),
+    ("u1", "dropped", put(Maker, "chain", lambda *given: [])),
+    ("u2", "one loop", put(Endings, "ended", always_at_the_goal)),
+    ("u3", "dropped", put(intake, "link", nothing)),
+    ("u4", "dropped", put(intake, "group_devices", lambda group, table: frozenset())),
+    ("u6", "dropped", put(Memory, "conflict", nothing)),
+    ("o4", "the state does not go on", put(Interpreter, "go_on_entering", nothing)),
+    ("s4", "one at a time", put(Memory, "conflict", any_running)),
+    ("s5", "chance", chance),
+    ("c1", "dropped", put(Mediator, "_close_streams", nothing)),
+    ("c4", "dropped", put(Mediator, "open_window", nothing)),
+    ("c5", "dropped", put(Handling, "allow_reaction", nothing)),
+    ("c6", "never raised", put(Handling, "check_watches", lambda *given: [])),
+    ("f4", "all wait for what runs", put(rules, "f2", waits_for_what_runs)),
+    ("k2", "one priority", put(CommandType, "priority", property(lambda row: 1))),
+    ("k3", "a channel is made", put(Policy, "has", lambda policy, extension: extension == "x4")),
+    ("v1", "the question first", put(Session, "_follow_links", lambda *given: False)),
+    ("v2", "dropped", put(Memory, "conflict", nothing)),
+    ("v3", "events first", put(Session, "_class", lambda session, value: (0, 0))),
+    ("e1", "dropped", put(Failures, "_fail", nothing)),
+    ("e2", "dropped", put(Mediator, "unload", nothing)),
+    ("e3", "dropped", put(mediator, "check_steps", nothing)),
+    ("e4", "dropped", put(Selector, "_count_starving", lambda *given: False)),
+    ("e5", "dropped", put(Failures, "emergency", nothing)),
+    ("x1", "dropped", put(Selector, "_prepare", lambda *given: False)),
+    ("x2", "dropped", put(Selector, "_give_way", lambda *given: False)),
+    ("x3", "dropped", put(Mediator, "_hint", nothing)),
+    ("x4", "dropped", put(Selector, "_prepare", lambda *given: False)),
+    ("x5", "dropped", put(Selector, "_in_the_way", lambda self, ab: self.memory.conflicts(ab))),
+    ("x6", "dropped", put(mediator, "substitute", lambda steps, table: [])),
 ]
+"""Those of the rules that decide in a run. V4 is the simulated camera's (tests/test_sim.py)."""
 
 
 def named_after(rule: str) -> Iterator[Callable[[], None]]:

@@ -226,3 +226,75 @@ def test_e2_brief_commands_with_time_between_them_are_no_loop() -> None:
         bench.event("door")
         bench.step(*map(Ended, bench.running()), at=bench.now + 1)
     assert bench.phases("unload") == []
+
+
+# What happens ----------------------------------------------------------------------------
+
+
+def test_c6_a_condition_is_raised_when_it_turns_true_and_armed_when_it_turns_false() -> None:
+    bench = pair(
+        """<watch name="dark" when="sensor.light &lt; 5"/><on event="dark"><log>dark</log></on>
+        <form id="a"/>"""
+    )
+    for light in (9, 3, 2, 9, 1):
+        bench.step(Sensed({"light": light}))
+    assert bench.logs() == ["dark", "dark"]
+
+
+def test_k3_no_channel_is_made_where_nobody_asks_for_it() -> None:
+    bench = pair('<form id="a" channel="connect"><block><speak>Hello.</speak></block></form>')
+    assert [r["command"] for r in bench.phases("request")] == ["speak"]
+
+
+def test_v1_what_a_question_does_not_take_goes_to_the_links_of_others() -> None:
+    bench = pair(
+        """<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field></form>""",
+        """<link event="dance"><grammar><item>dance for me</item></grammar></link>
+        <form id="sleep"><on event="dance"><gesture name="bow"/></on></form>""",
+    )
+    bench.listens()
+    bench.hears("dance for me")
+    assert bench.saying() == ["Well?", "gesture"], "and the question listens on"
+    bench.hears("yes")
+    assert bench.saying() == ["gesture"]
+
+
+def test_v2_a_reaction_that_needs_a_device_of_a_question_waits_for_its_end() -> None:
+    bench = pair(
+        """<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field></form>""",
+        HELLO,
+    )
+    bench.event("touch")
+    assert bench.saying() == ["Well?"]
+    bench.listens()
+    bench.hears("yes")
+    assert bench.saying() == ["Hello."]
+
+
+def test_v3_ends_come_before_events() -> None:
+    bench = pair(
+        """<form id="a"><var name="done" expr="false"/>
+          <block><speak>One.</speak><assign name="done" expr="true"/></block>
+          <on event="touch"><log expr="done"/></on>
+        </form>"""
+    )
+    (name,) = bench.running()
+    bench.step(Occurred("touch"), Ended(name))
+    assert bench.logs() == ["true"]
+
+
+def test_s5_the_same_inputs_give_the_same_records() -> None:
+    def records() -> list[object]:
+        bench = pair(
+            """<form id="a"><on event="touch"><par><speak>One.</speak><speak>Two.</speak>
+            <speak>Three.</speak></par></on></form>""",
+            """<form id="b"><on event="touch"><par><speak>Four.</speak><speak>Five.</speak></par>
+            </on></form>""",
+        )
+        for _ in range(3):
+            bench.event("touch")
+            while bench.running():
+                bench.step(*map(Ended, bench.running()))
+        return [*bench.records]
+
+    assert records() == records()
