@@ -243,7 +243,7 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
-    """Problems once each: what is an error in a file is no warning of a document that names it."""
+    """Problems once each: an error in a file is not repeated as a warning of the documents that name it."""
     found = dict.fromkeys(problems)
     errors = {(one.place, one.message) for one in found if one.severity == "error"}
     return [

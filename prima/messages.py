@@ -294,7 +294,7 @@ class Heard:
         return sorted(found, key=lambda one: -one.confidence)
 
     def filled(self, answer: Understood) -> dict[str, Json]:
-        """What is told of a question that it answers."""
+        """The data of the end of a question that it answers."""
         told = {name: value for name, value in self.data.items() if name != "alternatives"}
         if "confidence" in told or answer.utterance != self.text:
             told["confidence"] = answer.confidence

@@ -119,7 +119,7 @@ def _others(one: Certificate) -> list[str]:
 
 
 def certificate_data(one: Certificate) -> dict[str, Any]:
-    """A certificate as plain data; times in ms, null where there is no bound that is known."""
+    """A certificate as plain data; times in ms, null where no bound is known."""
     return {
         "fa": one.fa,
         "ea": one.ea,

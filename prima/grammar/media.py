@@ -73,7 +73,7 @@ def check_no_text(file: str, begin: str) -> None:
     if looks_like_abnf(begin):
         raise refuse(GrammarError, Place(file), "not-abnf", NO_HEADER, FIRST_LINE)
     remedy = "Begin with <grammar ...> for the XML form, or with #ABNF 1.0 UTF-8; for the other."
-    raise refuse(GrammarError, Place(file), "not-xml", "This is no grammar of SRGS.", remedy)
+    raise refuse(GrammarError, Place(file), "not-xml", "This is not an SRGS grammar.", remedy)
 
 
 def check_form(problems: Problems, media: str, form: Form, file: str, where: Where) -> None:

@@ -94,7 +94,7 @@ PAUSES = {
     "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside of a text.',
     "pause": 'Inside of a text write <break time="1s"/>; a <pause> stands between Commands.',
 }
-"""The two pauses, where the one stands in the place of the other."""
+"""The two pauses, each written where the other belongs."""
 
 
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:

@@ -98,7 +98,7 @@ class Pages:
                 try:
                     self._known[uri] = read_page(uri, file, self.document.fetch(uri), site)
                 except (FetchError, DocumentError):
-                    return None  # the application is told of it: error.badfetch
+                    return None  # a run throws error.badfetch
         return self._known[uri]
 
     def _full(self, node: Node) -> Gap | None:

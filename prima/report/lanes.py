@@ -82,7 +82,7 @@ def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
 
 
 class _Marks:
-    """Which row of the table tells of a stream or an AB from a moment on."""
+    """The row of the table that a stream or an AB belongs to from a moment on."""
 
     def __init__(self, records: Iterable[Record], rows: Iterable[Row]) -> None:
         tree_of = {r["behavior"]: r.get("tree") for r in records if r["phase"] == "request"}
