@@ -1018,3 +1018,15 @@ def test_u4_no_feedback_command_of_the_profile_runs_in_a_unit_either() -> None:
     stage.request("fa", search(), unit=1)
     stage.select()
     assert stage.told("fa") == ["error.semantic"]
+
+
+def test_o1_what_is_asked_for_in_a_unit_is_not_followed_outside() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("In it."), unit=1)
+    stage.request("ea", command("turn", angle=5))
+    stage.select()
+    stage.at(10).end("ea#2", then=lambda: stage.request("ea", say("Still in it."), unit=1))
+    stage.at(20).request("ea", command("move-head", pan=1))
+    stage.select()
+    assert stage.phases("request")[-1]["parent"] == "ea#3", "the turn, which is linked still"

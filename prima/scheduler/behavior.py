@@ -98,6 +98,7 @@ class Application:
     kind: str
     order: int
     latest: Behavior | None = None
+    """The latest AB that it has requested, outside of units."""
     window: Stream | None = None
     continuing: Stream | None = None
     """A stream that O3 cancelled: it goes on with what is asked for in this instant."""
@@ -170,6 +171,8 @@ class Behavior:
     busy: dict[str, Behavior] = field(default_factory=nothing)
     """By which of those the unit's devices are used."""
     longest: int | None = None
+    latest: Behavior | None = None
+    """The latest of its Commands (O1)."""
     # As the Command's type has it; nothing in a unit leaves the user (K2):
     feedback: bool = False
     """Whether the Command makes one loop after another (U2)."""

@@ -198,9 +198,7 @@ def link(parent: Behavior, child: Behavior) -> None:
     parent.children.append(child)
 
 
-def parent_in(app: Application, unit: Behavior) -> Behavior | None:
+def parent_in(unit: Behavior) -> Behavior | None:
     """O1, U5: the latest Command that was requested in a unit, if it is in working memory still."""
-    latest = app.latest
-    return (
-        latest if latest is not None and latest.unit is unit and latest.state is not GONE else None
-    )
+    latest = unit.latest
+    return latest if latest is not None and latest.state is not GONE else None

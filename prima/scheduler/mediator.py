@@ -103,7 +103,7 @@ class Mediator(Failures):
                 unit.inner[ab.name] = ab
             self.memory.add(ab)
             self.chronicle.request(ab)
-        app.latest = made[-1]
+        (app if unit is None else unit).latest = made[-1]
 
     def open_unit(self, name: str, asked: OpenUnit) -> None:
         """U5: a unit that spans questions is requested like an AB of its own."""
@@ -192,7 +192,7 @@ class Mediator(Failures):
     ) -> tuple[Stream, Behavior | None]:
         """O1, O3, C3: the stream a new tree belongs to, and its parent there; a reaction has none."""
         if unit is not None:
-            return unit.stream, parent_in(app, unit)
+            return unit.stream, parent_in(unit)
         parent = self._parent(app) if reaction is None else None
         if parent is not None:
             return parent.stream, parent
@@ -210,9 +210,7 @@ class Mediator(Failures):
         if app.window is not None:
             return app.window.latest()
         latest = app.latest
-        if latest is None or latest.state is GONE:
-            return None
-        return latest.unit or latest
+        return latest if latest is not None and latest.state is not GONE else None
 
     def _stream(self, app: Application, reaction: int | None) -> Stream:
         """The stream that a tree without a parent goes on with, or a new one."""

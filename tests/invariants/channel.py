@@ -81,7 +81,8 @@ class Channel(Memory):
         """K1 at the end of an instant: a unit's Command ranks before a loop (S2a)."""
         for shown, others in self.started_leaving:
             for inner in self.started_inside:
-                if inner.engages and any(inner.inside(unit) for unit in others):
+                engages = inner.engages and inner.tree.engages(self.sensed)
+                if engages and any(inner.inside(unit) for unit in others):
                     self.report(
                         7, "K1", f"{shown} starts in the instant in which {inner.shown} engages"
                     )
