@@ -653,7 +653,7 @@ def _doing(reader: Reader, node: Node) -> Doing:
 
 
 def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
-    """What the recogniser tells of what the user says (:class:`prima.messages.Heard`)."""
+    """What the recogniser reports of the user's words (:class:`prima.messages.Heard`)."""
     told: dict[str, Json] = {}
     sure = reader.get(node, "confidence")
     if "confidence" in node.attributes:

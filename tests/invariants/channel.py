@@ -49,7 +49,9 @@ class Channel(Memory):
         if bool(record.get("reactive")) != (cause is not None):
             self.report(15, "C5", f"{ab.name} has the cause {cause}, reactive or not")
         elif cause is not None and self.serials.get(cause, -1) != self.now and self.numbered:
-            self.report(15, "C5", f"{ab.name} reacts to {cause}, which is no event of now")
+            self.report(
+                15, "C5", f"{ab.name} reacts to {cause}, which did not happen in this instant"
+            )
 
     @property
     def lapses_at(self) -> float:

@@ -61,7 +61,7 @@ class Memory:
         self.numbered = any(one.get("serial") is not None for one in self.records)
         """Whether events are recorded: some drivers ask for Commands without any."""
         self.told_floor: list[str] = []
-        """The floor, as ``floor`` records tell of it."""
+        """The floor according to ``floor`` records."""
         self.extra_reactions = 0
         self.lacking: set[str] = set()
         self.seen: set[str] = set()
@@ -74,7 +74,7 @@ class Memory:
         self._new_instant()
 
     def _read_ahead(self) -> None:
-        """Note what is only known later: when things are told of last."""
+        """Note where each name occurs last, which only later records show."""
         self.last: dict[str, int] = {}
         self.last_state: dict[tuple[str, int | None], int] = {}
         self.unit_ends: dict[str, float] = {}
