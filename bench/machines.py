@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from prima.interpreter.elements import Document
-    from prima.interpreter.expressions import Engine
 
 GUARDS = ("n < 0", "n < -1", "n >= 0")
 
@@ -72,10 +71,11 @@ class Prima:
 class Alone:
     """The ring as an application without a session: its interpreter, as the peers are."""
 
-    def __init__(self, document: Document, engine: Engine | None = None) -> None:
+    def __init__(self, document: Document) -> None:
         from prima.interpreter.application import Interpreter
+        from prima.script.isolated import Engines
 
-        self.app = Interpreter(document, None, engine)
+        self.app = Interpreter(document, None, Engines("none"))
         self.app.start(0)
         self.now = 0
 
@@ -96,9 +96,8 @@ class Alone:
 def applications(scripted: bool, guards: bool = False) -> Callable[[], Alone]:
     """How to make applications of one document that has been read once.
 
-    One with a script needs an ECMAScript engine, which all of them share.
+    One with a script needs an ECMAScript engine.
     """
-    from prima.interpreter.expressions import Engine
     from prima.interpreter.reader import read_document
 
     text = prima_text(2, guards)
@@ -107,8 +106,7 @@ def applications(scripted: bool, guards: bool = False) -> Callable[[], Alone]:
         text = text.replace('expr="n + 1"', 'expr="next(n)"').replace("<form", f"{script}<form", 1)
     document, problems = read_document("ring.xml", text.encode())
     assert not problems and document.scripted == scripted, problems
-    engine = Engine(memory=512 * 2**20) if scripted else None
-    return lambda: Alone(document, engine)
+    return lambda: Alone(document)
 
 
 def sismic_text(states: int, guards: bool = False) -> str:

@@ -140,6 +140,7 @@ def rehearse(
     sink: Sink | None = None,
     keep: bool = True,
     hosts: Iterable[str] = (),
+    isolate: str = "ea",
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -152,6 +153,9 @@ def rehearse(
         keep: whether the records are kept in memory; without, only the sink has them.
         hosts: what the applications may fetch from by http and https, as ``HOST`` or
             ``HOST:PORT``; where the scenario's services do not answer instead.
+        isolate: whose scripts get a process of their own: each EA's and one for all FAs
+            (``ea``), each application's (``all``), or nobody's (``none``: nothing can stop
+            a script that escapes the engine's limits).
 
     Raises:
         DocumentError: documents are wrong.
@@ -172,7 +176,7 @@ def rehearse(
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
-    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)))
+    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)), isolate)
     head: Record = {
         "time": 0,
         "phase": "run",

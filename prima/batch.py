@@ -15,7 +15,7 @@ import signal
 import stat
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -44,8 +44,6 @@ FULL = (errno.ENOSPC, errno.EROFS, getattr(errno, "EDQUOT", errno.ENOSPC))
 """Errors of writing that every further run would meet as well."""
 MOST_DIGESTS = 10_000
 """Digests of files that are kept at most."""
-STUCK = 3
-"""The exit code of a process that the watchdog has ended."""
 
 
 @dataclass(slots=True)
@@ -103,6 +101,8 @@ class Options:
     hosts: tuple[str, ...] = ()
     resume: bool = False
     limits: Mapping[str, int] = field(default_factory=dict)
+    isolate: str = "ea"
+    """Whose scripts get a process of their own (``prima.api.rehearse``)."""
     parts: str = ""
     """The folder in which transcripts grow."""
 
@@ -202,7 +202,6 @@ def run_batch(
     plan: Plan,
     options: Options,
     workers: int = 0,
-    begin: Callable[[], object] | None = None,
 ) -> Generator[Row, None, None]:
     """Make the runs of a plan; their rows come in its order. See :func:`prima.pool.spread`.
 
@@ -210,7 +209,6 @@ def run_batch(
         plan: what is run.
         options: how.
         workers: in how many processes; 0 for as many as there are cores.
-        begin: what each of these does first.
 
     Raises:
         UsageError: the folder for the transcripts cannot be written to, or is full.
@@ -220,12 +218,12 @@ def run_batch(
 
     workers = max(min(workers or cores(), len(plan)), 1)
     with _parts(plan.output) as parts:
-        options = Options(options.bound, options.hosts, options.resume, asdict(LIMITS), parts)
+        options = replace(options, limits=asdict(LIMITS), parts=parts)
         made = spread(
             partial(run_job, options),
             plan,
             workers,
-            partial(_begin, options, begin),
+            partial(_begin, options),
             partial(_remove, parts),
         )
         try:
@@ -274,9 +272,7 @@ def _remove(parts: str) -> None:
 def _dead(job: Job, died: Died) -> Row:
     """The row of a run whose process has ended."""
     message = f"its process ended with code {died.code}."
-    if died.code == STUCK:
-        message = "a document's script does not come back; the run is ended."
-    elif died.code < 0:
+    if died.code < 0:
         with suppress(ValueError):
             name = signal.Signals(-died.code).name
             message = f"its process was ended by the signal {name}; was there no memory left?"
@@ -286,14 +282,12 @@ def _dead(job: Job, died: Died) -> Row:
 # In the processes -------------------------------------------------------------------------
 
 
-def _begin(options: Options, begin: Callable[[], object] | None) -> None:
+def _begin(options: Options) -> None:
     """Take over the limits of the parent, which alone prints."""
     from prima.markup.limits import LIMITS
 
     for name, number in options.limits.items():
         setattr(LIMITS, name, number)
-    if begin is not None:
-        begin()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
@@ -344,7 +338,7 @@ def _run(options: Options, job: Job) -> Row:
         loaded = api.load_scenario(job.scenario)
         inputs.look_at_sounds(loaded)
         if not job.stem:
-            made = api.rehearse(loaded, job.policy, options.bound, None, False, options.hosts)
+            made = _rehearse(options, loaded, job.policy, None)
             return _row(job, loaded, made)
         digest = sha256()
         part = os.path.join(options.parts, f"{os.getpid()}{TRANSCRIPT}")
@@ -355,7 +349,7 @@ def _run(options: Options, job: Job) -> Row:
                 digest.update(data)
                 stream.write(data)
 
-            made = api.rehearse(loaded, job.policy, options.bound, sink, False, options.hosts)
+            made = _rehearse(options, loaded, job.policy, sink)
     row = _row(job, loaded, made)
     os.replace(part, f"{job.stem}{TRANSCRIPT}")
     ledger = {
@@ -486,6 +480,15 @@ def file_digest(path: str | Path) -> str | None:
         return _digests[key]
     except (OSError, ValueError):
         return None
+
+
+def _rehearse(
+    options: Options, loaded: Loaded, policy: str | None, sink: Callable[[str], object] | None
+) -> Transcript:
+    """Run a scenario by the options that all runs have in common; records are not kept."""
+    from prima import api
+
+    return api.rehearse(loaded, policy, options.bound, sink, False, options.hosts, options.isolate)
 
 
 def _key(options: Options, job: Job) -> dict[str, Any]:

@@ -99,5 +99,6 @@ def replay_records(
         session.step(due, ())
         yield from session.drain()
     yield from session.drain()
+    session.close()
     if last["phase"] == "over":
         yield {**last, "time": end}

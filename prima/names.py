@@ -57,6 +57,14 @@ RESERVED = frozenset(
         "of",
     ]
 )
+PASSED = r"""
+    "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' | `(?:\\.|[^`\\])*`
+    | //[^\n]* | /\*.*?(?:\*/|\Z)
+    | (?:(?<=[=(,:;!&|?{}\[+\-*%<>~^])(?<!\+\+)(?<!--)|(?<![\w$.])(?:return|typeof|case)|\A)\s*
+      /(?:\\[^\n]|\[(?:\\[^\n]|[^\]\\\n])*+\]?+|[^/\\\n\[])++(?:/\w*|(?=\n)|\Z)
+    | \\."""
+"""Strings, templates, comments and regular expressions of a script, in which names and brackets mean
+nothing; a verbose pattern."""
 HANDLED = frozenset(["event", "_event", "_message"])
 """Variables that tell a handler of its event."""
 GLOBALS = frozenset(

@@ -28,8 +28,6 @@ from prima.interpreter import (
     bounds,
     checks,
     content,
-    evaluation,
-    expressions,
     frame,
     grammar,
     handling,
@@ -41,6 +39,7 @@ from prima.markup.rnc import make_rnc
 from prima.markup.schema import XML_SCHEMA, make_catalog, make_locating_rules, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import failures, selector
+from prima.script import evaluation, host, syntax
 from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
@@ -209,7 +208,7 @@ def limits() -> str:
         ("a time in an attribute", f"{LONGEST_MS // 1000:,} s", "`bad-value`"),
         (
             "one evaluation of an expression or script",
-            f"{expressions.TIME_LIMIT:g} s of processor time",
+            f"{syntax.TIME_LIMIT:g} s of processor time",
             "`error.semantic`",
         ),
         (
@@ -250,9 +249,14 @@ def limits() -> str:
             "the application ends",
         ),
         (
-            "scripts of all applications in one instant",
-            f"{evaluation.INSTANT_SECONDS:g} s",
-            "the run ends (exit code 3)",
+            "processor time of a call that escapes the engine's own limit",
+            f"{host.KILL_SECONDS:g} s",
+            "the application ends",
+        ),
+        (
+            "memory of a process with engines",
+            f"{host.MEMORY_BYTES // mib} MiB",
+            "the application ends",
         ),
         (
             "steps of content in one instant, or in instants joined by events sent without delay",

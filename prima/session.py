@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from prima.commands import ABSENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
-from prima.interpreter.evaluation import PULSE
 from prima.messages import (
     PROMOTED,
     Action,
@@ -61,10 +60,11 @@ from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.selection import Policy
+from prima.script.evaluation import EngineLost
+from prima.script.isolated import Engines
 from prima.values import moment
 
 if TYPE_CHECKING:
-    from prima.interpreter.expressions import Engine
     from prima.voicexml.application import VoiceInterpreter
     from prima.voicexml.document import VoiceDocument
 
@@ -81,8 +81,8 @@ watchers: list[Callable[[App], None]] = []
 class Session:
     """One robot's applications under one policy.
 
-    ``engine`` is shared by those of its applications in PRIMA's own language that need one, if
-    they all can be trusted; else each has its own.
+    ``isolate`` says whose code gets a process of its own
+    (:data:`~prima.script.isolated.ISOLATIONS`); :meth:`close` gives these back.
     """
 
     def __init__(
@@ -92,13 +92,15 @@ class Session:
         commands: Mapping[str, CommandType],
         bound: int | None = None,
         date: str = START,
-        engine: Engine | None = None,
         absence: int = ABSENCE_MS,
+        isolate: str = "ea",
     ) -> None:
         self._began = moment(date)
-        self._engine = engine
+        self._engines = Engines(isolate)
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {doc.id: interpreter_of(doc, own, self._began, engine) for doc in documents}
+        self.apps = {
+            doc.id: interpreter_of(doc, own, self._began, self._engines) for doc in documents
+        }
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound, absence)
@@ -130,7 +132,6 @@ class Session:
         Orders are for the devices, in the order in which they were made; ``send``
         orders are for services.
         """
-        PULSE.instants += 1
         self.chronicle.now = now
         if self._turns:
             self._tell_turns()
@@ -161,6 +162,10 @@ class Session:
         due = min(self._due.values(), default=None)
         late = self.mediator.deadline()
         return late if due is None else due if late is None else min(due, late)
+
+    def close(self) -> None:
+        """Give back the processes in which code was evaluated: the session is over."""
+        self._engines.close()
 
     @property
     def written(self) -> int:
@@ -280,7 +285,8 @@ class Session:
             self._defect(app, error)
 
     def _defect(self, app: App, error: Exception) -> None:
-        self.defects.append(error)
+        if not isinstance(error, EngineLost):
+            self.defects.append(error)
         app.fail(error)
 
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
@@ -294,7 +300,7 @@ class Session:
             if not app.over:
                 return
             app = self.apps[name] = interpreter_of(
-                app.document, app.arguments, self._began, self._engine
+                app.document, app.arguments, self._began, self._engines
             )
         self._loaded.add(name)
         self._alive = None
@@ -606,16 +612,16 @@ def interpreter_of(
     document: AnyDocument,
     arguments: Mapping[str, frozenset[str]],
     began: int,
-    engine: Engine | None = None,
+    engines: Engines,
 ) -> App:
     """The interpreter of a document, of whichever language it is, in a run that began then."""
     app: App
     if isinstance(document, Document):
-        app = Interpreter(document, arguments, engine)
+        app = Interpreter(document, arguments, engines)
     else:
         from prima.voicexml.application import VoiceInterpreter
 
-        app = VoiceInterpreter(document, arguments)
+        app = VoiceInterpreter(document, arguments, engines)
     app.began = began
     for watch in watchers:
         watch(app)

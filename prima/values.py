@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from datetime import UTC
 from functools import cache, lru_cache
 
 from prima.deferred import dataclass, pattern
@@ -163,7 +162,7 @@ def moment(date: str) -> int:
     Raises:
         ValueError: it is no date.
     """
-    from datetime import datetime, timedelta
+    from datetime import UTC, datetime, timedelta
 
     since = datetime.fromisoformat(date).replace(tzinfo=UTC)
     return (since - datetime.fromtimestamp(0, UTC)) // timedelta(milliseconds=1)

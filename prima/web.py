@@ -10,9 +10,9 @@ from urllib.error import HTTPError, URLError
 from urllib.parse import urlencode, urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, Request, build_opener
 
-from prima.interpreter.ecmascript import inward, stringify
 from prima.markup.limits import LIMITS
 from prima.messages import Data, Fetched, Json
+from prima.script.ecmascript import inward, stringify
 from prima.sim.services import Web, answer, host_of, not_allowed
 
 REAL_SECONDS = 10

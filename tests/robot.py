@@ -30,9 +30,11 @@ def document(body: str, kind: str = "fa", name: str = "app") -> Document:
 class Bench:
     """Runs documents; every Command lasts until the test ends it."""
 
-    def __init__(self, *documents: Document | str, policy: str = "prima") -> None:
+    def __init__(
+        self, *documents: Document | str, policy: str = "prima", isolate: str = "ea"
+    ) -> None:
         made = [document(one) if isinstance(one, str) else one for one in documents]
-        self.session = Session(made, policy_named(policy), TABLE_4_2)
+        self.session = Session(made, policy_named(policy), TABLE_4_2, isolate=isolate)
         self.now = 0
         self.records: list[Record] = []
         self.orders: list[Order] = []

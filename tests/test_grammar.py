@@ -21,9 +21,9 @@ from prima.grammar import (
     supports,
 )
 from prima.grammar.model import Tag
-from prima.grammar.sandbox import Sandbox
 from prima.markup.reader import parse
 from prima.markup.tree import Node
+from prima.script.isolated import IsolatedSandbox
 from tests.work import steps
 
 SRGS = "http://www.w3.org/2001/06/grammar"
@@ -704,13 +704,13 @@ def test_the_work_of_loading_grows_with_the_length() -> None:
 
 def test_tags_are_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     checked: list[str] = []
-    check = Sandbox.fault
+    check = IsolatedSandbox.fault
 
-    def noted(sandbox: Sandbox, code: str) -> str:
+    def noted(sandbox: IsolatedSandbox, code: str) -> str:
         checked.append(code)
         return check(sandbox, code)
 
-    monkeypatch.setattr(Sandbox, "fault", noted)
+    monkeypatch.setattr(IsolatedSandbox, "fault", noted)
     grammar = load(f"{SCRIPT}$r = x {{out=1}} y {{if (1)}} | z {{out=2}};")
     for said in ("x y", "x y", "z", "z"):
         grammar.match(said)

@@ -11,9 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from prima import api
-from prima.commands import TABLE_4_2
-from prima.interpreter import application, compiling
-from prima.interpreter.compiling import (
+from prima.interpreter import application
+from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
+from prima.interpreter.reader import read_document
+from prima.names import STRANGE
+from prima.script import compiling
+from prima.script.compiling import (
     BUILT_IN,
     INHERITED,
     METHODS,
@@ -22,16 +25,9 @@ from prima.interpreter.compiling import (
     compiled,
     quickly,
 )
-from prima.interpreter.ecmascript import CONSTANTS
-from prima.interpreter.evaluation import ScriptError
-from prima.interpreter.expressions import Engine
-from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
-from prima.interpreter.reader import read_document
-from prima.messages import Loaded, Occurred
-from prima.names import STRANGE
-from prima.prelude import MEMORY_LIMIT
-from prima.scheduler.selection import Policy
-from prima.session import Session
+from prima.script.ecmascript import CONSTANTS
+from prima.script.engine import Engine
+from prima.script.evaluation import ScriptError
 
 ENGINE = Engine()
 VALUES: dict[str, Any] = {
@@ -305,28 +301,6 @@ def test_simple_documents_are_plain() -> None:
     assert kinds["follow"]
     assert not kinds["dance"], "it has a script"
     assert not kinds["scheduler"], "it calls Number"
-
-
-def test_applications_that_trust_each_other_share_an_engine() -> None:
-    text = (
-        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="{}"><var name="n" expr="0"/>'
-        "<script>function twice(x) {{ return 2 * x; }}</script><form id='a'>"
-        '<on event="tick"><assign name="n" expr="twice(n) + {}"/><log expr="n"/></on></form></prima>'
-    )
-    documents = [
-        read_document(f"{name}.xml", text.format(name, step).encode())[0]
-        for name, step in (("one", 1), ("ten", 10))
-    ]
-    shared = Engine(memory=2 * MEMORY_LIMIT)
-    session = Session(documents, Policy(), TABLE_4_2, engine=shared)
-    session.step(0, [Loaded("one"), Loaded("ten")])
-    assert all(app.engine is shared for app in session.apps.values())
-    for now in (1, 2):
-        session.step(now, [Occurred("tick")])
-    logs = [one for one in session.drain() if one["phase"] == "log"]
-    assert [(one["app"], one["message"]) for one in logs] == [
-        ("one", "1"), ("ten", "10"), ("one", "3"), ("ten", "30"),
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import contextlib
 
 import pytest
 
-from prima.interpreter.evaluation import SCOPES, ScriptError
-from prima.interpreter.expressions import Engine
-from prima.interpreter.scripts import hoisted
 from prima.names import assigned_names
+from prima.script.engine import Engine
+from prima.script.evaluation import SCOPES, ScriptError
+from prima.script.hoisting import hoisted
 from tests.work import steps
 
 

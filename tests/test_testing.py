@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import shutil
 import signal
@@ -495,14 +496,16 @@ def test_processes_give_the_same_results_in_the_same_order() -> None:
     assert one == several
 
 
-def die_soon() -> None:
-    threading.Timer(1, os._exit, (3,)).start()  # as the watchdog ends a process
-
-
 def test_a_process_that_is_ended_ends_the_tests(tmp_path: Path) -> None:
     endless(tmp_path)
-    with pytest.raises(RunError, match="does not come back"):
-        list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2, die_soon))
+
+    def end_one() -> None:
+        (first, *_) = multiprocessing.active_children()
+        first.kill()
+
+    threading.Timer(2, end_one).start()
+    with pytest.raises(RunError, match="ended from outside"):
+        list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2))
 
 
 def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:

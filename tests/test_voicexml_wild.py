@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import prima
-from prima.interpreter.evaluation import ScriptError
-from prima.interpreter.expressions import Engine
 from prima.loading import validate
+from prima.script.engine import Engine
+from prima.script.evaluation import ScriptError
 from tests.voice import Call, Online, vxml
 
 DEMO = prima.documents_folder()

@@ -11,7 +11,6 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from functools import partial
 
 import click
 from click.exceptions import Exit
@@ -29,7 +28,7 @@ from prima.batch import (
 from prima.cli import common
 from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
 from prima.errors import UsageError, counted
-from prima.pool import cores, warm_up
+from prima.pool import warm_up
 
 MOST_LISTED = 50_000_000
 """Bytes that a list of scenarios may have."""
@@ -77,8 +76,7 @@ def run_all(
     progress = _Progress(len(plan))
     exits: Counter[int] = Counter()
     earlier = 0
-    begin = partial(begin_worker, max(workers / cores(), 1.0))
-    with _interruptible(), closing(run_batch(plan, options, workers, begin)) as rows:
+    with _interruptible(), closing(run_batch(plan, options, workers)) as rows:
         table = _Table(plan, form)
         try:
             for row in rows:
@@ -98,11 +96,6 @@ def run_all(
         tell(f"{earlier} of {counted(len(plan), 'run')} had been made before")
     if any(exits[code] for code in exits if code):
         raise Exit(max(exits))
-
-
-def begin_worker(patience: float) -> None:
-    """Guard a process that makes runs; where so many share a core, a script takes longer."""
-    common.start_watchdog(patience)
 
 
 class _Table:

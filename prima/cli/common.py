@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
 POLICY_NAMES = ("prima", "fifo", "fair", "fixed", "none")
-WATCHDOG_SECONDS = 5.0
-"""How long one evaluation of a document's script may hold the process up."""
 
 
 class Choice(click.Choice[str]):
@@ -290,40 +288,3 @@ def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
             click.echo(f"\r{seconds} s, {count} records ", err=True, nl=False)
 
     return note
-
-
-def start_watchdog(patience: float = 1.0) -> None:
-    """End the process when a script escapes the engine's own limits (exit code 3).
-
-    The limits count ``patience`` times.
-
-    The engine lets go of the interpreter lock while it evaluates, so this thread
-    runs even if an evaluation never comes back. What was written is on disk.
-    """
-    import threading
-    import time
-
-    from prima.interpreter.evaluation import INSTANT_SECONDS, PULSE
-
-    longest = patience * INSTANT_SECONDS
-
-    def watch() -> None:
-        seen, since = -1, time.monotonic()
-        instant, began = -1, time.monotonic()
-        while True:
-            time.sleep(0.25)
-            count = PULSE.evaluations
-            if PULSE.instants != instant:
-                instant, began = PULSE.instants, time.monotonic()
-            if count % 2 == 0 or count != seen:
-                seen, since = count, time.monotonic()
-            reason = ""
-            if time.monotonic() - since > patience * WATCHDOG_SECONDS:
-                reason = "a document's script does not come back"
-            elif count % 2 and time.monotonic() - began > longest:
-                reason = f"the scripts of one instant take more than {longest:g} s"
-            if reason:
-                os.write(2, f"prima: {reason}; the run is ended.\n".encode())
-                os._exit(3)
-
-    threading.Thread(target=watch, daemon=True).start()

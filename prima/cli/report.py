@@ -12,7 +12,6 @@ from prima.cli.common import (
     POLICIES,
     POLICY_NAMES,
     check_output,
-    start_watchdog,
     suggesting,
     tell,
     tell_cut,
@@ -100,7 +99,6 @@ def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
         )
     if len(scenarios) not in (1, len(transcripts)):
         raise UsageError("Name one --scenario for all transcripts, or one for each.")
-    start_watchdog()
     return [api.load_scenario(path) for path in scenarios]
 
 

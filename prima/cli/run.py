@@ -21,7 +21,6 @@ from prima.cli.common import (
     put,
     raise_limits,
     run_into,
-    start_watchdog,
     suggesting,
     tell,
     why_option,
@@ -31,6 +30,7 @@ from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
 if TYPE_CHECKING:
     from prima.api import Transcript
+    from prima.batch import Options
 
 MOST_WORKERS = 256
 """More processes than this are a slip of the finger."""
@@ -67,6 +67,12 @@ ENDS_OF_FOLDERS = ("/", os.sep)
     help="Let VoiceXML documents fetch from this host; without, no network is used.",
 )
 @click.option(
+    "--isolate",
+    type=click.Choice(["ea", "all", "none"]),
+    default="ea",
+    help="Whose scripts get a process of their own: each EA's, each application's or none's.",
+)
+@click.option(
     "--from",
     "lists",
     metavar="FILE",
@@ -94,6 +100,7 @@ def run(
     bound: int | None,
     why: bool,
     hosts: tuple[str, ...],
+    isolate: str,
     lists: tuple[str, ...],
     workers: int | None,
     resume: bool,
@@ -119,6 +126,8 @@ def run(
     prima run documents/scenarios --policy prima --policy fifo -o runs/
     prima run documents/scenarios --policy prima --policy fifo -o runs/ --resume
     """
+    from prima.batch import Options
+
     raise_limits(limits)
     applications = bool(fas or eas)
     if bool(scenarios or lists) == applications:
@@ -144,17 +153,32 @@ def run(
         is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
         if output == "-" or is_file:
             raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
-        from prima.batch import Options
         from prima.cli.batch import listed, run_all
 
         paths = [*scenarios, *(path for name in lists for path in listed(name))]
-        run_all(paths, policies, output or "", Options(bound, hosts, resume), workers or 0, form)
+        run_all(
+            paths,
+            policies,
+            output or "",
+            Options(bound, hosts, resume, isolate=isolate),
+            workers or 0,
+            form,
+        )
         return
     policy = policies[0] if policies else None
     if output == "-":
         output, form = None, "json"
     _run_one(
-        next(iter(scenarios), None), fas, eas, says, output, policy, bound, why, hosts, form, maps
+        next(iter(scenarios), None),
+        fas,
+        eas,
+        says,
+        output,
+        policy,
+        Options(bound, hosts, isolate=isolate),
+        why,
+        form,
+        maps,
     )
 
 
@@ -165,9 +189,8 @@ def _run_one(
     says: tuple[str, ...],
     output: str | None,
     policy: str | None,
-    bound: int | None,
+    options: Options,
     why: bool,
-    hosts: tuple[str, ...],
     form: str,
     maps: tuple[str, ...],
 ) -> None:
@@ -179,6 +202,11 @@ def _run_one(
         if scenario is not None
         else api.stage(fas, eas, says, maps=maps)
     )
+
+    def rehearse(sink: api.Sink | None, keep: bool) -> api.Transcript:
+        given = options.bound, sink, keep, options.hosts, options.isolate
+        return api.rehearse(loaded, policy, *given)
+
     if output is not None:
         if os.path.isdir(output):
             hint = f"For a transcript in it, write {output}/."
@@ -188,17 +216,17 @@ def _run_one(
     for problem in loaded.problems:
         if problem.severity != "note":
             tell(str(problem))
-    start_watchdog()
     if output is not None:
         transcript = run_into(
-            output, lambda sink: api.rehearse(loaded, policy, bound, sink, False, hosts)
+            output,
+            lambda sink: rehearse(sink, False),
         )
         tell(f"{output}: {_outline(transcript)}")
     elif form == "json":
         write_for_programs()
-        transcript = api.rehearse(loaded, policy, bound, sys.stdout.write, False, hosts)
+        transcript = rehearse(sys.stdout.write, False)
     else:
-        transcript = api.rehearse(loaded, policy, bound, hosts=hosts)
+        transcript = rehearse(None, True)
         put(transcript.table(why, columns()))
     if transcript.unfinished:
         tell(f"{_stopped(transcript)} {'; '.join(transcript.unfinished)}.")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from prima.cli.common import start_watchdog
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -51,7 +50,6 @@ def run_of(path: str, policy: str | None = None, whole: bool = True) -> Run:
         if policy is not None:
             raise UsageError(f"{path}: --policy runs a scenario, and this is a transcript.")
         return Run(found, None)
-    start_watchdog()
     loaded = api.load_scenario(path)
     made = api.rehearse(loaded, policy)
     made.name = f"{path} ({policy})" if policy else path

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from prima.cli.common import Choice, print_json, put, start_watchdog, write_for_programs
+from prima.cli.common import Choice, print_json, put, write_for_programs
 
 
 @click.command()
@@ -35,7 +35,6 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
 
     chosen, results = scenarios or tuple(map(str, situations())), []
     total = len(chosen) * len(policies or ALL)
-    start_watchdog()
     for result in run_study(chosen, policies or ALL):
         results.append(result)
         if sys.stderr.isatty():

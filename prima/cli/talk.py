@@ -21,7 +21,6 @@ from prima.cli.common import (
     map_option,
     put,
     raise_limits,
-    start_watchdog,
     suggesting,
     tell,
     why_option,
@@ -122,7 +121,6 @@ def talk(
     for problem in loaded.problems:
         if problem.severity != "note":
             tell(str(problem))
-    start_watchdog()
     folder = os.path.dirname(scenario or "")
     sink = _write if form == "json" else None
     game = Game(loaded, folder, policy, scripted, api.fetcher(list(hosts)), sink)

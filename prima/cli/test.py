@@ -20,7 +20,6 @@ from prima.cli.common import (
     put,
     raise_limits,
     same_file,
-    start_watchdog,
     suggesting,
     tell,
 )
@@ -110,12 +109,9 @@ def test(
         raise UsageError(f'None of {len(found)} scenarios has "{word}" in its path.')
     _check_outputs(chosen, junit_file, coverage_xml)
     cover = cover or coverage_xml is not None or fail_under is not None
-    start_watchdog()
     results: list[Result] = []
     coverage: Coverage = {}
-    for result in run_all(
-        chosen, How(policy, compare, cover), min(jobs, len(chosen)), start_watchdog
-    ):
+    for result in run_all(chosen, How(policy, compare, cover), min(jobs, len(chosen))):
         results.append(result)
         merge(coverage, result.coverage)
         result.coverage = {}

@@ -8,7 +8,6 @@ from functools import cached_property
 
 from prima.deferred import dataclass
 from prima.errors import Problem
-from prima.grammar.budget import Budget
 from prima.grammar.chart import Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.model import Document, Mode, Reference
@@ -16,6 +15,7 @@ from prima.grammar.ranking import best, frames
 from prima.grammar.semantics import Failure, Interpreter, SemanticError
 from prima.grammar.text import utterance
 from prima.messages import Json
+from prima.script.budget import Budget
 
 MOST_ANALYSES = 64
 """How many analyses of an utterance are looked at for different meanings."""

@@ -12,7 +12,7 @@ import re
 from functools import lru_cache
 
 from prima.grammar.model import Document
-from prima.grammar.text import PASSED
+from prima.names import PASSED
 
 FORMATS = {
     "": "",

@@ -11,12 +11,13 @@ from typing import Any, Literal
 
 from prima.deferred import dataclass
 from prima.errors import Place
-from prima.grammar.budget import Budget
 from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Tag, Words
 from prima.grammar.ranking import Frame, Value
 from prima.grammar.text import join
 from prima.messages import Json
+from prima.script.budget import Budget
+from prima.script.evaluation import EngineLost, ScriptError
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,19 +139,17 @@ class Interpreter:
 
     def _given(self, result: _Result, way: Literal["json", "carry"]) -> Any:
         """What a value in an engine is outside of it."""
-        from prima.grammar.sandbox import ScriptError
-
         sandbox = self._sandbox(result.home)
         try:
             return sandbox.json(result.box) if way == "json" else sandbox.carry(result.box)
+        except EngineLost as error:
+            raise EngineLost(f"{result.home.where()}: {error}") from None
         except ScriptError as error:
             place = result.home.where()
             raise Failure(SemanticError(f"The value cannot be given: {error}.", place)) from None
 
     def _script(self, frame: Frame, result: _Result) -> None:
         """Run the tags of a rule with the values of the rules that it refers to."""
-        from prima.grammar.sandbox import ScriptError
-
         sandbox = self._sandbox(result.document)
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
@@ -174,6 +173,8 @@ class Interpreter:
                     sandbox.add(environment, "builtin", sandbox.box(event.value), event.text)
                     pieces.append("$next(out);")
             result.box = sandbox.rule("\n".join(pieces), environment)
+        except EngineLost as error:
+            raise EngineLost(f"{tags[0].where()}: {error}") from None
         except ScriptError as error:
             reached = sandbox.reached(environment) if environment is not None else 0
             raise _failure(tags[min(reached, len(tags) - 1)], str(error)) from None
@@ -190,13 +191,17 @@ class Interpreter:
         """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
         found = self._sandboxes.get(id(document))
         if found is None:
-            from prima.grammar.sandbox import Sandbox, ScriptError
+            from prima.script.isolated import IsolatedSandbox
 
-            found = self._sandboxes[id(document)] = Sandbox(self.budget, len(self._sandboxes))
+            found = self._sandboxes[id(document)] = IsolatedSandbox(
+                self.budget, len(self._sandboxes)
+            )
             _check([(tag, tag.code) for tag in document.globals], document, found)
             for tag in document.globals:
                 try:
                     found.run(tag.code)
+                except EngineLost as error:
+                    raise EngineLost(f"{tag.where()}: {error}") from None
                 except ScriptError as error:
                     raise _failure(tag, str(error)) from None
         return found

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 
 from prima.errors import Problem, did_you_mean
-from prima.grammar.budget import Budget
 from prima.grammar.legacy import translate
 from prima.grammar.model import BuiltIn, Choice, Document, Part, Reference, Repeat, Sequence, Tag
 from prima.names import GLOBALS, assigned_names, declared_names, free_names
+from prima.script.budget import Budget
 
 SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
@@ -28,9 +28,9 @@ def tag_warnings(document: Document) -> list[Problem]:
     """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
     if not (document.tags or document.globals) or document.dialect == "literals":
         return []
-    from prima.grammar.sandbox import Sandbox
+    from prima.script.isolated import IsolatedSandbox
 
-    sandbox = Sandbox(Budget())
+    sandbox = IsolatedSandbox(Budget())
     found: list[Problem] = []
     sound: dict[int, str] = {}
     """Tags that are scripts, by the identity of the tag."""

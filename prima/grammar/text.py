@@ -25,14 +25,6 @@ _KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
 _TOKEN = re.compile(r'"([^"]*)"|([^\s"]+)')
-PASSED = r"""
-    "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' | `(?:\\.|[^`\\])*`
-    | //[^\n]* | /\*.*?(?:\*/|\Z)
-    | (?:(?<=[=(,:;!&|?{}\[+\-*%<>~^])(?<!\+\+)(?<!--)|(?<![\w$.])(?:return|typeof|case)|\A)\s*
-      /(?:\\[^\n]|\[(?:\\[^\n]|[^\]\\\n])*+\]?+|[^/\\\n\[])++(?:/\w*|(?=\n)|\Z)
-    | \\."""
-"""Strings, templates, comments and regular expressions of a script, in which names and brackets mean
-nothing; a verbose pattern."""
 KEYS = frozenset("0123456789*#ABCD")
 """The keys of a telephone (SRGS Appendix E)."""
 KEY_NAMES = {"star": "*", "pound": "#"}

@@ -24,7 +24,6 @@ from prima.interpreter.elements import (
     Watch,
     all_items,
 )
-from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.form import Algorithm, confidence_level
 from prima.interpreter.frame import (
     Abandoned,
@@ -63,32 +62,32 @@ from prima.messages import (
     Step,
     Understood,
 )
+from prima.script.evaluation import EngineLost, Scope, ScriptError
+from prima.script.isolated import Engines
 
 if TYPE_CHECKING:
-    from prima.interpreter.expressions import Engine
+    from prima.script.isolated import AnyEngine
 
 MAX_TIMERS = 256
 
 
-class Interpreter(Bounds["Engine | PlainEngine"]):
+class Interpreter(Bounds["AnyEngine | PlainEngine"]):
     """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands.
 
-    ``engine`` is what evaluates the document's code, if it needs one; applications that trust
-    each other may share it. Their variables stand apart, but not what a script does to the
-    engine's own objects.
+    ``engines`` makes what evaluates the document's code, if it needs one.
     """
 
     def __init__(
         self,
         document: Document,
         arguments: Mapping[str, frozenset[str]] | None = None,
-        engine: Engine | None = None,
+        engines: Engines | None = None,
     ) -> None:
         self.document = document
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        super().__init__(evaluator_of(document, engine))
+        super().__init__(evaluator_of(document, engines or Engines()))
         self.quick = isinstance(self.engine, PlainEngine) == document.plain
         """Whether what an event does may be done by a function, where nobody can look into it."""
         self.application = self.engine.named("application")
@@ -355,7 +354,13 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             self._quit(out.reason, out.failed, out.source)
 
     def thrown(self, error: Thrown | ScriptError) -> Thrown:
-        """An error of the engine itself is an event as well."""
+        """An error of the engine itself is an event as well.
+
+        Raises:
+            GoOut: the engine is lost.
+        """
+        if isinstance(error, EngineLost):
+            raise GoOut(f"error.semantic: {error}", True)
         if isinstance(error, Thrown):
             return error
         return Thrown(self.internal("error.semantic", str(error)))
@@ -611,15 +616,9 @@ class Interpreter(Bounds["Engine | PlainEngine"]):
             self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)
 
 
-def evaluator_of(document: Document, shared: Engine | None = None) -> Engine | PlainEngine:
+def evaluator_of(document: Document, engines: Engines) -> AnyEngine | PlainEngine:
     """What evaluates a document's code: Python where that is all it needs."""
-    if is_plain(document):
-        return PlainEngine()
-    if shared is not None:
-        return shared
-    from prima.interpreter.expressions import Engine
-
-    return Engine()
+    return PlainEngine() if is_plain(document) else engines.engine(document.id, document.kind)
 
 
 def says(step: Step) -> bool:

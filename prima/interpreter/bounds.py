@@ -6,18 +6,18 @@ import math
 from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
-from prima.interpreter.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Action, Quit, Say
 from prima.prelude import START
+from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, EngineLost
 from prima.values import moment
 
 if TYPE_CHECKING:
-    from prima.interpreter.expressions import Engine
     from prima.interpreter.plain import PlainEngine
+    from prima.script.isolated import AnyEngine
 
-Evaluator = TypeVar("Evaluator", bound="Engine | PlainEngine")
+Evaluator = TypeVar("Evaluator", bound="AnyEngine | PlainEngine")
 """What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
@@ -80,6 +80,8 @@ class Bounds(Generic[Evaluator]):
             self.give_up(node, f"its scripts took more than {MAX_RUN_SECONDS:g} s in this run")
         if self.engine.spent > MAX_SCRIPT_SECONDS:
             self.give_up(node, "its scripts take too long without ever waiting")
+        if self.engine.lost:
+            self.give_up(node, self.engine.lost)
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what an application says, logs and sends in one instant."""
@@ -102,9 +104,12 @@ class Bounds(Generic[Evaluator]):
             self.give_up(node, f"{reason}: let what comes again and again wait longer")
 
     def fail(self, error: Exception) -> None:
-        """E2: the interpreter itself has failed, and ends the application, wherever it was."""
+        """E2: the interpreter itself or an engine has failed, and ends the application."""
         place = source(self._latest) if self._latest is not None else ""
-        reason = f"{place}: this is a defect of prima: {type(error).__name__}: {error}"
+        if isinstance(error, EngineLost):
+            reason = f"error.semantic: {error}"
+        else:
+            reason = f"{place}: this is a defect of prima: {type(error).__name__}: {error}"
         self.over, self.deadline = True, None
         self.actions[:] = [Say("error", reason, place), Quit(reason, True, place)]
 

@@ -50,7 +50,6 @@ from prima.interpreter.elements import (
     Watch,
     run_commands,
 )
-from prima.interpreter.evaluation import SCOPES
 from prima.interpreter.grammar import (
     Answers,
     fold,
@@ -61,6 +60,7 @@ from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.names import HANDLED, RESERVED, STRANGE
+from prima.script.evaluation import SCOPES
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:

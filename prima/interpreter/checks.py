@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 from prima.commands import TABLE_4_2, Argument, CommandType, check_argument, missing_argument
 from prima.deferred import pattern
 from prima.errors import Place, Problem, Severity, did_you_mean, few, parted
-from prima.interpreter.compiling import compiled
 from prima.interpreter.elements import (
     Act,
     Acts,
@@ -47,12 +46,13 @@ from prima.interpreter.elements import (
     pauses_in,
     run_commands,
 )
-from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.markup.tree import Node
 from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
+from prima.script.compiling import compiled
+from prima.script.evaluation import ScriptError
 from prima.values import nearest, read_value
 
 LONG_UNIT_MS = 20_000
@@ -238,18 +238,11 @@ def document_commands(document: Document) -> Iterator[CommandTemplate]:
                 yield from run_commands(act.steps)
 
 
-@lru_cache(maxsize=1)
-def _context() -> Any:
-    from prima.interpreter.expressions import plain_context
-
-    return plain_context()
-
-
 def _check_code(code: str, script: bool) -> None:
     """Compile a script or an expression by an engine, which simple code does without."""
-    from prima.interpreter.expressions import check_expression, check_script
+    from prima.script.isolated import syntax
 
-    (check_script if script else check_expression)(_context(), code)
+    (syntax().script if script else syntax().expression)(code)
 
 
 class Leads:

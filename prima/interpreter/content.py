@@ -30,7 +30,6 @@ from prima.interpreter.elements import (
     Throw,
     all_items,
 )
-from prima.interpreter.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import (
     Abandoned,
     Content,
@@ -45,6 +44,7 @@ from prima.interpreter.frame import (
 from prima.interpreter.plain import PlainEngine
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
+from prima.script.evaluation import RESULT_LIMIT, EngineLost, Scope, ScriptError
 from prima.values import quoted, read_value, shown
 
 if TYPE_CHECKING:
@@ -83,9 +83,15 @@ class Executor:
     # Expressions --------------------------------------------------------------
 
     def failure(self, error: ScriptError, expr: Expression) -> Thrown:
-        """``error.semantic`` with the place of the expression that failed."""
+        """``error.semantic`` with the place of the expression that failed.
+
+        Raises:
+            GoOut: the engine is lost.
+        """
         place = where(expr, error)
         message = f"{place}: {expr.code.strip()[:80]}: {error}"
+        if isinstance(error, EngineLost):
+            raise GoOut(f"error.semantic: {message}", True, place)
         return Thrown(self.owner.internal("error.semantic", message), place)
 
     def evaluate(self, expr: Expression, fiber: Fiber) -> Json:

@@ -17,7 +17,6 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
-from prima.interpreter.evaluation import ScriptError
 from prima.interpreter.frame import (
     MAX_DEPTH,
     Content,
@@ -31,6 +30,7 @@ from prima.interpreter.frame import (
 )
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
 from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
+from prima.script.evaluation import ScriptError
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter

@@ -6,8 +6,8 @@ from collections.abc import Generator, Mapping, Sequence
 from types import MappingProxyType
 
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
-from prima.interpreter.evaluation import Scope
 from prima.messages import Event, Json, Notice
+from prima.script.evaluation import Scope
 
 MAX_DEPTH = 32
 """Subdialogs inside subdialogs, and events thrown while one is handled."""

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Form, Handler, Item, Known, Watch
-from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
 from prima.interpreter.reactions import reaction_of
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.interpreter.sensors import hides_sensors, sensors_of
 from prima.messages import Event, Json, Notice
+from prima.script.evaluation import Scope, ScriptError
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter

@@ -1,8 +1,8 @@
 """The evaluator of documents whose expressions all need no engine.
 
 An application that has no others (:func:`is_plain`) is evaluated here: each expression is a Python
-function of the scopes that it sees (:mod:`prima.interpreter.compiling`); any other application runs
-in an :class:`~prima.interpreter.expressions.Engine`.
+function of the scopes that it sees (:mod:`prima.script.compiling`); any other application runs
+in an :class:`~prima.script.engine.Engine`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from prima.interpreter.compiling import (
+from prima.interpreter.elements import Document
+from prima.script.compiling import (
     FUNCTIONS,
     Function,
     anywhere,
@@ -19,7 +20,7 @@ from prima.interpreter.compiling import (
     function_of,
     quickly,
 )
-from prima.interpreter.ecmascript import (
+from prima.script.ecmascript import (
     UNDEFINED,
     Named,
     Scope,
@@ -33,8 +34,7 @@ from prima.interpreter.ecmascript import (
     truth,
     well_formed,
 )
-from prima.interpreter.elements import Document
-from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS, ScriptError, bounded
+from prima.script.evaluation import MAX_SCRIPT_SECONDS, ScriptError, bounded
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -73,10 +73,12 @@ def _are_plain(codes: Iterable[str]) -> bool:
 
 
 class PlainEngine:
-    """What an :class:`~prima.interpreter.expressions.Engine` does, for applications without scripts."""
+    """What an :class:`~prima.script.engine.Engine` does, for applications without scripts."""
 
     nothing = Scope()
     """A scope in which nothing is declared."""
+    lost = ""
+    """Why nothing can be evaluated any more: never."""
 
     def __init__(self) -> None:
         self.now = 0

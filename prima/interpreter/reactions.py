@@ -16,9 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from prima.deferred import pattern
 from prima.interpreter.bounds import MAX_STEPS
-from prima.interpreter.compiling import INHERITED, VARIABLES, Compiled, quickly
 from prima.interpreter.content import SIMPLE
-from prima.interpreter.ecmascript import HELPERS, Scope, holder_of
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -35,11 +33,13 @@ from prima.interpreter.elements import (
     all_acts,
     all_items,
 )
-from prima.interpreter.evaluation import MAX_SCRIPT_SECONDS, ScriptError
 from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
 from prima.interpreter.plain import LONG, PlainEngine, is_plain
 from prima.interpreter.selection import Taking
 from prima.messages import Event
+from prima.script.compiling import INHERITED, VARIABLES, Compiled, quickly
+from prima.script.ecmascript import HELPERS, Scope, holder_of
+from prima.script.evaluation import MAX_SCRIPT_SECONDS, ScriptError
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from prima.deferred import pattern
-from prima.interpreter.ecmascript import CONSTANTS
 from prima.interpreter.elements import Document
 from prima.names import GLOBALS, STRANGE, free_names, tokens_of
+from prima.script.ecmascript import CONSTANTS
 
 SENSOR = pattern(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
 HIDING = pattern(

@@ -99,7 +99,12 @@ class Rehearsal:
     """One run of a scenario. Iterate over :meth:`run` for its records, in order."""
 
     def __init__(
-        self, cast: Cast, policy: Policy, bound: int | None = None, web: Web | None = None
+        self,
+        cast: Cast,
+        policy: Policy,
+        bound: int | None = None,
+        web: Web | None = None,
+        isolate: str = "ea",
     ) -> None:
         self.cast = cast
         problems = check_cast(cast)
@@ -125,6 +130,7 @@ class Rehearsal:
             bound,
             scenario.date,
             absence=cast.robot.absence,
+            isolate=isolate,
         )
         native = [doc for doc in cast.documents if isinstance(doc, Document)]
         self._watching = any(
@@ -194,6 +200,7 @@ class Rehearsal:
             self.now = until
         self.session.chronicle.now = self.now
         self.session.chronicle.add("over", "mediator", outcome=self.outcome)
+        self.session.close()
         return self.session.drain()
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
@@ -147,29 +147,25 @@ def _unexpected(failures: Iterable[str], loaded: Loaded) -> list[Failure]:
     return told
 
 
-def run_all(
-    paths: list[str], choice: Choice, jobs: int = 1, begin: Callable[[], None] | None = None
-) -> Iterator[Result]:
+def run_all(paths: list[str], choice: Choice, jobs: int = 1) -> Iterator[Result]:
     """Test scenarios; the results come in order.
 
     Args:
         paths: the scenarios.
         choice: how they are tested.
         jobs: in how many processes.
-        begin: what each of these does first.
 
     Raises:
         UsageError: as :func:`run_one`.
-        RunError: a script did not come back, so that a process was ended.
+        RunError: a process was ended from outside.
     """
     if jobs == 1:
         yield from (run_one(path, choice) for path in paths)
         return
-    with closing(spread(partial(_told, choice), paths, jobs, begin)) as made:
+    with closing(spread(partial(_told, choice), paths, jobs)) as made:
         for _path, found in made:
             if isinstance(found, Died):
-                message = "a document's script does not come back; the tests are ended."
-                raise RunError(message)
+                raise RunError("a process that tested was ended from outside; the tests are ended.")
             if isinstance(found, PrimaError):
                 raise found
             yield found

@@ -8,7 +8,6 @@ from itertools import count, pairwise
 
 from prima.interpreter.bounds import Bounds
 from prima.interpreter.content import source
-from prima.interpreter.expressions import Engine
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import (
@@ -28,6 +27,7 @@ from prima.messages import (
     Understood,
 )
 from prima.messages import Heard as Spoken
+from prima.script.isolated import AnyEngine, Engines
 from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
@@ -37,17 +37,20 @@ Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
 
 
-class VoiceInterpreter(Bounds["Engine"]):
+class VoiceInterpreter(Bounds[AnyEngine]):
     """Runs one VoiceXML application; its interface is :class:`prima.interpreter.application`'s."""
 
     def __init__(
-        self, document: VoiceDocument, arguments: Mapping[str, frozenset[str]] | None = None
+        self,
+        document: VoiceDocument,
+        arguments: Mapping[str, frozenset[str]] | None = None,
+        engines: Engines | None = None,
     ) -> None:
         self.document = document
         self.name = document.id
         self.kind = document.kind
         self.arguments = arguments or {}
-        super().__init__(Engine(SCOPES))
+        super().__init__((engines or Engines()).engine(document.id, document.kind, SCOPES))
         self.sensors: dict[str, Json] = {}
         self.heard: Heard | None = None
         self._machine = Machine(self)

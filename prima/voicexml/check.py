@@ -7,22 +7,17 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Literal
 
 from prima.commands import TABLE_4_2, CommandType, excluding_arguments
 from prima.errors import Problem, did_you_mean, few, one_of
 from prima.interpreter.checks import given_to
-from prima.interpreter.evaluation import ScriptError
-from prima.interpreter.expressions import (
-    check_expression,
-    check_script,
-    has_statements,
-    plain_context,
-)
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.names import IDENTIFIER, RESERVED
+from prima.script.evaluation import ScriptError
+from prima.script.isolated import IsolatedSyntax, syntax
 from prima.values import NUMBER, read_value
 from prima.voicexml.arranging import ARRANGING, check_arranged
 from prima.voicexml.cues import is_rate
@@ -377,7 +372,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     Only validation asks for them: a run is told of what it reaches, as an event.
     """
     problems: list[Problem] = []
-    context = plain_context()
+    checker = syntax()
     stack = [root]
     while stack:
         node = stack.pop()
@@ -385,9 +380,9 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         for name in node.attributes:
             is_code = node.namespace == NAMESPACE and name in EXPRESSIONS
             if is_code or (node.namespace == PRIMA_NAMESPACE and name.endswith("-expr")):
-                _compile(node, name, problems, context)
+                _compile(node, name, problems, checker)
         if node.key == "script" and node.own_text.strip():
-            _compile(node, "", problems, context)
+            _compile(node, "", problems, checker)
         if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
             problems += grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):
@@ -530,14 +525,14 @@ def _statements(node: Node, name: str) -> Problem:
     return Problem(node.attribute_place(name), "warning", "bad-expression", message, remedy)
 
 
-def _compile(node: Node, name: str, problems: list[Problem], context: Any) -> None:
+def _compile(node: Node, name: str, problems: list[Problem], checker: IsolatedSyntax) -> None:
     try:
         if name:
-            check_expression(context, node.get(name))
+            checker.expression(node.get(name))
         else:
-            check_script(context, node.own_text)
+            checker.script(node.own_text)
     except ScriptError as error:
-        if name not in ("", "cond") and has_statements(context, node.get(name)):
+        if name not in ("", "cond") and checker.has_statements(node.get(name)):
             problems.append(_statements(node, name))
             return
         place = node.code_place(name, error.line, error.column)

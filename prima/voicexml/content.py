@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Json, Say
+from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.fetching import Request, decoded
 from prima.voicexml.prompts import SPOKEN, Speaker, Speech

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
+from prima.script.evaluation import EngineLost, Scope, ScriptError
 from prima.voicexml.state import (
     MAX_DEPTH,
     Context,
@@ -193,5 +193,11 @@ def _number(handler: Node) -> int:
 
 
 def thrown_of(error: Thrown | ScriptError) -> Thrown:
-    """An error of the engine itself is an event as well."""
+    """An error of the engine itself is an event as well.
+
+    Raises:
+        GoOut: the engine is lost.
+    """
+    if isinstance(error, EngineLost):
+        raise GoOut(f"error.semantic: {error}", True)
     return error if isinstance(error, Thrown) else Thrown("error.semantic", str(error))

@@ -6,11 +6,11 @@ from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.evaluation import Scope, ScriptError
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
+from prima.script.evaluation import Scope, ScriptError
 from prima.values import milliseconds
 from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.content import ITEMS, Content

@@ -9,10 +9,10 @@ from urllib.parse import urldefrag
 
 from prima.commands import TABLE_4_2
 from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
-from prima.interpreter.evaluation import Scope, ScriptError
-from prima.interpreter.expressions import statement_place
+from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
+from prima.script.evaluation import EngineLost, Scope, ScriptError, statement_place
 from prima.values import shown
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
 from prima.voicexml.cues import (
@@ -139,15 +139,24 @@ class Speaker:
     # Expressions ------------------------------------------------------------------
 
     def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
-        """``error.semantic`` with the place of what failed (5.2.6)."""
+        """``error.semantic`` with the place of what failed (5.2.6).
+
+        Raises:
+            GoOut: the engine is lost.
+        """
         line, column = error.line, error.column
-        if attribute not in ("", "cond") and self.engine.lenient(node.get(attribute)) != node.get(
-            attribute
+        if (
+            attribute not in ("", "cond")
+            and not self.engine.lost
+            and self.engine.lenient(node.get(attribute)) != node.get(attribute)
         ):
             line, column = statement_place(error)
         where = short(node.code_place(attribute, line, column))
         code = node.get(attribute) if attribute else node.tag
-        return Thrown("error.semantic", f"{where}: {code.strip()[:80]}: {error}", where)
+        message = f"{where}: {code.strip()[:80]}: {error}"
+        if isinstance(error, EngineLost):
+            raise GoOut(f"error.semantic: {message}", True, where)
+        return Thrown("error.semantic", message, where)
 
     def code(self, node: Node, attribute: str) -> str:
         """An attribute's expression; several statements, as other platforms take them, give one."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.interpreter.content import source
-from prima.interpreter.evaluation import Scope
 from prima.markup.tree import Node
 from prima.markup.uris import legal
+from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request, load_page
 from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
-from prima.interpreter.evaluation import Scope
 from prima.markup.tree import Node
 from prima.messages import Data, Event, Json
+from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
 
 SCOPES = ("session", "application", "document", "dialog", "anonymous")

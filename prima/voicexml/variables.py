@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from prima.errors import Problem, did_you_mean
-from prima.interpreter.compiling import compiled
 from prima.markup.tree import Node
 from prima.names import IDENTIFIER, assigned_names, declared_names, free_names
+from prima.script.compiling import compiled
 from prima.voicexml.check import NAMING
 from prima.voicexml.document import Page
 from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE

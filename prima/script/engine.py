@@ -1,8 +1,8 @@
 """ECMAScript for documents of strangers: one engine for each application.
 
 An expression is compiled once to a function of the scope objects it may see.
-The engine's limits on time, memory and stack hold for every call; built-ins
-that do not look at the time limit are replaced by ones that bound their work.
+The engine's limits on time, memory and stack hold for every call. Built-ins that do not look at
+the time limit are stopped only where the engine has a process of its own (:mod:`prima.script.host`).
 ``Date`` has the run's clock and ``Math.random`` is seeded, so that a run can be repeated.
 """
 
@@ -12,24 +12,11 @@ import json
 import math
 import re
 from collections.abc import Callable
-from time import perf_counter
-from typing import Any
+from time import thread_time
+from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.interpreter.ecmascript import UNDEFINED
-from prima.interpreter.evaluation import (
-    MAX_SCRIPT_SECONDS,
-    PULSE,
-    SCOPES,
-    Scope,
-    ScriptError,
-    bounded,
-    plain_number,
-    whole,
-)
-from prima.interpreter.scripts import HIDDEN, Hoisted, hoisted
-from prima.messages import Json
 from prima.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.prelude import (
     CLOCK,
@@ -41,12 +28,24 @@ from prima.prelude import (
     PRELUDE,
     SAFE,
     STACK_LIMIT,
-    reason,
 )
+from prima.script.ecmascript import UNDEFINED
+from prima.script.evaluation import (
+    MAX_SCRIPT_SECONDS,
+    SCOPES,
+    Item,
+    Scope,
+    ScriptError,
+    bounded,
+    plain_number,
+    whole,
+)
+from prima.script.hoisting import HIDDEN, Hoisted, hoisted
+from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
 from prima.values import well_formed, well_formed_json
 
-TIME_LIMIT = 0.5
-"""Seconds of processor time that one evaluation may take."""
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 HELPERS = r"""
 (function () {
@@ -107,6 +106,9 @@ return {
   parse: function (v) { return parse(v, unmarked); },
   json: function (v) { return stringify(v); },
   items: function (v) { return isArray(v) ? v.length : -1; },
+  listed: function (v) { const made = [];
+    for (let i = 0; i < v.length; i++) made[i] = v[i]; return made; },
+  pick: function (o, k, v, i) { o[k] = v[i]; },
   item: function (v, i) { const x = v[i];
     return typeof x === 'string' ? x.slice(0).toWellFormed() : x; },
 }; })()
@@ -121,19 +123,6 @@ MAY_ASK_TIME = re.compile(
 """Code that names ``Date``, or may find it without naming it."""
 EVALUATING = re.compile(r"eval|\\u")
 """Code that may evaluate other code in its own place."""
-FAILURES = (
-    *(quickjs.JSException, quickjs.StackOverflow),
-    *(TypeError, ValueError, OverflowError, MemoryError, SystemError),
-)
-"""What the engine raises, and the binding itself for values that it cannot give to Python."""
-
-
-def _script_error(error: Exception) -> ScriptError:
-    text = str(error)
-    message = reason(text or type(error).__name__, TIME_LIMIT)
-    # The outermost place is in this code; inner ones may be in a function declared elsewhere.
-    found = re.findall(r"<input>:(\d+):(\d+)", text)
-    return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
 
 
 class _Helpers(dict[str, Any]):
@@ -155,12 +144,16 @@ class Engine:
     ``memory`` bounds all that it holds (bytes).
     """
 
+    lost = ""
+    """Why nothing can be evaluated any more: this one is in its caller's process."""
+
     def __init__(self, scopes: tuple[str, ...] = SCOPES, memory: int = MEMORY_LIMIT) -> None:
         context = quickjs.Context()
         context.set_memory_limit(memory)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         self._context = context
+        self._syntax = Syntax(context)
         self._scopes = scopes
         self._names, self._withs = _head(scopes)
         self.spent = 0.0
@@ -189,25 +182,20 @@ class Engine:
         """Call a function of the engine, unless the scripts of this instant took ``most`` seconds."""
         if self.spent > most:
             raise ScriptError("scripts take too long without ever waiting")
-        pulse, now = PULSE, self.now
-        pulse.evaluations += 1
-        began = perf_counter()
+        now, began = self.now, thread_time()
         try:
             if self._clocked and self._told != now:
                 self._told = now
                 self._tick(float(now))
             return function(*args)
         except FAILURES as error:
-            raise _script_error(error) from None
+            raise script_error(error) from None
         finally:
-            pulse.evaluations += 1
-            # What the engine counts as its time is the processor's: on a busy machine less.
-            lasted = perf_counter() - began
-            self.spent += lasted if lasted < TIME_LIMIT else TIME_LIMIT
+            self.spent += thread_time() - began
 
-    def _check(self, check: Callable[[Any, str], None], code: str) -> None:
+    def _check(self, check: Callable[[str], None], code: str) -> None:
         """Let code in that compiles by itself."""
-        check(self._context, code)
+        check(code)
         self._clocked = self._clocked or MAY_ASK_TIME.search(code) is not None
 
     def compile(self, code: str) -> Any:
@@ -218,7 +206,7 @@ class Engine:
         """
         function = self._compiled.get(code)
         if function is None:
-            self._check(check_expression, code)
+            self._check(self._syntax.expression, code)
             # The binding cannot give out a text that is joined lazily, which slice joins, or
             # that has half a surrogate pair.
             give = "return typeof $v === 'string' ? $v.slice(0).toWellFormed() : $v"
@@ -233,7 +221,7 @@ class Engine:
         """
         kept = self._lenient.get(code)
         if kept is None:
-            kept = self._lenient[code] = _single(self._context, code)
+            kept = self._lenient[code] = _single(self._syntax, code)
         return kept
 
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
@@ -249,6 +237,10 @@ class Engine:
             caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
             code = f"(function({parameters}){{try{{{body}}}{caught}}})"
         return self._call(self._context.eval, (code,))
+
+    def empty(self) -> Scope:
+        """The scope in which nothing is declared."""
+        return self.nothing
 
     def scope(self, **values: Json) -> Scope:
         """A new, empty scope object."""
@@ -321,7 +313,7 @@ class Engine:
         function = self._conditions.get(key)
         if function is None:
             whole = f"!!({code}\n)"
-            self._check(check_expression, whole)
+            self._check(self._syntax.expression, whole)
             body = f"return (\n{whole}\n)"
             function = self._conditions[key] = self._compile(body, self._scopes[: len(scopes)])
         return bool(self._call(function, scopes, MAX_SCRIPT_SECONDS))
@@ -356,17 +348,26 @@ class Engine:
         Raises:
             ScriptError: it is no array.
         """
+        array = self.listed(code, scopes, most)
+        return [Item(array, index) for index in range(self.length(array))]
+
+    def listed(self, code: str, scopes: tuple[Scope, ...], most: int) -> Any:
+        """Evaluate an expression that gives an array; a copy of it, which nobody changes."""
         array = self.raw(code, scopes)
-        length = self._call(self._help["items"], (array,))
+        length = self.length(array)
         if length < 0:
             raise ScriptError(f"{code} is not an array")
         if length > most:
             raise ScriptError(f"it has more than {most:,} elements")
-        found = [self._call(self._help["item"], (array, index)) for index in range(int(length))]
-        for index, value in enumerate(found):
-            if value is None and not self._call(self._help["defined"], (array, index)):
-                found[index] = UNDEFINED
-        return found
+        return self._call(self._help["listed"], (array,))
+
+    def length(self, array: Any) -> int:
+        """How many elements an array has; -1 if it is none."""
+        return int(self._call(self._help["items"], (array,)))
+
+    def pick(self, scope: Scope, name: str, array: Any, index: int) -> None:
+        """Give a variable an element of an array."""
+        self._call(self._help["pick"], (scope, name, array, index))
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Evaluate an expression and give its value to a variable of a scope.
@@ -375,7 +376,7 @@ class Engine:
         """
         function = self._giving.get(code)
         if function is None:
-            self._check(check_expression, code)
+            self._check(self._syntax.expression, code)
             body = f"{{$s[$n] = (\n{code}\n)}}"
             function = self._function(f"{self._names},$s,$n", f"{self._withs}{body}")
             self._giving[code] = function
@@ -392,7 +393,7 @@ class Engine:
         key = name, code, len(scopes)
         function = self._assigning.get(key)
         if function is None:
-            self._check(check_expression, code)
+            self._check(self._syntax.expression, code)
             names = self._scopes[: len(scopes)]
             function = self._assigning[key] = self._compile(_assignment(name, code, names), names)
         self._call(function, scopes, MAX_SCRIPT_SECONDS)
@@ -409,6 +410,8 @@ class Engine:
         """Give a variable one of the engine's own values."""
         if value is UNDEFINED:
             self.unset(scope, name)
+        elif isinstance(value, Item):
+            self.pick(scope, name, value.array, value.index)
         else:
             self._call(self._help["set"], (scope, name, value))
 
@@ -416,7 +419,7 @@ class Engine:
         """Run a script; what it declares at its top level becomes variables of ``scope``."""
         kept = self._scripts.get(code)
         if kept is None:
-            self._check(check_script, code)
+            self._check(self._syntax.script, code)
             kept = self._scripts[code] = self._script(code)
         function, script = kept
         try:
@@ -433,7 +436,7 @@ class Engine:
         if script is not None:
             try:
                 if script.code != code:
-                    self._check(check_script, script.code)
+                    self._check(self._syntax.script, script.code)
                 return self._wrapped(script), script
             except ScriptError:  # something in it is not what it seems
                 pass
@@ -501,88 +504,6 @@ def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
     return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
 
 
-_sound: set[tuple[str, str]] = set()
-"""Code that has compiled, so that a document that is looked through again costs less."""
-MOST_SOUND, LONG_CODE = 20_000, 500
-"""How much is kept, and beyond how many characters nothing is."""
-
-
-def _remember(kind: str, code: str) -> None:
-    if len(_sound) >= MOST_SOUND:
-        _sound.clear()
-    if len(code) <= LONG_CODE:
-        _sound.add((kind, code))
-
-
-def check_expression(context: Any, code: str) -> None:
-    """Compile an expression by itself, so that no bracket in it closes one of ours.
-
-    Raises:
-        ScriptError: with the line and column inside the expression.
-    """
-    if ("expression", code) in _sound:
-        return
-    _check(context, code, f"return (\n{code}\n)", 1)
-    _check(context, code, f"return [\n{code}\n]", 1)  # what closes one bracket fails in the other
-    _remember("expression", code)
-
-
-def has_statements(context: Any, code: str) -> bool:
-    """Whether code that should be one expression is none, but could be a script."""
-    try:
-        check_expression(context, code)
-    except ScriptError:
-        try:
-            check_script(context, code)
-        except ScriptError:
-            return False
-        return True
-    return False
-
-
-def _single(context: Any, code: str) -> str:
-    """Code as one expression; its lines are counted as those of any (:func:`statement_place`)."""
-    return f"eval({json.dumps(chr(10) + code)})" if has_statements(context, code) else code
-
-
-def statement_place(error: ScriptError) -> tuple[int, int]:
-    """The line and column in several statements; around them are two functions of ours."""
-    return error.places[-3] if len(error.places) > 2 else (0, 0)
-
-
-def check_script(context: Any, code: str) -> None:
-    """Compile a script by itself.
-
-    Raises:
-        ScriptError: with the line and column inside the script.
-    """
-    _check(context, code, f"return [function () {{\n{code}\n}}]", 1)
-    _check(context, code, f"return (function () {{\n{code}\n}})", 1)
-
-
-def _check(context: Any, code: str, body: str, before: int) -> None:
-    try:
-        context.eval(f"(void new Function({json.dumps(body)}))")
-    except (quickjs.JSException, quickjs.StackOverflow) as error:
-        failure = _script_error(error)
-        place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", str(error))
-        if place:
-            line, column = max(int(place[0][0]) - 2 - before, 1), int(place[0][1])
-            lines = code.split("\n")
-            if line > len(lines):
-                failure = ScriptError("it ends too early")
-                line, column = len(lines), len(lines[-1]) + 1
-            else:  # the engine counts bytes
-                seen = lines[line - 1].encode()[: column - 1]
-                column = len(seen.decode(errors="ignore")) + 1
-            failure.line, failure.column = line, column
-        raise failure from None
-
-
-def plain_context() -> Any:
-    """A context for checking syntax alone."""
-    context = quickjs.Context()
-    context.set_memory_limit(MEMORY_LIMIT)
-    context.set_max_stack_size(STACK_LIMIT)
-    context.set_time_limit(TIME_LIMIT)
-    return context
+def _single(syntax: Syntax, code: str) -> str:
+    """Code as one expression; its lines are counted as those of any (``statement_place``)."""
+    return f"eval({json.dumps(chr(10) + code)})" if syntax.has_statements(code) else code

@@ -1,21 +1,18 @@
-"""A sandboxed ECMAScript engine for the tags of grammars: time, memory and stack are bounded.
+"""An ECMAScript engine for the tags of grammars, in a process of its own.
 
-Built-ins that do not look at the time limit are replaced by ones that bound their work. ``Date``
-tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
+``Date`` tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
 """
 
 from __future__ import annotations
 
 import json
 import re
-from time import perf_counter
-from typing import Any
+from time import thread_time
+from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.grammar.budget import TIME_LIMIT, Budget
-from prima.grammar.text import PASSED
-from prima.messages import Json
+from prima.names import PASSED
 from prima.prelude import (
     CLOCK,
     DATE,
@@ -27,7 +24,12 @@ from prima.prelude import (
     STACK_LIMIT,
     reason,
 )
+from prima.script.budget import TIME_LIMIT
+from prima.script.evaluation import ScriptError
 from prima.values import well_formed, well_formed_json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 DONE = 1_000_000
 """What comes after a rule's last tag."""
@@ -143,15 +145,15 @@ def shared(code: str) -> str:
     return _PIECE.sub(put, code)
 
 
-class ScriptError(Exception):
-    """A tag's script failed."""
-
-
 class Sandbox:
     """The ECMAScript of one grammar document while one utterance is interpreted."""
 
-    def __init__(self, budget: Budget, others: int = 0) -> None:
+    def __init__(self, others: int = 0) -> None:
         """``others`` is how many sandboxes the same utterance has already."""
+        self.now, self._told = 0, -1
+        """The time that the tags are told (ms since 1970, UTC)."""
+        self.spent = 0.0
+        """Seconds of the processor that the tags of this utterance have taken."""
         context = quickjs.Context()
         context.set_memory_limit(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
         context.set_max_stack_size(STACK_LIMIT)
@@ -160,25 +162,27 @@ class Sandbox:
         clock = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
         clock()
-        clock(float(budget.now))
+        self._clock = clock
         self._context = context
         self._helpers = context.eval(HELPERS)
         self._check = context.eval(CHECK)
         self._functions: dict[str, Any] = {}
-        self._budget = budget
 
     def _call(self, function: Any, *given: Any) -> Any:
-        if self._budget.over:
+        if self.spent > TIME_LIMIT:
             raise ScriptError(f"the tags took longer than {TIME_LIMIT:g} s")
-        began = perf_counter()
+        began = thread_time()
         try:
+            if self._told != self.now:
+                self._told = self.now
+                self._clock(float(self.now))
             return function(*given)
         except (quickjs.JSException, quickjs.StackOverflow) as error:
             raise ScriptError(reason(str(error), TIME_LIMIT)) from None
         except (TypeError, ValueError, OverflowError, MemoryError, SystemError) as error:
             raise ScriptError(f"it gives what cannot be used: {error}") from None
         finally:
-            self._budget.spent += perf_counter() - began
+            self.spent += thread_time() - began
 
     def run(self, code: str) -> None:
         """Run a script in the global scope (SISR 1.0: global tags)."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from prima.deferred import pattern
-from prima.interpreter.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
+from prima.script.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
 
 if TYPE_CHECKING:
     from prima.messages import Json

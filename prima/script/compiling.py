@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from prima.deferred import dataclass, pattern
-from prima.interpreter.ecmascript import CONSTANTS, HELPERS, Scopes, index_of, number_text
 from prima.names import GLOBALS, RESERVED
+from prima.script.ecmascript import CONSTANTS, HELPERS, Scopes, index_of, number_text
 
 Function = Callable[[Scopes], Any]
 Where = Callable[[str], tuple[str, ...]]

@@ -13,29 +13,14 @@ Scope = Any
 
 MAX_SCRIPT_SECONDS = 3.0
 """What an application's code may take in one instant, all together."""
-MAX_RUN_SECONDS = 300.0
+MAX_RUN_SECONDS = 60.0
 """What an application's code may take in a whole run."""
-INSTANT_SECONDS = 120.0
-"""What the code of all applications may take in one instant of a run, by the clock on the wall."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves its application's scopes."""
 SCOPES = ("application", "document", "dialog", "local")
 """The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
 LARGEST = 2**53
 """Whole numbers up to here are exact."""
-
-
-class Pulse:
-    """What goes on in this process, for a watchdog in another thread."""
-
-    def __init__(self) -> None:
-        self.evaluations = 0
-        """How many evaluations by an engine have begun and ended: odd while one runs."""
-        self.instants = 0
-        """How many instants sessions have gone through."""
-
-
-PULSE = Pulse()
 
 
 class ScriptError(Exception):
@@ -46,6 +31,25 @@ class ScriptError(Exception):
         self.places = places or []
         """Lines and columns of the functions that were being called, innermost first."""
         self.line, self.column = self.places[-1] if self.places else (0, 0)
+
+
+class EngineLost(ScriptError):
+    """The process of an engine has ended: the application that uses it can only end, too (E2)."""
+
+
+class Item:
+    """An element of an array of the engine, which stays there (``Engine.elements``)."""
+
+    __slots__ = ("array", "index")
+
+    def __init__(self, array: Any, index: int) -> None:
+        self.array = array
+        self.index = index
+
+
+def statement_place(error: ScriptError) -> tuple[int, int]:
+    """The line and column in several statements; around them are two functions of ours."""
+    return error.places[-3] if len(error.places) > 2 else (0, 0)
 
 
 def bounded(text: str) -> str:

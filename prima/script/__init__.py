@@ -1,0 +1,1 @@
+"""ECMAScript of documents: what Python evaluates itself, and engines for all else."""

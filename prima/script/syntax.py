@@ -1,0 +1,105 @@
+"""Whether code is ECMAScript, as the engine tells it, and where it is not."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import _quickjs as quickjs
+
+from prima.prelude import MEMORY_LIMIT, STACK_LIMIT, reason
+from prima.script.evaluation import ScriptError
+
+TIME_LIMIT = 0.5
+"""Seconds of processor time that one evaluation may take."""
+FAILURES = (
+    *(quickjs.JSException, quickjs.StackOverflow),
+    *(TypeError, ValueError, OverflowError, MemoryError, SystemError),
+)
+"""What the engine raises, and the binding itself for values that it cannot give to Python."""
+
+
+def script_error(error: Exception) -> ScriptError:
+    """What the engine raised, in our words, with the places of the functions being called."""
+    text = str(error)
+    message = reason(text or type(error).__name__, TIME_LIMIT)
+    # The outermost place is in this code; inner ones may be in a function declared elsewhere.
+    found = re.findall(r"<input>:(\d+):(\d+)", text)
+    return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
+
+
+MOST_SOUND, LONG_CODE = 20_000, 500
+"""How much code that has compiled is remembered, and beyond how many characters none is."""
+
+
+class Syntax:
+    """Compiles code by itself, without running it."""
+
+    now, spent = 0, 0.0
+
+    def __init__(self, context: Any = None) -> None:
+        if context is None:
+            context = quickjs.Context()
+            context.set_memory_limit(MEMORY_LIMIT)
+            context.set_max_stack_size(STACK_LIMIT)
+            context.set_time_limit(TIME_LIMIT)
+        self._context = context
+        self._sound: set[str] = set()
+        """Expressions that have compiled."""
+
+    def expression(self, code: str) -> None:
+        """Compile an expression by itself, so that no bracket in it closes one of ours.
+
+        Raises:
+            ScriptError: with the line and column inside the expression.
+        """
+        if code in self._sound:
+            return
+        self._compile(code, f"return (\n{code}\n)")
+        self._compile(code, f"return [\n{code}\n]")  # what closes one bracket fails in the other
+        if len(code) <= LONG_CODE and len(self._sound) < MOST_SOUND:
+            self._sound.add(code)
+
+    def script(self, code: str) -> None:
+        """Compile a script by itself.
+
+        Raises:
+            ScriptError: with the line and column inside the script.
+        """
+        self._compile(code, f"return [function () {{\n{code}\n}}]")
+        self._compile(code, f"return (function () {{\n{code}\n}})")
+
+    def has_statements(self, code: str) -> bool:
+        """Whether code that should be one expression is none, but could be a script."""
+        try:
+            self.expression(code)
+        except ScriptError:
+            try:
+                self.script(code)
+            except ScriptError:
+                return False
+            return True
+        return False
+
+    def _compile(self, code: str, body: str) -> None:
+        try:
+            self._context.eval(f"(void new Function({json.dumps(body)}))")
+        except (quickjs.JSException, quickjs.StackOverflow) as error:
+            raise _placed(script_error(error), str(error), code) from None
+
+
+def _placed(failure: ScriptError, said: str, code: str) -> ScriptError:
+    """An error with its place in code, around which there is one line of ours."""
+    place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", said)
+    if place:
+        line, column = max(int(place[0][0]) - 3, 1), int(place[0][1])
+        lines = code.split("\n")
+        if line > len(lines):
+            failure = ScriptError("it ends too early")
+            line, column = len(lines), len(lines[-1]) + 1
+        else:  # the engine counts bytes
+            seen = lines[line - 1].encode()[: column - 1]
+            column = len(seen.decode(errors="ignore")) + 1
+        failure.line, failure.column = line, column
+    return failure

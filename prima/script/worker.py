@@ -1,0 +1,210 @@
+"""A process that evaluates strangers' code, as its caller sees it: started, called, lost.
+
+A script that escapes the engine's limits ends its process (:mod:`prima.script.host`), and every
+call after that fails with :class:`EngineLost`: whoever has given that code to the engine ends,
+and nobody else.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections import deque
+from typing import Any, Protocol
+from weakref import WeakSet
+
+from prima.script import host, wire
+from prima.script.evaluation import EngineLost, ScriptError
+
+MOST_IDLE = 4
+"""Processes that are kept for whoever needs one next."""
+MANY = 8
+"""Processes at work from which on those that nobody needs any more are looked for."""
+PASSED_ON = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT")
+"""Variables of the environment without which some Pythons do not start."""
+ENDING_SECONDS = 5.0
+"""How long a process that has closed its pipe may take to end."""
+
+
+class Handle:
+    """A value that stays in the process of its engine; dropped there when nobody here has it."""
+
+    __slots__ = ("_dropped", "number")
+
+    def __init__(self, number: int, dropped: deque[int]) -> None:
+        self.number = number
+        self._dropped = dropped
+
+    def __del__(self) -> None:
+        self._dropped.append(self.number)
+
+
+class Meter(Protocol):
+    """Who calls: what time the code is told (ms since 1970), and how many seconds it has taken."""
+
+    now: int
+    spent: float
+
+
+class Nobody:
+    """A meter for calls that take no time worth counting."""
+
+    now, spent = 0, 0.0
+
+
+def _error(message: str, places: list[list[int]], line: int, column: int) -> ScriptError:
+    error = ScriptError(message, [(one, two) for one, two in places])
+    error.line, error.column = line, column
+    return error
+
+
+class Worker:
+    """A process with engines; its methods may be called from any thread, one at a time.
+
+    Raises:
+        EngineLost: it cannot be started.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._owner = os.getpid()
+        self._dropped: deque[int] = deque()
+        self.why = ""
+        """Why it has ended, if it has."""
+        self.use = 0
+        """How often it has been given back."""
+
+        program = [sys.executable, "-I", "-S", host.__file__, json.dumps(sys.path)]
+        try:
+            self._process = subprocess.Popen(
+                program,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                bufsize=0,
+                env={name: os.environ[name] for name in PASSED_ON if name in os.environ},
+                process_group=0,  # Ctrl-C is for the run, which then ends this as well
+            )
+        except OSError as error:
+            raise EngineLost(f"its engine cannot be started: {error}") from None
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._requests = self._process.stdin.fileno()
+        self._replies = self._process.stdout.fileno()
+
+    @property
+    def pid(self) -> int:
+        """Its number in the system."""
+        return self._process.pid
+
+    @property
+    def lost(self) -> bool:
+        """Whether it has ended, or belongs to the process that this one was forked from."""
+        return bool(self.why) or self._owner != os.getpid()
+
+    def call(self, target: int, method: str, arguments: list[Any], meter: Meter) -> Any:
+        """Call a method there, and give what it gives: data, or the handle of a value.
+
+        Raises:
+            ScriptError: the code failed, or went past a limit of the engine.
+            EngineLost: the process has ended, now or before.
+        """
+        with self._lock:
+            if self.lost:
+                raise EngineLost(self.why or "its engine belongs to another process")
+            dropped, queue = [], self._dropped
+            while queue:
+                dropped.append(queue.popleft())
+            try:
+                request = [dropped, target, method, arguments, meter.now, meter.spent]
+                wire.send(self._requests, request, wire.LONGEST_REQUEST)
+                kind, result, meter.spent = wire.receive(self._replies, wire.LONGEST_REPLY)
+            except (wire.TooMuch, wire.Broken) as error:
+                queue.extend(dropped)
+                raise (
+                    self._end() if isinstance(error, wire.Broken) else ScriptError(str(error))
+                ) from None
+            except BaseException:
+                self.close()  # the reply is still to come: the next call would take it for its own
+                raise
+        if kind == "value":
+            return Handle(result, queue)
+        if kind == "error":
+            raise _error(*result)
+        if kind == "defect":
+            raise RuntimeError(result)
+        return result
+
+    def _end(self) -> EngineLost:
+        """Find out why the process has ended."""
+        try:
+            code = self._process.wait(ENDING_SECONDS)
+        except subprocess.TimeoutExpired:
+            code = 0
+        self.why = _reason(code)
+        self.close()
+        return EngineLost(self.why)
+
+    def close(self) -> None:
+        """End the process."""
+        self.why = self.why or "its engine was ended"
+        if self._owner == os.getpid():
+            self._process.kill()
+            self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+    def __del__(self) -> None:
+        if not self.why and hasattr(self, "_process"):
+            self.close()
+
+
+def _reason(code: int) -> str:
+    if code == -signal.SIGPROF:
+        return f"it took more than {host.KILL_SECONDS:g} s of processor time and did not stop"
+    if code == host.OUT_OF_MEMORY:
+        return f"it used more than {host.MEMORY_BYTES // 1024**2} MB"
+    return "its engine crashed, or was ended from outside"
+
+
+_idle: list[Worker] = []
+"""Processes that nobody uses."""
+_started: WeakSet[Worker] = WeakSet()
+
+
+def hire() -> Worker:
+    """A process that nobody else uses, to be given back by :func:`dismiss`.
+
+    Raises:
+        EngineLost: none can be started.
+    """
+    if not _idle and len(_started) >= MANY:
+        gc.collect()  # runs that nobody closed give theirs back
+    while _idle:
+        worker = _idle.pop()
+        if not worker.lost:
+            return worker
+    worker = Worker()
+    _started.add(worker)
+    return worker
+
+
+def dismiss(worker: Worker) -> None:
+    """Let others use a process: what was made there is dropped."""
+    if worker.lost:
+        return
+    worker.use += 1
+    try:
+        worker.call(0, "reset", [], Nobody())
+    except ScriptError:
+        return
+    if len(_idle) < MOST_IDLE:
+        _idle.append(worker)
+    else:
+        worker.close()
