@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test check bench schemas build clean
+.PHONY: demo test check bench attack schemas build clean
 
 demo: $(VENV)/.runtime
 	@mkdir -p build
@@ -25,6 +25,9 @@ check: $(VENV)/.dev
 bench: $(VENV)/.bench
 	$(BIN)/python -m bench.peers
 	$(BIN)/python -m bench.run
+
+attack: $(VENV)/.dev
+	$(BIN)/python -m bench.attack
 
 schemas: $(VENV)/.dev
 	$(BIN)/python -m prima.reference

@@ -30,6 +30,7 @@ PRELUDE = r"""
 """
 
 SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
+GIVE = "\u01c0give"
 NAME = "\u01c0name"
 """What :data:`GUARDS` makes, by names that hardly any document has."""
 
@@ -62,7 +63,15 @@ GUARDS = r"""
   const any = (f) => function (...all) {
     try { return apply(f, undefined, all); } catch (e) { throw safe(e); }
   };
+  // The binding cannot give out a text that is joined lazily, which slice joins, or that has half a
+  // surrogate pair, and cuts one at its first NUL: such a text is given as an object.
+  const indexOf = String.prototype.indexOf, box = Object;
+  const give = (said) => {
+    const whole = short(said, said.length);
+    return apply(indexOf, whole, ['\0']) < 0 ? whole : box(whole);
+  };
   const given = {
+    '\u01c0give': give,
     '\u01c0safe': safe,
     '\u01c0guard': (f) => (guards[f.length] || any)(f),
     '\u01c0evaluate': guards[1]((code) => { evaluate(code); }),

@@ -39,7 +39,7 @@ from prima.markup.rnc import make_rnc
 from prima.markup.schema import XML_SCHEMA, make_catalog, make_locating_rules, make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import failures, selector
-from prima.script import evaluation, host, syntax
+from prima.script import budget, evaluation, host, syntax
 from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
@@ -234,6 +234,26 @@ def limits() -> str:
             "the application ends",
         ),
         (
+            "what an application says, logs and sends in a run",
+            f"{bounds.MAX_WRITTEN:,} characters",
+            "the application ends",
+        ),
+        (
+            "content that an application goes through in a run",
+            f"{bounds.MAX_RUN_STEPS:,} pieces, and {bounds.STEPS_A_SECOND:,} a second",
+            "the application ends",
+        ),
+        (
+            "Commands and messages of an application in a run",
+            f"{bounds.MAX_ACTIONS:,}",
+            "the application ends",
+        ),
+        (
+            "matching one utterance in all that an application listens for",
+            f"{budget.MOST_MATCHING:,} steps",
+            "the application ends",
+        ),
+        (
             "what all applications say, log and send in a run",
             f"{rehearsal.MAX_WRITTEN:,} characters",
             "the run ends (exit code 3)",
@@ -245,7 +265,8 @@ def limits() -> str:
         ),
         (
             "an application's scripts in a run, all together",
-            f"{evaluation.MAX_RUN_SECONDS:g} s",
+            f"{evaluation.MAX_RUN_SECONDS:g} s of processor time, and {evaluation.MAX_SHARE:.0%} of"
+            " the run's own",
             "the application ends",
         ),
         (

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from prima.commands import ABSENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
+from prima.interpreter.frame import GoOut
 from prima.messages import (
     PROMOTED,
     Action,
@@ -285,7 +286,7 @@ class Session:
             self._defect(app, error)
 
     def _defect(self, app: App, error: Exception) -> None:
-        if not isinstance(error, EngineLost):
+        if not isinstance(error, EngineLost | GoOut):
             self.defects.append(error)
         app.fail(error)
 
@@ -551,6 +552,10 @@ class Session:
         while app.actions or left:
             left.extendleft(reversed(app.actions))
             app.actions.clear()
+            try:
+                app.count_action()
+            except GoOut as error:
+                app.fail(error)
             match action := left.popleft():
                 case Request():
                     if action.cause == PROMOTED:

@@ -27,7 +27,8 @@ from prima.script.compiling import (
 )
 from prima.script.ecmascript import CONSTANTS
 from prima.script.engine import Engine
-from prima.script.evaluation import ScriptError
+from prima.script.evaluation import SCOPES, ScriptError
+from prima.script.isolated import Engines
 
 ENGINE = Engine()
 VALUES: dict[str, Any] = {
@@ -435,3 +436,30 @@ def test_compiled_code_does_not_grow_without_end() -> None:
     document, problems = read_document("a.xml", text.encode())
     assert not [one for one in problems if one.severity == "error"]
     assert not is_plain(document), "so much code is compiled only where it is run"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "(s[1] + s[2]) == '😀'", "s[1] + s[2] + s[0]", "s[2] + s[1]", "document.document == document",
+        "document.document.document.t", "dialog.dialog.dialog == application.application", "z", "z.length",
+        "z + z", "odd", "marked", "z == 'a'",
+    ],
+)  # fmt: skip
+def test_values_mean_the_same_whoever_has_them(code: str) -> None:
+    """Halves of letters, scopes in themselves, and texts that hold NUL."""
+    outside = {
+        "s": "a😀",
+        "z": "a\0b",
+        "t": 1,
+        "odd": {"\0": "NaN", "k\0": 1},
+        "marked": {"\0": "x"},
+    }
+    found = []
+    for how in ("plain", "none", "all"):
+        engine = PlainEngine() if how == "plain" else Engines(how).engine("a", "ea")
+        scopes: Any = (*map(engine.named, SCOPES[:3]), engine.scope())
+        for name, value in outside.items():
+            engine.set(scopes[1], name, value)
+        found.append((engine.value(code, scopes), engine.text(code, scopes)))
+    assert found[0] == found[1] == found[2]

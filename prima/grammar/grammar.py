@@ -8,7 +8,7 @@ from functools import cached_property
 
 from prima.deferred import dataclass
 from prima.errors import Problem
-from prima.grammar.chart import Chart
+from prima.grammar.chart import MAX_STEPS, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.model import Document, Mode, Reference
 from prima.grammar.ranking import best, frames
@@ -112,7 +112,15 @@ class Grammar:
             raise refuse(GrammarError, self._where(), "no-such-rule", message)
         return Grammar(self._document, name, self._where, self._lenient, self._warnings)
 
-    def match(self, text: str, *, mode: str = "voice", most: int = 1, now: int = 0) -> list[Match]:
+    def match(
+        self,
+        text: str,
+        *,
+        mode: str = "voice",
+        most: int = 1,
+        now: int = 0,
+        budget: Budget | None = None,
+    ) -> list[Match]:
         """What an utterance may mean, best first; nothing if the grammar does not take it.
 
         Args:
@@ -120,6 +128,7 @@ class Grammar:
             mode: ``voice`` or ``dtmf``.
             most: how many matches are wanted.
             now: the time that ``Date`` tells tags (ms since 1970, UTC).
+            budget: what the utterance may take, and has taken in other grammars; with its own time.
 
         Raises:
             GrammarError: the grammar has no root rule.
@@ -128,12 +137,16 @@ class Grammar:
         said = utterance(text, mode) if self._takes(mode) else None
         if said is None or most < 1:
             return []
-        top = Chart(said, root).run()
+        budget = budget or Budget(now)
+        chart = Chart(said, root, max(min(MAX_STEPS, budget.steps), 1))
+        left = chart.steps_left
+        top = chart.run()
+        budget.steps -= left - chart.steps_left
         if top is None:
             return []
         found: list[Match] = []
         looked_at = 1 if most == 1 else min(most * 4, MOST_ANALYSES)
-        work, budget = 0, Budget(now)
+        work = 0
         for analysis in best(top, looked_at):
             work += analysis.size
             if found and (work > MOST_WORK or budget.over):

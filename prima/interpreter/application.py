@@ -62,6 +62,7 @@ from prima.messages import (
     Step,
     Understood,
 )
+from prima.script.budget import Budget
 from prima.script.evaluation import EngineLost, Scope, ScriptError
 from prima.script.isolated import Engines
 
@@ -215,10 +216,13 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         if frame is None:
             return None
         least = confidence_level(self.document, frame.form)
+        budget = Budget()
         for text, confidence in said:
             for link in (*frame.form.links, *self.document.links):
-                if confidence >= least and link.grammar.match(text) is not None:
+                if confidence >= least and link.grammar.match(text, budget) is not None:
                     return link
+                if budget.steps <= 0:
+                    self.give_up(link.node, "what it listens for takes too long")
         return None
 
     def follow(self, now: int, link: Link, event: Event) -> None:
@@ -243,8 +247,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
             return None
         form, field = asking
         least = confidence_level(self.document, form, field)
+        budget = Budget()
         for text, confidence in said:
-            value = field.answers.match(text) if confidence >= least else None
+            value = field.answers.match(text, budget) if confidence >= least else None
+            if budget.steps <= 0:
+                self.give_up(field.node, "what it listens for takes too long")
             if value is not None:
                 return Understood(value, text, confidence)
         return None
@@ -605,7 +612,7 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         given: set[str] = set()
         if call is not None and frame.caller is not None:
             outer = Fiber(frame.caller)
-            for name, value in self.execute.named(call.params, outer).items():
+            for name, value in self.execute.named(call.params, outer, call.node).items():
                 self.engine.set(frame.dialog, name, value)
                 given.add(name)
         setup = [

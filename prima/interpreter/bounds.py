@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
 from prima.markup.tree import Node
-from prima.messages import Action, Quit, Say
+from prima.messages import Action, Json, Quit, Say
 from prima.prelude import START
-from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, EngineLost
+from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, MAX_SHARE, EngineLost
 from prima.values import moment
 
 if TYPE_CHECKING:
@@ -21,8 +20,12 @@ Evaluator = TypeVar("Evaluator", bound="AnyEngine | PlainEngine")
 """What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
-MAX_OUTPUT = 1_000_000
-"""Characters that an application may say, log and send in one instant."""
+MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
+"""Characters that an application may say, log, send and pass on in one instant, and in a run."""
+MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000
+"""Pieces of content that it may go through in a run, and for each second of the run besides."""
+MAX_ACTIONS = 60_000
+"""Commands, messages and other actions that an application may ask for in a run."""
 
 BRIEF_MS, MOST_BRIEF = 50, 1_000
 """How long a wait must last (ms), or how many may be shorter in a row."""
@@ -57,18 +60,29 @@ class Bounds(Generic[Evaluator]):
         self._output = 0
         self._spent = 0.0
         """Seconds of scripts in the instants before."""
+        self._gone = 0
+        """Pieces of content gone through in the instants before."""
+        self.asked = 0
+        """Actions that the session has carried out."""
+        self.exhausted = ""
+        """Why the application may go on no more."""
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""
         self.now = now
         if now != self.hurried:
+            self._gone += self.steps
             self.steps = 0
+            if self._gone > MAX_RUN_STEPS + now * STEPS_A_SECOND // 1000:
+                self.exhausted = f"it went through {self._gone:,} pieces of content in this run"
         self._output = 0
         engine = self.engine
         engine.now = self.began + now
         if engine.spent:
             self._spent += engine.spent
-            engine.spent = 0.0 if self._spent <= MAX_RUN_SECONDS else math.inf
+            engine.spent = 0.0
+            if self._spent > MAX_RUN_SECONDS + now * MAX_SHARE / 1000:
+                self.exhausted = f"its scripts took {self._spent:.1f} s of this run"
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""
@@ -76,19 +90,38 @@ class Bounds(Generic[Evaluator]):
         self._latest = node
         if self.steps > MAX_STEPS:
             self.give_up(node, "it loops without ever waiting")
-        if self._spent > MAX_RUN_SECONDS:
-            self.give_up(node, f"its scripts took more than {MAX_RUN_SECONDS:g} s in this run")
+        if self.exhausted:
+            self.give_up(node, self.exhausted)
         if self.engine.spent > MAX_SCRIPT_SECONDS:
             self.give_up(node, "its scripts take too long without ever waiting")
         if self.engine.lost:
             self.give_up(node, self.engine.lost)
 
     def count_output(self, characters: int, node: Node) -> None:
-        """Bound what an application says, logs and sends in one instant."""
+        """Bound what an application says, logs, sends and passes on."""
         self._output += characters
         self.written += characters
         if self._output > MAX_OUTPUT:
             self.give_up(node, f"more than {MAX_OUTPUT:,} characters come out at once")
+        if self.written > MAX_WRITTEN:
+            self.give_up(node, f"more than {MAX_WRITTEN:,} characters come out in this run")
+
+    def count_value(self, value: Json, node: Node) -> None:
+        """Count a value that leaves its variables, before another is made."""
+        self.count_step(node)
+        self.count_output(len(value if isinstance(value, str) else str(value)), node)
+
+    def count_action(self) -> None:
+        """Bound what an application asks for in a run: each action makes records.
+
+        Raises:
+            GoOut: it was too much.
+        """
+        self.asked += 1
+        if self.asked > MAX_ACTIONS and not self.over:
+            place = source(self._latest) if self._latest is not None else ""
+            reason = f"it asked for more than {MAX_ACTIONS:,} Commands and messages in this run"
+            raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def count_wait(self, began: int, node: Node) -> None:
         """Bound waits that last almost no time, one after the other (ms, when the wait began).
@@ -106,7 +139,9 @@ class Bounds(Generic[Evaluator]):
     def fail(self, error: Exception) -> None:
         """E2: the interpreter itself or an engine has failed, and ends the application."""
         place = source(self._latest) if self._latest is not None else ""
-        if isinstance(error, EngineLost):
+        if isinstance(error, GoOut):
+            reason, place = error.reason, error.source
+        elif isinstance(error, EngineLost):
             reason = f"error.semantic: {error}"
         else:
             reason = f"{place}: this is a defect of prima: {type(error).__name__}: {error}"

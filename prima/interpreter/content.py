@@ -149,10 +149,14 @@ class Executor:
         return self.evaluate(value, fiber) if isinstance(value, Expression) else value
 
     def named(
-        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber
+        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber, node: Node
     ) -> dict[str, Json]:
-        """Params as plain data by name."""
-        return {name: self.plain(value, fiber) for name, value in params}
+        """Params as plain data by name; each is counted before the next is made."""
+        found: dict[str, Json] = {}
+        for name, value in params:
+            found[name] = self.plain(value, fiber)
+            self.owner.count_value(found[name], node)
+        return found
 
     def declare(self, act: Declare, scope: Scope, fiber: Fiber) -> None:
         """Declare a variable in a scope (VoiceXML 5.3.1)."""
@@ -248,8 +252,8 @@ class Executor:
 
     def leave(self, act: Return, fiber: Fiber) -> Transfer:
         """Return from a subdialog, with values (VoiceXML 5.3.10)."""
-        expressions = [Expression(name, act.node, "namelist") for name in act.names]
-        return GoBack({one.code: self.evaluate(one, fiber) for one in expressions}, act.event)
+        params = [(name, Expression(name, act.node, "namelist")) for name in act.names]
+        return GoBack(self.named(params, fiber, act.node), act.event)
 
     def log(self, act: Log, fiber: Fiber) -> None:
         """Write to the transcript."""
@@ -306,8 +310,7 @@ class Executor:
 
     def send(self, act: SendOut, fiber: Fiber) -> None:
         """Ask a service, or raise an event here after a delay."""
-        params = self.named(act.params, fiber)
-        self.owner.count_output(len(str(params)), act.node)
+        params = self.named(act.params, fiber, act.node)
         if act.event:
             delay = self.plain(act.delay, fiber)
             self.owner.delay(act.event, params, self.milliseconds(delay, act.node), fiber)
@@ -367,8 +370,8 @@ class Executor:
         """A Command with its arguments."""
         text, cues = self.speech(template.text, fiber) if template.text is not None else (None, ())
         self.owner.count_output(len(text or ""), template.node)
-        args = {name: self.plain(value, fiber) for name, value in template.args.items()}
-        extra = self.named(template.extra, fiber)
+        args = self.named([*template.args.items()], fiber, template.node)
+        extra = self.named(template.extra, fiber, template.node)
         own = self.owner.arguments.get(template.type, frozenset())
         for name in [name for name in extra if name in own]:
             args[name] = extra.pop(name)

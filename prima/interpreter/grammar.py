@@ -15,6 +15,7 @@ from prima.deferred import dataclass, field, pattern
 
 if TYPE_CHECKING:
     from prima.messages import Json
+from prima.script.budget import Budget
 
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 _BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
@@ -256,10 +257,13 @@ class Grammar:
             elif isinstance(part, Sequence):
                 todo += part.parts
 
-    def match(self, text: str) -> str | None:
+    def match(self, text: str, budget: Budget | None = None) -> str | None:
         """The value of an utterance (the last tag met, else the utterance), or None."""
         said = fold(text)
-        ends = Matching(self.rules, said).ends(Reference(self.root), 0)
+        matching = Matching(self.rules, said)
+        ends = matching.ends(Reference(self.root), 0)
+        if budget is not None:
+            budget.steps -= MAX_STEPS - matching.left
         if len(said) not in ends:
             return None
         tag = ends[len(said)]
@@ -376,13 +380,13 @@ class Answers:
     grammars: list[Grammar] = field(default_factory=list)
     type: str = ""
 
-    def match(self, text: str) -> Json:
+    def match(self, text: str, budget: Budget | None = None) -> Json:
         """The field's value for an utterance, or None where it takes no such answer."""
         said = fold(text)
         if said in self.options:
             return self.options[said]
         for grammar in self.grammars:
-            value = grammar.match(text)
+            value = grammar.match(text, budget)
             if value is not None:
                 return value
         return BUILT_IN[self.type](text) if self.type else None

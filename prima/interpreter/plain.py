@@ -14,6 +14,7 @@ from weakref import WeakValueDictionary
 from prima.interpreter.elements import Document
 from prima.script.compiling import (
     FUNCTIONS,
+    Compiled,
     Function,
     anywhere,
     compiled,
@@ -45,6 +46,8 @@ MOST_HELD = 4_000_000
 """Characters of long texts that all variables of an application may have together."""
 SECONDS = 4e-9
 """What a character takes at most to be compared, joined or read."""
+PIECE, FEW_PIECES = 125, 20
+"""As many characters is the work of a piece of an expression, in one with more pieces than that."""
 COUNTED = 10
 """As many characters is the work of counting a variable."""
 MOST_PIECES = 50_000
@@ -72,6 +75,21 @@ def _are_plain(codes: Iterable[str]) -> bool:
     return True
 
 
+def weighed(found: Compiled) -> Function:
+    """The function of an expression; a long one counts as work."""
+    call, pieces = function_of(found.source), found.pieces
+    if pieces <= FEW_PIECES:
+        return call
+
+    def long(scopes: Scopes) -> Any:
+        count = getattr(scopes[0], "count", None)
+        if count is not None:
+            count(PIECE * pieces)
+        return call(scopes)
+
+    return long
+
+
 class PlainEngine:
     """What an :class:`~prima.script.engine.Engine` does, for applications without scripts."""
 
@@ -93,14 +111,14 @@ class PlainEngine:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        call = function_of(found.source)
+        call = weighed(found)
         left = SELDOM
 
         def counted(scopes: Scopes) -> Any:
             nonlocal left
             left -= 1
             if left == 0:
-                FUNCTIONS[code] = function_of((quickly(code, "scopes", anywhere) or found).source)
+                FUNCTIONS[code] = weighed(quickly(code, "scopes", anywhere) or found)
             return call(scopes)
 
         FUNCTIONS[code] = counted
@@ -113,6 +131,7 @@ class PlainEngine:
     def named(self, name: str) -> Scope:
         """A new scope that its expressions know as ``application``, ``document`` or ``dialog``."""
         made = Named()
+        made.name = name
         if name == "application":
             made.count = self.work
         return made

@@ -34,7 +34,7 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.frame import Fiber, Frame, GoForm, Thrown, Transfer
-from prima.interpreter.plain import LONG, PlainEngine, is_plain
+from prima.interpreter.plain import FEW_PIECES, LONG, PlainEngine, is_plain
 from prima.interpreter.selection import Taking
 from prima.messages import Event
 from prima.script.compiling import INHERITED, VARIABLES, Compiled, quickly
@@ -165,7 +165,7 @@ class _Writer:
     def expression(self, expr: Expression) -> Compiled:
         """An expression in Python."""
         found = quickly(expr.code, self.all_scopes, self.where)
-        if found is None:
+        if found is None or found.pieces > FEW_PIECES:  # the engine counts the work of long ones
             raise _Beyond
         if "sensor" in expr.code or "application" in expr.code:
             self.with_sensors = True
@@ -212,7 +212,8 @@ class _Writer:
             raise _Beyond
         self.write(depth, f"owner.steps += {len(content)}")
         if content:
-            over = f"owner.steps > {MAX_STEPS} or owner.engine.spent > {MAX_SCRIPT_SECONDS}"
+            spent = f"owner.engine.spent > {MAX_SCRIPT_SECONDS}"
+            over = f"owner.steps > {MAX_STEPS} or {spent} or owner.exhausted"
             self.write(depth, f"if {over}: owner.count_step(given[0][{len(self.rare)}], 0)")
             self.rare.append(content[0].node)
         for act in content:

@@ -1,4 +1,4 @@
-"""How much time the tags of one utterance may take, and what time it is for them."""
+"""How much work one utterance may make for an application, and what time it is for its tags."""
 
 from __future__ import annotations
 
@@ -6,17 +6,22 @@ from prima.deferred import dataclass
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that the tags of one utterance may take."""
+MOST_MATCHING = 400_000
+"""Steps that matching one utterance may take, in all grammars that listen."""
 
 
 @dataclass(slots=True)
 class Budget:
-    """The time that the tags of one utterance have taken, in all documents and analyses."""
+    """What one utterance has taken, in all documents, analyses and grammars of an application."""
 
     now: int = 0
-    """The time that they are told (ms since 1970, UTC)."""
+    """The time that tags are told (ms since 1970, UTC)."""
     spent: float = 0.0
+    """Seconds of the processor that tags have taken."""
+    steps: int = MOST_MATCHING
+    """Steps of matching that are left; at or below 0 where the application listens for too much."""
 
     @property
     def over(self) -> bool:
-        """Whether it was all spent."""
+        """Whether the tags' time was all spent."""
         return self.spent > TIME_LIMIT

@@ -38,7 +38,9 @@ class Scope(dict[str, Any]):
 class Named(Scope):
     """A scope that its own expressions know by name: ``application``, ``document``, ``dialog``."""
 
-    __slots__ = ("count",)
+    __slots__ = ("count", "name")
+    name: str
+    """Its name: a scope has itself as a variable."""
     count: Callable[[int], None]
     """Counts work with so many characters, in an application's scope."""
 
@@ -62,6 +64,8 @@ NUMERIC = pattern(
 INDEX = pattern("0|[1-9][0-9]{0,9}")
 MOST_INDEX = 2**32 - 2
 SURROGATE = pattern("[\ud800-\udfff]")
+HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
+"""First and second halves of letters."""
 MISSING = object()
 """Stands for the value of what nothing declares."""
 
@@ -109,6 +113,8 @@ def holder_of(name: str, scopes: Scopes) -> Scope:
 def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
     """A member of a value, by its name and the index that the name is."""
     if isinstance(value, dict):
+        if isinstance(value, Named) and key == value.name and key not in value:
+            return value
         return value.get(key, UNDEFINED)
     if value is None or value is UNDEFINED:
         what = "null" if value is None else "undefined"
@@ -164,12 +170,20 @@ def add(first: Any, second: Any, scopes: Scopes) -> Any:
     first, second = primitive(first), primitive(second)
     if not isinstance(first, str) and not isinstance(second, str):
         return number(first) + number(second)
-    joined = text(first) + text(second)
+    joined = join(text(first), text(second))
     if len(joined) > SHORT:
         if len(joined) > LONGEST:
             raise ScriptError("it used too much memory")
         work(scopes, joined)
     return joined
+
+
+def join(first: str, second: str) -> str:
+    """Two texts as one, in which two halves that meet are a letter again."""
+    if first[-1:] in HIGH and second[:1] in LOW:
+        pair = (first[-1] + second[0]).encode("utf-16-le", "surrogatepass").decode("utf-16-le")
+        return first[:-1] + pair + second[1:]
+    return first + second
 
 
 def _arithmetic(act: Callable[[float, float], float]) -> Operation:

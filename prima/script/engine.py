@@ -21,6 +21,7 @@ from prima.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_name
 from prima.prelude import (
     CLOCK,
     DATE,
+    GIVE,
     GUARD,
     GUARDS,
     MEMORY_LIMIT,
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 HELPERS = r"""
 (function () {
+const give = globalThis['\u01c0give'], Text = String;
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
 const prototype = Object.getPrototypeOf, plain = Object.prototype, Known = Map, List = Array;
@@ -84,7 +86,9 @@ const view = (v) => {
   }
   return made;
 };
-const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0') ? number(v['\0']) : v;
+const marks = ['NaN', 'Infinity', '-Infinity'];
+const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0')
+  && marks.includes(v['\0']) && keys(v).length === 1 ? number(v['\0']) : v;
 return {
   scope: function () { return {}; },
   nothing: function () { return freeze({}); },
@@ -101,8 +105,8 @@ return {
   hand: function (o, k, from) { o[k] = from[k]; },
   view: function (o) { return view(o); },
   detach: function (o, k) { o[k] = copy(o[k], new Known()); },
-  text: function (v) { return v === undefined ? 'undefined' : typeof v === 'object' && v !== null
-    ? stringify(v) : text(v); },
+  text: function (v) { return v === undefined ? 'undefined' : typeof v !== 'object' || v === null
+    ? give(text(v)) : v instanceof Text ? v : stringify(v); },
   parse: function (v) { return parse(v, unmarked); },
   json: function (v) { return stringify(v); },
   items: function (v) { return isArray(v) ? v.length : -1; },
@@ -110,7 +114,7 @@ return {
     for (let i = 0; i < v.length; i++) made[i] = v[i]; return made; },
   pick: function (o, k, v, i) { o[k] = v[i]; },
   item: function (v, i) { const x = v[i];
-    return typeof x === 'string' ? x.slice(0).toWellFormed() : x; },
+    return typeof x === 'string' ? give(x) : x; },
 }; })()
 """
 
@@ -207,9 +211,7 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            # The binding cannot give out a text that is joined lazily, which slice joins, or
-            # that has half a surrogate pair.
-            give = "return typeof $v === 'string' ? $v.slice(0).toWellFormed() : $v"
+            give = f"return typeof $v === 'string' ? {GIVE}($v) : $v"
             function = self._compile(f"const $v = (\n{code}\n); {give}")
             self._compiled[code] = function
         return function
@@ -320,8 +322,8 @@ class Engine:
 
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
-        text = str(self._call(self._help["text"], (self.raw(code, scopes),)))
-        return bounded(text)
+        found = self.out(self._call(self._help["text"], (self.raw(code, scopes),)))
+        return "null" if found is None else str(found)
 
     def value(self, code: str, scopes: tuple[Scope, ...]) -> Json:
         """Evaluate an expression and give its value as plain data."""

@@ -13,8 +13,9 @@ Scope = Any
 
 MAX_SCRIPT_SECONDS = 3.0
 """What an application's code may take in one instant, all together."""
-MAX_RUN_SECONDS = 60.0
-"""What an application's code may take in a whole run."""
+MAX_RUN_SECONDS, MAX_SHARE = 10.0, 0.02
+"""What an application's code may take in a whole run: so many seconds of the processor, and this
+share of the time that passes in the run."""
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves its application's scopes."""
 SCOPES = ("application", "document", "dialog", "local")

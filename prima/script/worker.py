@@ -27,6 +27,8 @@ MANY = 8
 """Processes at work from which on those that nobody needs any more are looked for."""
 PASSED_ON = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT")
 """Variables of the environment without which some Pythons do not start."""
+CALL_SECONDS = 20e-6
+"""What a call costs besides the work that is done there, on both sides."""
 ENDING_SECONDS = 5.0
 """How long a process that has closed its pipe may take to end."""
 
@@ -123,7 +125,8 @@ class Worker:
             try:
                 request = [dropped, target, method, arguments, meter.now, meter.spent]
                 wire.send(self._requests, request, wire.LONGEST_REQUEST)
-                kind, result, meter.spent = wire.receive(self._replies, wire.LONGEST_REPLY)
+                kind, result, spent = wire.receive(self._replies, wire.LONGEST_REPLY)
+                meter.spent = spent + CALL_SECONDS
             except (wire.TooMuch, wire.Broken) as error:
                 queue.extend(dropped)
                 raise (

@@ -247,7 +247,6 @@ class VoiceInterpreter(Bounds[AnyEngine]):
 
     def send(self, service: str, data: Data, node: Node) -> int:
         """Send something to a service, or to a URI; gives its serial."""
-        self.count_output(len(str(data)), node)
         serial = next(self._sends)
         self.actions.append(Send(service, data, serial, source(node)))
         return serial

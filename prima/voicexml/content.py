@@ -196,6 +196,7 @@ class Content(Speaker):
                 found[name] = self.engine.value(name, context.scopes(local))
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
+            self.owner.count_value(found[name], node)
         return found
 
     # Control ----------------------------------------------------------------------------
@@ -249,6 +250,7 @@ class Content(Speaker):
         values = self.engine.scope()
         for name in node.get("namelist").split():
             try:
+                self.owner.count_step(node)
                 self.engine.assign(values, name, name, context.scopes(local))
                 self.engine.detach(values, name)
             except ScriptError as error:

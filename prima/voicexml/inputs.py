@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
+from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held
 from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
@@ -44,6 +45,8 @@ class Inputs:
         self.owner = owner
         self._loaded: dict[tuple[str, int, str], tuple[Page, Matcher]] = {}
         """With the page that each is of: the next one of its URI may be another document."""
+        self._budget = Budget()
+        """What matching the utterance takes that is being heard."""
         self._active: list[Active] = []
         """What listens in the wait that there is."""
 
@@ -68,6 +71,7 @@ class Inputs:
         are of the others (5.1.5).
         """
         most = self.most_results(context)
+        self._budget = Budget(self.owner.engine.now)
         first: Active | None = None
         results: list[Found] = []
         for text, sure in said:
@@ -126,6 +130,8 @@ class Inputs:
                 if found.confidence >= least and found.means not in {r.means for r in results}:
                     results.append(found)
                     first = first or active
+            if self._budget.steps <= 0:
+                self.owner.owner.give_up(active.owner, "what it listens for takes too long")
         return first, results
 
     # Which grammars listen --------------------------------------------------------------
@@ -230,7 +236,7 @@ class Inputs:
             uri,
             lambda name: held(self.owner, name, node),
             self._failed,
-            lambda: self.owner.engine.now,
+            lambda: self._budget,
         )
         self._loaded[key] = page, made
         return made

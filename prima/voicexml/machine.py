@@ -38,6 +38,8 @@ from prima.voicexml.state import (
 if TYPE_CHECKING:
     from prima.voicexml.application import VoiceInterpreter
 
+DIALOG_STEPS = 100
+"""As many pieces of content is the work of beginning a dialog."""
 DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"}
 
 
@@ -79,6 +81,10 @@ class Machine:
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""
         self.owner.count_output(characters, node)
+
+    def count_value(self, value: Json, node: Node) -> None:
+        """Count a value that leaves its variables, before another is made."""
+        self.owner.count_value(value, node)
 
     def fetch(
         self, uri: str, node: Node, request: Request | None = None
@@ -235,6 +241,7 @@ class Machine:
 
     def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
         """One form or menu: initialise, then select, collect, process (appendix C)."""
+        self.owner.count_step(form, DIALOG_STEPS)
         context.form, context.item = form, None
         context.counters, context.prompts, context.visited = {}, {}, set()
         context.quiet = False

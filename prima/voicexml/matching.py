@@ -21,6 +21,7 @@ from prima.interpreter.content import source
 from prima.interpreter.grammar import fold
 from prima.markup.tree import Node
 from prima.messages import Json
+from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.state import Thrown
 
@@ -52,9 +53,9 @@ Tell = Callable[[Node, str], None]
 
 
 def matcher(
-    node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell, clock: Callable[[], int]
+    node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell, budget: Callable[[], Budget]
 ) -> Matcher:
-    """The grammar of an element, or of the URI that it names; its tags are told the clock's time.
+    """The grammar of an element, or of the URI that it names; ``budget`` is that of the utterance.
 
     Raises:
         Thrown: ``error.badfetch``, ``error.unsupported.format``,
@@ -64,7 +65,7 @@ def matcher(
 
     def match(said: str, mode: str, most: int) -> list[Found]:
         found: list[Found] = []
-        for one in grammar.match(said, mode=mode, most=most, now=clock()):
+        for one in grammar.match(said, mode=mode, most=most, budget=budget()):
             if one.error is not None:
                 tell(node, str(one.error))
                 continue
