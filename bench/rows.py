@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from bench import batch, matching, mediation, peers, processes, simulation, workloads
+from bench import batch, isolation, matching, mediation, peers, processes, simulation, workloads
 
 
 @dataclass(frozen=True)
@@ -357,6 +357,33 @@ def editor() -> list[Row]:
     ]
 
 
+def isolated() -> list[Row]:
+    """What it costs that scripts run in processes of their own."""
+    return [
+        Row(
+            "Expressions that an engine evaluates, in a process of its own",
+            "events/s",
+            Call(isolation.calls, ("ea", SECONDS)),
+            "in the process of the run",
+            Call(isolation.calls, ("none", SECONDS)),
+        ),
+        Row(
+            "The demo, in which Python evaluates all",
+            "s",
+            Call(isolation.run, ("ea", "demo", 5)),
+            "without isolation",
+            Call(isolation.run, ("none", "demo", 5)),
+        ),
+        Row(
+            "A VoiceXML application with scripted grammars",
+            "s",
+            Call(isolation.run, ("ea", "pizza", 5)),
+            "without isolation",
+            Call(isolation.run, ("none", "pizza", 5)),
+        ),
+    ]
+
+
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Events": events,
     "Load": loads,
@@ -367,4 +394,5 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Batch": batches,
     "Grammars and diff": matches,
     "Editor": editor,
+    "Isolation": isolated,
 }

@@ -145,7 +145,8 @@ class IsolatedEngine(_Remote):
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """See :meth:`Engine.elements`."""
         array = self._call("listed", _data(code), _values(scopes), _data(most))
-        return [Item(array, index) for index in range(self._call("length", _value(array)))]
+        length = min(int(self._call("length", _value(array))), most)
+        return [Item(array, index) for index in range(length)]
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """See :meth:`Engine.assign`."""
