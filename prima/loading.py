@@ -320,6 +320,7 @@ def _voicexml_problems(
     """
     from prima.voicexml.document import FetchError, read_page
     from prima.voicexml.pages import Pages
+    from prima.voicexml.sketched import check_sketched
     from prima.voicexml.variables import check_variables
 
     folder = _path(site.folder) if site else _path(path).parent
@@ -336,6 +337,7 @@ def _voicexml_problems(
     for page in pages:
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
         yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+        yield from check_sketched(page, pages.root(page))
     yield from (*pages.problems, *pages.between())
 
 
@@ -750,9 +752,10 @@ class _Reading:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
             else:
-                from prima.voicexml import check
+                from prima.voicexml import check, sketched
 
                 self.problems += check.check_commands(document.page.root, robot.commands)
+                self.problems += sketched.added_in_units(document.page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""

@@ -26,11 +26,11 @@ from prima.errors import UsageError
 from prima.interpreter import (
     application,
     bounds,
-    checks,
     content,
     frame,
     grammar,
     handling,
+    units,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
@@ -299,7 +299,7 @@ def limits() -> str:
         ),
         (
             "speech in one unit",
-            f"about {checks.LONG_UNIT_MS // 1000} s",
+            f"about {units.LONG_UNIT_MS // 1000} s",
             "the warning `long-unit`",
         ),
         (

@@ -1805,13 +1805,13 @@ def test_wrong_arrangements_are_told(body: str, code: str, told: str) -> None:
     assert told in f"{problem.message} {problem.remedy}"
 
 
-def test_branches_that_share_a_device_are_told_and_units_stand_around_commands_alone() -> None:
+def test_branches_that_share_a_device_are_told() -> None:
     body = (
         "<p:par><p:speak>a</p:speak><p:seq><p:turn angle='1'/><p:speak>b</p:speak></p:seq></p:par>"
     )
     [problem] = problems_of(f"<form {P}><block>{body}</block></form>")
     assert (problem.code, problem.severity) == ("shared-device", "warning")
-    around = problems_of(f"<form {P}><p:iu><field name='f'/></p:iu></form>")
+    around = problems_of(f"<form {P}><p:par><field name='f'/></p:par></form>")
     assert "it is around Commands" in around[0].message
 
 

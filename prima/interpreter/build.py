@@ -55,7 +55,14 @@ from prima.interpreter.grammar import (
     fold,
 )
 from prima.interpreter.srgs import read_grammar
-from prima.interpreter.units import LONGEST_UNIT_MS, Finder, Reached, unit_problem, units_of
+from prima.interpreter.units import (
+    LONGEST_UNIT_MS,
+    Finder,
+    Reached,
+    now_inside,
+    unit_problem,
+    units_of,
+)
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
@@ -599,13 +606,7 @@ class Builder:
                     after = (len(steps) - 1,)
             else:
                 if steps and self.is_now(node):
-                    self.problem(
-                        node,
-                        "now-inside",
-                        f"<{node.tag}> is wanted now; it cannot stand in a <{'par'}>, <seq> or <iu>"
-                        " behind others.",
-                        "Put it first.",
-                    )
+                    self.problems.append(now_inside(node))
                 steps.append(StepTemplate(self.command(node), after))
                 after = (len(steps) - 1,)
         return after

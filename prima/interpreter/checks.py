@@ -43,24 +43,25 @@ from prima.interpreter.elements import (
     Unit,
     all_acts,
     all_items,
-    pauses_in,
     run_commands,
 )
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.repeats import told_twice
-from prima.interpreter.units import Finder, Reached, unit_problem, units_of
+from prima.interpreter.units import (
+    Finder,
+    Reached,
+    long_unit,
+    speak,
+    unit_problem,
+    unit_speaks,
+    units_of,
+)
 from prima.markup.tree import Node
 from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
 from prima.script.compiling import compiled
 from prima.script.evaluation import ScriptError
 from prima.values import nearest, read_value
 
-LONG_UNIT_MS = 20_000
-"""A unit whose speech alone takes longer than this cannot be reacted in."""
-MS_A_LETTER = 70
-MS_A_SYLLABLE = 125
-"""Speech of a letter, and of one of a script of syllables or words, as the robots here speak."""
-SYLLABLES = ("ja", "zh", "ko")
 MANY_FORMS = 8
 """Of forms that go round, so many are named."""
 MANY_STEPS = 200
@@ -789,7 +790,7 @@ class Checker:
         for form, items in self.forms:
             for item in items:
                 if isinstance(item, Unit):
-                    self._long_unit(item.node, self._unit_speaks(item))
+                    self.problems += long_unit(item.node, unit_speaks(item, self.document.lang))
                 for prompt in item.prompts if isinstance(item, Field) else ():
                     self._literal(prompt.node, prompt.text, form)
 
@@ -932,30 +933,8 @@ class Checker:
     def _long_units(self, steps: Sequence[StepTemplate]) -> None:
         for step in steps:
             if isinstance(step.what, GroupTemplate):
-                lasts = sum(self._lasts(one.text) for one in run_commands(step.what.steps))
-                self._long_unit(step.what.node, lasts)
-
-    def _lasts(self, text: Text | None) -> int:
-        """About how long (ms) it takes to say a text."""
-        syllables = self.document.lang.lower().startswith(SYLLABLES)
-        return _letters(text) * (MS_A_SYLLABLE if syllables else MS_A_LETTER) + pauses_in(text)
-
-    def _long_unit(self, node: Node, lasts: int) -> None:
-        if lasts > LONG_UNIT_MS:
-            message = f"This unit speaks for about {lasts // 1000} s: no reaction can break in."
-            self.note(node, "long-unit", message, "Divide it (thesis 4.5).", severity="warning")
-
-    def _unit_speaks(self, unit: Unit) -> int:
-        """About how long (ms) a unit around items speaks."""
-        lasts = 0
-        for item in unit.items:
-            if isinstance(item, Field):
-                lasts += sum(self._lasts(prompt.text) for prompt in item.prompts[:1])
-            elif isinstance(item, Block):
-                for act in all_acts(item.content):
-                    if isinstance(act, Run):
-                        lasts += sum(self._lasts(one.text) for one in run_commands(act.steps))
-        return lasts
+                commands = run_commands(step.what.steps)
+                self.problems += long_unit(step.what.node, speak(commands, self.document.lang))
 
     def _after_goto(self) -> None:
         """Content behind a goto, return or exit is never reached."""
@@ -1003,10 +982,6 @@ def _devices(step: StepTemplate) -> frozenset[str]:
         if row is not None:
             devices |= row.occupied("x" if command.text else None)
     return devices
-
-
-def _letters(text: Any) -> int:
-    return sum(len(part) for part in text or () if isinstance(part, str))
 
 
 def bad_hold(node: Node) -> bool:

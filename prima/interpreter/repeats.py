@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from prima.errors import Problem
 from prima.interpreter.elements import (
@@ -32,24 +32,35 @@ OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "er
 """What begins an event that comes of what the application itself does, or ends everything."""
 
 
-def told_twice(document: Document) -> Iterator[Problem]:
+REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
+
+
+def told_twice(
+    document: Document, foreign: Callable[[str], bool] | None = None, remedy: str = REMEDY
+) -> Iterator[Problem]:
     """Warn of handlers that leave a state and come back to what it says or asks.
 
     An event may come while that is being said. Where the user has been asked something else on
     the way back, or the state waits for another event, telling it again is meant.
+
+    Args:
+        document: the document.
+        foreign: tells of a handler's event whether it may come from outside; by default, what
+            PRIMA's language has it to be.
+        remedy: what to do about it.
     """
-    chosen = _chosen(document)
+    from_outside = foreign or _foreign(document)
     for form in document.forms.values():
         said = _said(form)
         if said is None:
             continue
         for handler in _heard(document, form):
-            own = all(any(takes(name, one) for name in chosen) for one in handler.events)
-            if own or _brings_news(handler):
+            events = [one for one in handler.events if from_outside(one)]
+            if not events or _brings_news(handler):
                 continue
             way = _way_back(document, form, handler.content)
             if way is not None:
-                yield _problem(form, said, handler, way)
+                yield _problem(form, *said, events[0], way, remedy)
 
 
 def _brings_news(handler: Handler) -> bool:
@@ -58,37 +69,37 @@ def _brings_news(handler: Handler) -> bool:
     return any("event." in act.expr.code for act in assigned)
 
 
-def _problem(form: Form, said: Node, handler: Handler, way: Goto) -> Problem:
-    event = handler.events[0]
-    what = "asks" if said.tag in ("prompt", "field") else "says"
+def _problem(form: Form, said: Node, asks: bool, event: str, way: Goto, remedy: str) -> Problem:
+    what = "asks" if asks else "says"
+    it = f"{form.node.tag} {form.id}" if form.id[:1] == "#" else f'{form.node.tag} "{form.id}"'
     message = (
-        f'If "{event}" comes while the form "{form.id}" {what} this'
-        f" (line {said.place.line}), it is told twice: this leads back to the form's beginning."
+        f'If "{event}" comes while the {it} {what} this (line {said.place.line}), it is told'
+        f" twice: this leads back to the {form.node.tag}'s beginning."
     )
-    remedy = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
     return Problem(way.node.place, "warning", "told-twice", message, remedy)
 
 
-def _said(form: Form) -> Node | None:
-    """The first thing that a form says or asks, whenever it is entered; None if there is none."""
+def _said(form: Form) -> tuple[Node, bool] | None:
+    """The first thing that a form says whenever it is entered, and whether it asks that."""
     for item in form.items:
         if item.cond is not None or item.expr is not None:
             continue
-        node = _said_by(item)
-        if node is not None:
-            return node
+        said = _said_by(item)
+        if said is not None:
+            return said
     return None
 
 
-def _said_by(item: Item) -> Node | None:
+def _said_by(item: Item) -> tuple[Node, bool] | None:
     if isinstance(item, Unit):
-        return next((node for one in item.items if (node := _said_by(one))), None)
+        return next((said for one in item.items if (said := _said_by(one))), None)
     if isinstance(item, Field):
-        return next((one.node for one in item.prompts if one.cond is None and one.text), None)
+        asked = (one.node for one in item.prompts if one.cond is None and one.text)
+        return next(((node, True) for node in asked), None)
     for act in item.content if isinstance(item, Block) else ():
         for command in run_commands(act.steps) if isinstance(act, Run) else ():
             if command.text:
-                return command.node
+                return command.node, False
     return None
 
 
@@ -98,6 +109,12 @@ def _heard(document: Document, form: Form) -> Iterator[Handler]:
     yield from form.handlers
     for item in all_items(form.items):
         yield from item.handlers
+
+
+def _foreign(document: Document) -> Callable[[str], bool]:
+    """Tells which events may come from outside, and are no answer to the application."""
+    chosen = _chosen(document)
+    return lambda event: not any(takes(name, event) for name in chosen)
 
 
 def _chosen(document: Document) -> set[str]:

@@ -7,7 +7,7 @@ from outside is handled in the unit by the handlers of its items and its own alo
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from prima.commands import TABLE_4_2, CommandType
 from prima.deferred import dataclass
@@ -24,16 +24,25 @@ from prima.interpreter.elements import (
     Item,
     Run,
     Subdialog,
+    Text,
     Throw,
     Unit,
     all_acts,
     all_items,
+    pauses_in,
     run_commands,
 )
 from prima.interpreter.selection import taking
+from prima.markup.tree import Node
 
 LONGEST_UNIT_MS = 60_000
 """The longest duration of a unit unless ``longest`` says otherwise."""
+LONG_UNIT_MS = 20_000
+"""A unit whose speech alone takes longer than this cannot be reacted in."""
+MS_A_LETTER = 70
+MS_A_SYLLABLE = 125
+"""Speech of a letter, and of one of a script of syllables or words, as the robots here speak."""
+SYLLABLES = ("ja", "zh", "ko")
 QUESTION = "q-and-a"
 UNANSWERED = ("noinput", "nomatch")
 """What a question throws in itself."""
@@ -86,6 +95,36 @@ def units_of(document: Document) -> Iterator[tuple[Form, Unit]]:
         yield from ((form, item) for item in form.items if isinstance(item, Unit))
 
 
+def lasts(text: Text | None, lang: str) -> int:
+    """About how long (ms) it takes to say a text."""
+    letters = sum(len(part) for part in text or () if isinstance(part, str))
+    syllables = lang.lower().startswith(SYLLABLES)
+    return letters * (MS_A_SYLLABLE if syllables else MS_A_LETTER) + pauses_in(text)
+
+
+def speak(commands: Iterable[CommandTemplate], lang: str) -> int:
+    """About how long (ms) Commands speak, one after another."""
+    return sum(lasts(one.text, lang) for one in commands)
+
+
+def unit_speaks(unit: Unit, lang: str) -> int:
+    """About how long (ms) a unit around items speaks where each of them is visited once."""
+    total = 0
+    for item in unit.items:
+        if isinstance(item, Field):
+            total += sum(lasts(prompt.text, lang) for prompt in item.prompts[:1])
+        elif isinstance(item, Block):
+            total += speak(Piece(item.content).commands, lang)
+    return total
+
+
+def long_unit(node: Node, ms: int) -> Iterator[Problem]:
+    """Warn of a unit that speaks for so long that it cannot be reacted in."""
+    if ms > LONG_UNIT_MS:
+        message = f"This unit speaks for about {ms // 1000} s: no reaction can break in."
+        yield Problem(node.place, "warning", "long-unit", message, "Divide it (thesis 4.5).")
+
+
 def not_in_unit(row: CommandType) -> str:
     """Why a Command cannot run in a unit (U4), if it cannot."""
     if row.leaves:
@@ -93,22 +132,37 @@ def not_in_unit(row: CommandType) -> str:
     return "works in a feedback loop" if row.feedback else ""
 
 
-def unit_problem(one: Reached, row: CommandType | None, unit: Unit | None = None) -> Problem | None:
-    """What is wrong with a Command of such a row in a unit (U4, U5), if anything is."""
+def unit_problem(
+    one: Reached, row: CommandType | None, unit: Unit | None = None, prefix: str = ""
+) -> Problem | None:
+    """What is wrong with a Command of such a row in a unit (U4, U5), if anything is.
+
+    ``prefix`` is that of Commands' elements in the document, with its colon.
+    """
     if row is None:
         return None
     why = not_in_unit(row)
     if not why:
         return None
-    message, remedy = f"<{row.name}> {why}", "Move it out of the <iu>."
+    iu = f"<{prefix}iu>"
+    message, remedy = f"<{prefix}{row.name}> {why}", f"Move it out of the {iu}."
     if unit is not None and not one.inside:
         by = f' by the event "{one.event}"' if one.event else ""
         message += f", and the unit in line {unit.node.place.line} reaches it{by}"
-        remedy = "Leave the <iu> with <goto> first, and do this there."
+        remedy = f"Leave the {iu} with <goto> first, and do this there."
     if one.event:
-        remedy = f'Handle "{one.event}" in the <iu> as well, or leave the <iu> with <goto> first.'
+        remedy = f'Handle "{one.event}" in the {iu} as well, or leave the {iu} with <goto> first.'
     place = one.command.node.place
     return Problem(place, "error", "not-in-unit", f"{message}; it cannot stand in a unit.", remedy)
+
+
+def now_inside(node: Node, prefix: str = "") -> Problem:
+    """A Command wanted now that stands behind others in a unit, or beside them (O2)."""
+    message = (
+        f"<{prefix}{node.tag}> is wanted now; it cannot stand in a <{prefix}par>, <{prefix}seq>"
+        f" or <{prefix}iu> behind others."
+    )
+    return Problem(node.place, "error", "now-inside", message, "Put it first.")
 
 
 class Piece:
@@ -143,8 +197,18 @@ def failures(command: CommandTemplate) -> set[str]:
 class Finder:
     """Finds what units of a document reach; what handlers hold is looked at once."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(
+        self, document: Document, thrown: Callable[[Item], Iterable[str | None]] | None = None
+    ) -> None:
+        """Prepare to find.
+
+        Args:
+            document: the document.
+            thrown: gives the events that visiting an item may throw by itself, None for one
+                whose name only a run tells; by default those of PRIMA's language.
+        """
         self._document = document
+        self._thrown = thrown or thrown_by
         self._pieces: dict[int, Piece] = {}
         self._taking: dict[tuple[str, str | None], list[Handler]] = {}
         """The handlers of a form and of the document that take an event, by both names."""
@@ -159,7 +223,7 @@ class Finder:
     def _visit(self, form: Form, unit: Unit, item: Item, found: dict[int, Reached]) -> None:
         """What may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
-        waiting: list[tuple[str | None, str]] = [(event, "") for event in thrown_by(item)]
+        waiting: list[tuple[str | None, str]] = [(event, "") for event in self._thrown(item)]
         for piece in (*map(Piece, _own(item)), *map(self._piece, inner)):
             waiting += self._take_in(piece, True, "", found)
         for filled in _answered(form, item):

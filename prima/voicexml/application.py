@@ -9,8 +9,10 @@ from itertools import count, pairwise
 from prima.interpreter.bounds import Bounds
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
+from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.messages import (
+    CloseUnit,
     Command,
     Data,
     Event,
@@ -19,6 +21,7 @@ from prima.messages import (
     Json,
     LeaveState,
     Notice,
+    OpenUnit,
     Quit,
     Request,
     Say,
@@ -31,7 +34,15 @@ from prima.script.isolated import AnyEngine, Engines
 from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.state import SCOPES, Flow, Heard, Resume, Thrown, thrown_of_event
+from prima.voicexml.state import (
+    SCOPES,
+    Flow,
+    Heard,
+    Resume,
+    Thrown,
+    UnitOver,
+    thrown_of_event,
+)
 
 Answer = Fetched | Transferred
 """What is waited for outside: a resource, or what becomes of a call."""
@@ -78,6 +89,14 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
         """Events that came while an answer was waited for (4.1.8): none is lost."""
+        self._units = count(1)
+        self._unit_node = document.node
+        self._unit: int | None = None
+        """The unit around form items in which Commands are asked for (U5)."""
+        self._overdue = ""
+        """What to say of a unit that has just taken too long."""
+        self.leaving = False
+        """Whether a unit is being left: what is said in it is said to its end."""
 
     # What a session tells -----------------------------------------------------------
 
@@ -95,11 +114,17 @@ class VoiceInterpreter(Bounds[AnyEngine]):
     def event(self, now: int, event: Event) -> None:
         """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
-        if self._asked is not None and not (self._calling and _hangs_up(event)):
+        if self._is_deaf(event):
             self._missed.append(event)
         else:
             self._happened(event)
             self._catch_up()
+
+    def _is_deaf(self, event: Event) -> bool:
+        """Whether an event has to wait until something else is waited for (4.1.8)."""
+        if self._asked is not None:
+            return not (self._calling and _hangs_up(event))
+        return self.leaving and not _hangs_up(event)
 
     def _happened(self, event: Event) -> None:
         context = self._machine.context
@@ -111,7 +136,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         self._cause = event.serial if event.reactive else None
         self._tell(event)
         self.actions.append(LeaveState(self._state))
-        self._drive(Resume(event=event))
+        self._drive(Resume(event=event, outside=True))
         self._cause = None
 
     def _tell(self, event: Event) -> None:
@@ -122,6 +147,9 @@ class VoiceInterpreter(Bounds[AnyEngine]):
     def notice(self, now: int, notice: Notice) -> None:
         """The mediator tells the fate of Commands."""
         self._tick(now)
+        if notice.what == "unit-timeout":
+            self._unit_over(notice)
+            return
         if self.over or notice.run != self._run or notice.what in ("ended", "interrupted"):
             return
         if notice.what == "failed":
@@ -130,6 +158,14 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             self._drive(Resume(event=Event(notice.event, 0, data, reactive=False)))
         elif notice.what == "done":
             self._drive(Resume(notice.data))
+        self._catch_up()
+
+    def _unit_over(self, notice: Notice) -> None:
+        """U5: a unit takes too long: whatever is waited for in it is over."""
+        if self.over or notice.run != self._unit:
+            return
+        self._unit, self._overdue = None, f"{source(self._unit_node)}: {notice.message}"
+        self._drive(Resume())
         self._catch_up()
 
     def replied(self, now: int, answer: Answer) -> None:
@@ -235,7 +271,8 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         cause, self._cause = self._cause, None
         content = self._machine.content
         self._marked, content.mark = content.mark, None
-        self.actions.append(Request(self._run, steps_of(commands), self._state, cause))
+        steps = steps_of(commands)
+        self.actions.append(Request(self._run, steps, self._state, cause, self._unit))
         self._open, self._queue = open_to_answers, commands
         began = self.now
         resume = yield
@@ -243,7 +280,35 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         context = self._machine.context
         item = context.item if context is not None else None
         self.count_wait(began, item or self.document.node)
+        self._stay_in_time()
         return resume
+
+    def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
+        """U5: what is asked for from now on belongs to a unit, which is a state of its own."""
+        self._unit, self._unit_node = next(self._units), node
+        self._state += 1
+        cause, self._cause = self._cause, None
+        place, devices, types = source(node), reach.devices, reach.types
+        self.actions.append(
+            OpenUnit(self._unit, self._state, devices, longest, cause, place, types=types)
+        )
+
+    def close_unit(self) -> None:
+        """U5: the unit is left, by whatever way."""
+        if self._unit is not None and not self.over:
+            self.actions.append(CloseUnit(self._unit))
+        self._unit = None
+
+    def _stay_in_time(self) -> None:
+        """U5: nothing is waited for any longer in a unit that has taken too long.
+
+        Raises:
+            UnitOver: ``error.unit.timeout``.
+        """
+        message, self._overdue = self._overdue, ""
+        if message:
+            self.expect_nothing()
+            raise UnitOver("error.unit.timeout", message, source(self._unit_node))
 
     def send(self, service: str, data: Data, node: Node) -> int:
         """Send something to a service, or to a URI; gives its serial."""
@@ -295,11 +360,12 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         """Wait for the answer of a fetch."""
         while not isinstance(self._answer, Fetched):
             yield
+            self._stay_in_time()
         return self._answer
 
     def _catch_up(self) -> None:
         """Give the events that came while an answer was waited for, once there is a wait."""
-        while self._missed and self._run and self._asked is None and not self.over:
+        while self._missed and self._run and not self.over and not self._is_deaf(self._missed[0]):
             self._happened(self._missed.popleft())
 
     def _tick(self, now: int) -> None:

@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TypeVar
 
 from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of
-from prima.interpreter.units import LONGEST_UNIT_MS, not_in_unit
+from prima.interpreter.elements import CommandTemplate
+from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.values import milliseconds, read_value
-from prima.voicexml.vocabulary import COMMANDS, PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE
 
 ARRANGING = ("par", "seq", "iu")
+UNIT = "iu-items"
+"""The key of a ``p:iu`` around form items (U5), as PRIMA's own language has it."""
+UNIT_ITEMS = ("block", "field", "initial", "record")
+"""Form items that a unit around such may hold: what they do ends, and is the robot's own."""
+UNIT_HOLDS = frozenset([*UNIT_ITEMS, *HANDLERS.split()])
+BESIDE = {"filled": ", with a namelist of its fields"} | dict.fromkeys(
+    ("grammar", "link", "property", "var", "script", "data", "subdialog", "transfer", "object"), ""
+)
+"""What belongs into the form, with what to write then."""
 Made = TypeVar("Made")
 DEEPEST = 50
 """Such elements inside each other."""
@@ -35,6 +45,27 @@ class Arranged:
     type: str = "par"
     cues: tuple[Cue, ...] = ()
     hook: object = False
+
+
+def is_unit(node: Node) -> bool:
+    """Whether an element is a ``p:iu``: among form items it is a unit around them (U5)."""
+    return node.tag == "iu" and node.namespace == PRIMA_NAMESPACE
+
+
+def parts_of(dialog: Node) -> list[Node]:
+    """What a dialog holds, in document order: what a unit around form items does, behind it."""
+    found = []
+    for node in dialog.nodes:
+        found.append(node)
+        if is_unit(node):
+            found += node.nodes
+    return found
+
+
+def holds(item: Node, name: str) -> bool:
+    """Whether a form item has a name, or is a unit around the one that has."""
+    inner = item.nodes if is_unit(item) else ()
+    return any(one.get("name") == name for one in (item, *inner))
 
 
 Queued = Command | Arranged
@@ -120,7 +151,7 @@ def _last(steps: list[Step]) -> list[int]:
 
 def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[Node]:
     """What is wrong with such an element; gives the Commands in it, in document order."""
-    _check_attributes(node, problems)
+    check_own(node, node.tag, problems)
     if depth == DEEPEST:
         message = f"There are more than {DEEPEST} such elements inside each other."
         problems.append(Problem(node.place, "error", "too-deep", message, "Divide them."))
@@ -134,8 +165,10 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
             found.append(check_arranged(child, problems, depth + 1) if inner else [child])
     commands = [command for branch in found for command in branch]
     if not node.nodes:
-        message = f"This <{node.tag}> holds no Command."
+        message = f"This <p:{node.tag}> holds no Command."
         problems.append(Problem(node.place, "error", "empty", message, "Write Commands into it."))
+    if not depth or node.tag == "iu":
+        _check_now(node, problems)
     if node.tag == "iu":
         _check_unit(commands, problems)
     elif node.tag == "par":
@@ -145,19 +178,49 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
 
 def _check_text(node: Node, text: str, problems: list[Problem]) -> None:
     if text.strip():
-        message = f'Text cannot stand in <{node.tag}>: "{text.strip()[:40]}".'
-        remedy = "Write it into a <p:speak>."
+        message = f'Text cannot stand in <p:{node.tag}>: "{text.strip()[:40]}".'
+        remedy = "Write it into a <p:speak>." if node.key != UNIT else "Write it into a <block>."
         problems.append(Problem(node.place, "error", "stray-text", message, remedy))
 
 
-def _check_attributes(node: Node, problems: list[Problem]) -> None:
-    known = {one.name: one for one in DIALOGUE.elements[node.tag].attributes}
+def check_items(unit: Node, problems: list[Problem]) -> Iterator[Node]:
+    """What is wrong with a unit around form items (U5) itself; gives what it holds."""
+    unit.key = UNIT
+    check_own(unit, UNIT, problems)
+    for child in unit.content:
+        if isinstance(child, str):
+            _check_text(unit, child, problems)
+        elif child.namespace == NAMESPACE and child.tag in UNIT_HOLDS:
+            child.key = child.tag
+            yield child
+        else:
+            problems.append(_not_among_items(child))
+    if not any(one.tag in UNIT_ITEMS for one in unit.nodes):
+        message = "This <p:iu> holds no form item."
+        remedy = f"Write {one_of(f'<{one}>' for one in UNIT_ITEMS)} into it, or remove it."
+        problems.append(Problem(unit.place, "error", "empty", message, remedy))
+
+
+def _not_among_items(child: Node) -> Problem:
+    name = f"p:{child.tag}" if child.namespace == PRIMA_NAMESPACE else child.tag
+    message = f"<{name}> cannot stand in a <p:iu> around form items."
+    remedy = f"It holds {one_of(f'<{one}>' for one in UNIT_ITEMS)}, and handlers of events."
+    if child.tag in COMMANDS and child.namespace == PRIMA_NAMESPACE:
+        remedy = "Write it into a <block>."
+    elif child.tag in BESIDE:
+        remedy = f"Write it into the form, beside the <p:iu>{BESIDE[child.tag]}."
+    return Problem(child.place, "error", "misplaced-element", message, remedy)
+
+
+def check_own(node: Node, key: str, problems: list[Problem]) -> None:
+    """What is wrong with the attributes of an element that PRIMA's language has by a key."""
+    known = {one.name: one for one in DIALOGUE.elements[key].attributes}
     for name, text in node.attributes.items():
         if name.startswith(("xml:", "{")):
             continue
         if name not in known:
             place = node.attribute_place(name, value=False)
-            message = f'<{node.tag}> has no attribute "{name}".'
+            message = f'<p:{node.tag}> has no attribute "{name}".'
             hint = did_you_mean(name, known)
             problems.append(Problem(place, "error", "unknown-attribute", message, hint))
             continue
@@ -182,14 +245,21 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
     return False
 
 
+def _check_now(node: Node, problems: list[Problem]) -> None:
+    """O2: a Command that is wanted now waits for nothing, so that it can only stand first."""
+    for command, _ in arrange(node.nodes, lambda one: one)[1:]:
+        row = TABLE_4_2.get(command.tag) if command.namespace == PRIMA_NAMESPACE else None
+        if row is not None and row.now:
+            problems.append(now_inside(command, "p:"))
+
+
 def _check_unit(commands: list[Node], problems: list[Problem]) -> None:
     """U4: no feedback Command and none that leaves the user may be in a unit."""
     for command in commands:
-        row = TABLE_4_2.get(_type(command))
-        if row is not None and (why := not_in_unit(row)):
-            message = f"<p:{command.tag}> {why}; it cannot stand in a unit."
-            remedy = "Move it out of the <p:iu>."
-            problems.append(Problem(command.place, "error", "not-in-unit", message, remedy))
+        name = _type(command)
+        one = Reached(CommandTemplate(name, {}, None, False, (), (), command), True)
+        problem = unit_problem(one, TABLE_4_2.get(name), prefix="p:")
+        problems += [problem] if problem is not None else []
 
 
 def _check_branches(branches: list[list[Node]], problems: list[Problem]) -> None:

@@ -19,7 +19,14 @@ from prima.names import IDENTIFIER, RESERVED
 from prima.script.evaluation import ScriptError
 from prima.script.isolated import IsolatedSyntax, syntax
 from prima.values import NUMBER, read_value
-from prima.voicexml.arranging import ARRANGING, check_arranged
+from prima.voicexml.arranging import (
+    ARRANGING,
+    UNIT,
+    check_arranged,
+    check_items,
+    is_unit,
+    parts_of,
+)
 from prima.voicexml.cues import is_rate
 from prima.voicexml.upgrade import version_problem
 from prima.voicexml.vocabulary import (
@@ -41,7 +48,7 @@ HABITS = {
     "say": "Write <prompt>.",
     "on": 'Write <catch event="...">.',
     "send": "Write <submit>.",
-    "iu": f'Write <p:iu> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
+    "iu": f'Write <p:iu> around Commands or form items, with xmlns:p="{PRIMA_NAMESPACE}".',
     "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
     "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
 }
@@ -131,7 +138,9 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
     for child in node.content:
         if isinstance(child, str):
             continue
-        if child.namespace == PRIMA_NAMESPACE:
+        if is_unit(child) and node.key == "form":
+            stack.extend(check_items(child, problems))
+        elif child.namespace == PRIMA_NAMESPACE:
             _check_command(child, node, problems)
         elif child.namespace == NAMESPACE or (child.tag, child.namespace) == ("grammar", SRGS):
             key = VOICEXML.child(node.key, child.tag)
@@ -290,7 +299,8 @@ def _check_item(item: Node, problems: list[Problem]) -> None:
 
 
 def _check_form(form: Node, problems: list[Problem]) -> None:
-    items = [node for node in form.all(*FORM_ITEMS) if node.get("name")]
+    items = [one for one in parts_of(form) if one.tag in FORM_ITEMS or is_unit(one)]
+    items = [node for node in items if node.get("name")]
     counts = Counter(node.get("name") for node in items)
     for node in items:
         if counts[node.get("name")] > 1:
@@ -344,6 +354,9 @@ def _check_command(node: Node, parent: Node, problems: list[Problem]) -> None:
         if node.tag in ARRANGING:
             message = f"<p:{node.tag}> cannot stand in <{parent.tag}>: it is around Commands."
         remedy = "It may stand in a prompt or among executable content."
+        if node.tag == "iu":
+            message = f"<p:iu> cannot stand in <{parent.tag}>."
+            remedy = "It stands around Commands in content, or around the items of a <form>."
         problems.append(Problem(node.place, "error", "misplaced-element", message, remedy))
     if node.tag in ARRANGING:
         for command in check_arranged(node, problems):
@@ -378,8 +391,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         node = stack.pop()
         stack.extend(node.nodes)
         for name in node.attributes:
-            is_code = node.namespace == NAMESPACE and name in EXPRESSIONS
-            if is_code or (node.namespace == PRIMA_NAMESPACE and name.endswith("-expr")):
+            if is_code(node, name):
                 _compile(node, name, problems, checker)
         if node.key == "script" and node.own_text.strip():
             _compile(node, "", problems, checker)
@@ -405,10 +417,18 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     return problems
 
 
+def is_code(node: Node, attribute: str) -> bool:
+    """Whether an attribute holds ECMAScript: VoiceXML's own, or one of PRIMA's elements."""
+    if node.namespace == NAMESPACE:
+        return attribute in EXPRESSIONS
+    own = attribute.endswith("-expr") or (node.key == UNIT and attribute == "cond")
+    return node.namespace == PRIMA_NAMESPACE and own
+
+
 SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
 """Words that are names, too, in the ECMAScript of documents."""
 NAMING = {
-    **dict.fromkeys([*FORM_ITEMS, "var", "data"], "name"),
+    **dict.fromkeys([*FORM_ITEMS, UNIT, "var", "data"], "name"),
     **dict.fromkeys(["foreach", "said-foreach"], "item"),
 }
 """Elements that have a variable, and the attribute that names it."""

@@ -13,6 +13,7 @@ from prima.markup.reader import parse
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
+from prima.voicexml.arranging import is_unit
 from prima.voicexml.check import check_code, check_tree
 from prima.voicexml.site import Site
 from prima.voicexml.upgrade import VERSIONS, old, upgrade
@@ -113,6 +114,11 @@ def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Pag
             problem = Problem(node.attribute_place("id"), "error", "duplicate-id", message)
             page.problems.append(problem)
         page.dialogs.setdefault(name, node)
+    units = any(is_unit(one) for form in root.all("form") for one in form.nodes)
+    if units and broken(page) is None:
+        from prima.voicexml.sketched import unit_errors  # which looks at documents
+
+        page.problems += unit_errors(page)
     return page
 
 

@@ -72,7 +72,7 @@ class Events:
         local = self._scope(thrown)
         fitting: list[tuple[int, Node]] = []
         for handler in _handlers(context):
-            least = _number(handler)
+            least = handler_number(handler)
             if least <= self._seen(context, handler, thrown) and self.owner.content.holds(
                 handler, context, local
             ):
@@ -82,12 +82,21 @@ class Events:
 
     def takes(self, context: Context, thrown: Thrown) -> bool:
         """Whether a handler is there for an event that has not been counted; it is not then."""
+        try:
+            return self.taker(context, thrown) is not None
+        except Thrown:
+            return True
+
+    def taker(self, context: Context, thrown: Thrown) -> Node | None:
+        """The handler of an event that has not been counted; it is not then.
+
+        Raises:
+            Thrown: for a condition that fails.
+        """
         held = dict(context.counters)
         self._count(context, thrown)
         try:
-            return self.find(context, thrown) is not None
-        except Thrown:
-            return True
+            return self.find(context, thrown)
         finally:
             context.counters = held
 
@@ -105,14 +114,14 @@ class Events:
         Only those that a handler names make a difference.
         """
         where = _place(context)
-        named = {name for handler in _handlers(context) for name in _names(handler)}
+        named = {name for handler in _handlers(context) for name in handler_names(handler)}
         for name in named:
             if _takes(name, thrown):
                 context.counters[where, name] = context.counters.get((where, name), 0) + 1
 
     def _seen(self, context: Context, handler: Node, thrown: Thrown) -> int:
         """How often a handler's event has been counted; 0 where it does not take this one."""
-        where, names = _place(context), _names(handler)
+        where, names = _place(context), handler_names(handler)
         counts = [context.counters.get((where, one), 0) for one in names if _takes(one, thrown)]
         return max(counts, default=0)
 
@@ -165,12 +174,13 @@ def _handlers(context: Context) -> Iterator[Node]:
     """The handlers in scope, innermost first and each scope's in document order (5.2.4)."""
     item = context.item if context.item is not context.form else None
     root = context.root.root if context.root else None
-    for node in (item, context.form, context.page.root, root):
+    unit = context.unit if context.unit is not context.item else None
+    for node in (item, unit, context.form, context.page.root, root):
         if node is not None:
             yield from node.all(*HANDLERS)
 
 
-def _names(handler: Node) -> list[str]:
+def handler_names(handler: Node) -> list[str]:
     """The events that a handler takes; the empty name is for all."""
     if handler.tag != "catch":
         return [handler.tag]
@@ -187,7 +197,8 @@ def _place(context: Context) -> int:
     return context.item.index if context.item is not None else -1
 
 
-def _number(handler: Node) -> int:
+def handler_number(handler: Node) -> int:
+    """From which time on a handler takes its events, or a prompt is said; 1 where it is none."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1
 

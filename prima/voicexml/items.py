@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Json
+from prima.voicexml.arranging import parts_of
 from prima.voicexml.calls import Calls
 from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
@@ -124,7 +125,7 @@ class Items:
     def run_filled(self, context: Context, filled: list[Node]) -> Flow:
         """Run the filled elements that what was just filled has satisfied (2.4)."""
         assert context.form is not None
-        for node in context.form.nodes:
+        for node in parts_of(context.form):
             if node in filled:
                 context.item = node
                 for action in node.all("filled"):

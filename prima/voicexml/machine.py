@@ -12,7 +12,7 @@ from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
 from prima.script.evaluation import Scope, ScriptError
 from prima.values import milliseconds
-from prima.voicexml.arranging import Arranged, Queued, take_last_said
+from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
 from prima.voicexml.events import Events, thrown_of
@@ -34,6 +34,7 @@ from prima.voicexml.state import (
     Unasked,
     thrown_outside,
 )
+from prima.voicexml.units import Units
 
 if TYPE_CHECKING:
     from prima.voicexml.application import VoiceInterpreter
@@ -65,6 +66,7 @@ class Machine:
         self.documents = Documents(self)
         self.items_of = Items(self)
         self.events = Events(self)
+        self.units = Units(self)
         self.context: Context | None = None
 
     # What content needs -------------------------------------------------------------
@@ -135,11 +137,13 @@ class Machine:
         return queue
 
     def items(self, context: Context) -> list[Node]:
-        """The form items of the active dialog."""
+        """The form items of the active dialog: units, and behind each what it holds."""
         form = context.form
         if form is None:
             return []
-        return [form] if form.tag == "menu" else [one for one in form.nodes if one.tag in ITEMS]
+        if form.tag == "menu":
+            return [form]
+        return [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
 
     def local(self) -> Scope:
         """A new anonymous scope."""
@@ -242,7 +246,7 @@ class Machine:
     def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
         """One form or menu: initialise, then select, collect, process (appendix C)."""
         self.owner.count_step(form, DIALOG_STEPS)
-        context.form, context.item = form, None
+        context.form, context.item, context.unit = form, None, None
         context.counters, context.prompts, context.visited = {}, {}, set()
         context.quiet = False
         wanted = ""
@@ -250,25 +254,55 @@ class Machine:
             yield from self._initialise(context, form)
         except (Thrown, ScriptError) as error:
             wanted = yield from self._handled(context, error)
-        while True:
+        if heard is not None:
             self.count_step(form)
-            context.item = None
+            context.item = form if form.tag == "menu" else None
             try:
-                if heard is not None:
-                    taken, heard = heard, None
-                    context.item = form if form.tag == "menu" else None
-                    yield from self.items_of.process(context, taken)
-                    continue
-                item = self.select(context, wanted)
-                wanted = ""
-                if item is None:
-                    raise GoOut
-                context.item = item
-                yield from self.visit(context, item)
+                yield from self.items_of.process(context, heard)
             except GoItem as go:
                 wanted = go.name
             except (Thrown, ScriptError) as error:
                 wanted = yield from self._handled(context, error)
+        yield from self.visit_all(context, wanted)
+        raise GoOut
+
+    def visit_all(self, context: Context, wanted: str = "") -> Flow:
+        """Visit the items of the dialog, or of the unit that it is in, until none is left.
+
+        Args:
+            context: the dialog's.
+            wanted: the name of the item to begin with.
+
+        Raises:
+            GoItem: to an item outside of the unit.
+        """
+        unit, more = context.unit, True
+        while more:
+            self.count_step(unit or context.form or self.document.node)
+            context.item = None
+            try:
+                more = yield from self._visit_next(context, wanted)
+                wanted = ""
+            except GoItem as go:
+                wanted = go.name
+            except (Thrown, ScriptError) as error:
+                if self.units.left_by(context, error):
+                    raise
+                wanted = yield from self._handled(context, error)
+            if wanted and unit is not None and not holds(unit, wanted):
+                raise GoItem(wanted)
+
+    def _visit_next(self, context: Context, wanted: str) -> Generator[None, Resume, bool]:
+        """Visit the next item; gives whether anything was left to do."""
+        item = self.select(context, wanted)
+        if item is not None:
+            context.item = item
+            yield from self.visit(context, item, wanted)
+        elif context.unit is not None and self.queue and not self.gone:
+            yield from self.play(context)  # a unit ends when all of it has been said
+        else:
+            return False
+        return True
 
     def _handled(
         self, context: Context, error: Thrown | ScriptError
@@ -284,14 +318,14 @@ class Machine:
         """Make a form's variables and those of its items, in document order (2.1.6.1)."""
         context.dialog = self.engine.named("dialog")
         params, context.params = context.params or Params(self.engine.scope()), None
-        for node in form.nodes if form.tag == "form" else ():
+        for node in parts_of(form) if form.tag == "form" else ():
             name = node.get("name")
             if node.tag == "var" and name in params.names:
                 del params.names[name]
                 self.engine.hand(context.dialog, name, params.values)
             elif node.tag in ("var", "script", "data"):
                 yield from self.documents.declare(node, context.dialog, context)
-            elif node.tag in ITEMS:
+            elif node.tag in ITEMS or is_unit(node):
                 self._declare_item(context, node)
         for name in params.names:
             message = f'{source(form)}: no variable of the form is the parameter "{name}"'
@@ -309,16 +343,25 @@ class Machine:
                 context.visited.add(item.index)
 
     def select(self, context: Context, wanted: str) -> Node | None:
-        """The item that a goto names, else the first unfilled one whose condition holds."""
-        items = self.items(context)
+        """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
+        items = self._next_to(context)
         if wanted:
-            return next((item for item in items if item.get("name") == wanted), None)
+            return next((item for item in items if holds(item, wanted)), None)
         for item in items:
             if item.tag == "menu":
                 return item
             if not self.guarded(context, item) and self.content.holds(item, context, self.local()):
                 return item
         return None
+
+    def _next_to(self, context: Context) -> list[Node]:
+        """The items that may be visited next: of the unit, or of the dialog with its units."""
+        if context.unit is not None:
+            return [one for one in context.unit.nodes if one.tag in ITEMS]
+        form = context.form
+        if form is None or form.tag == "menu":
+            return self.items(context)
+        return [one for one in form.nodes if one.tag in ITEMS or is_unit(one)]
 
     def guarded(self, context: Context, item: Node) -> bool:
         """Whether an item's variable is defined, so that it is not visited."""
@@ -327,8 +370,12 @@ class Machine:
             return self.engine.defined(context.dialog, name)
         return item.index in context.visited
 
-    def visit(self, context: Context, item: Node) -> Flow:
-        """Collect: prompts, then what the item waits for."""
+    def visit(self, context: Context, item: Node, wanted: str = "") -> Flow:
+        """Collect: prompts, then what the item waits for; in a unit perhaps an item that is wanted."""
+        if is_unit(item):
+            inner = wanted if item.get("name") != wanted else ""
+            yield from self.units.span(context, item, inner)
+            return
         quiet, context.quiet = context.quiet, False
         if item.tag == "block":
             self.items_of.mark(context, item)

@@ -22,6 +22,8 @@ class Resume:
 
     data: Data = field(default_factory=dict)
     event: Event | None = None
+    outside: bool = False
+    """Whether the event is none of what was waited for, but has come meanwhile."""
 
 
 Flow = Generator[None, Resume, None]
@@ -74,6 +76,8 @@ class Context:
     dialog: Scope
     root: Page | None = None
     form: Node | None = None
+    unit: Node | None = None
+    """The ``p:iu`` around form items in which the dialog is (rule U5)."""
     item: Node | None = None
     counters: dict[tuple[int, str], int] = field(default_factory=dict)
     prompts: dict[int, int] = field(default_factory=dict)
@@ -95,12 +99,18 @@ class Thrown(Exception):
     shared = False
     """Whether it is of the robot or its surroundings, for every application: only handlers that
     name it take it, as VoiceXML knows no such events (5.2)."""
+    outside = False
+    """Whether it has come from outside while the application waited for something else."""
 
     def __init__(self, name: str, message: str = "", source: str = "") -> None:
         super().__init__(name)
         self.name = name
         self.message = message
         self.source = source
+
+
+class UnitOver(Thrown):
+    """A unit around form items has taken longer than its longest duration (rule U5)."""
 
 
 class HungUp(Thrown):
@@ -116,7 +126,9 @@ class HungUp(Thrown):
 def thrown_outside(resume: Resume) -> Thrown:
     """The event that has ended a wait."""
     assert resume.event is not None
-    return thrown_of_event(resume.event)
+    thrown = thrown_of_event(resume.event)
+    thrown.outside = thrown.outside or resume.outside
+    return thrown
 
 
 def thrown_of_event(event: Event) -> Thrown:

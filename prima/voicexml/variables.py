@@ -12,9 +12,8 @@ from prima.errors import Problem, did_you_mean
 from prima.markup.tree import Node
 from prima.names import IDENTIFIER, assigned_names, declared_names, free_names
 from prima.script.compiling import compiled
-from prima.voicexml.check import NAMING
+from prima.voicexml.check import NAMING, is_code
 from prima.voicexml.document import Page
-from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE
 
 ALWAYS = frozenset(
     [
@@ -86,8 +85,7 @@ def _declared(page: Page, top: Node, text: Text) -> set[str]:
 def _used(top: Node, known: set[str]) -> Iterator[Problem]:
     for node in top.walk():
         for attribute in node.attributes:
-            is_code = node.namespace == NAMESPACE and attribute in EXPRESSIONS
-            if is_code or (node.namespace == PRIMA_NAMESPACE and attribute.endswith("-expr")):
+            if is_code(node, attribute):
                 yield from _in_code(node, attribute, known)
         if node.key == "assign":
             yield from _listed(node, "name", [node.get("name")], known)

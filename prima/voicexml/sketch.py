@@ -1,0 +1,308 @@
+"""A VoiceXML document as the values that checks of PRIMA's own language look at.
+
+What is found out without running anything is found out of both languages in the same way: what
+units reach (U5), how long they speak, what is told twice (O3). A sketch has what such checks need
+and nothing else: of a prompt its words, of a question that it asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from urllib.parse import urldefrag
+
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Block,
+    CommandTemplate,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Filled,
+    Foreach,
+    Form,
+    Goto,
+    Handler,
+    If,
+    Item,
+    Pause,
+    Prompt,
+    Run,
+    StepTemplate,
+    Subdialog,
+    Text,
+    Throw,
+    Unit,
+)
+from prima.interpreter.units import Finder, Reach, thrown_by
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
+from prima.voicexml.content import ITEMS
+from prima.voicexml.cues import break_ms
+from prima.voicexml.document import Page
+from prima.voicexml.events import HANDLERS, handler_names, handler_number
+from prima.voicexml.prompts import SILENT, SPOKEN
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+
+ASKING = ("field", "initial", "record", "menu")
+FETCHING = ("goto", "submit", "data", "script")
+"""Elements of content while whose fetch something may be played."""
+LEAVING = ("exit", "return", "disconnect")
+FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")
+"""What a question's grammars, and what is fetched, may throw beside what PRIMA's language has."""
+UNIVERSAL = ("help", "cancel", "exit")
+
+
+class Sketch:
+    """One document, with the handlers that it has from its application root."""
+
+    def __init__(self, page: Page, root: Page | None) -> None:
+        self.page = page
+        self._wider = [page.root, *([root.root] if root is not None else [])]
+        self._units: dict[int, tuple[Form, Unit]] = {}
+        handlers = [one for node in self._wider for one in self._handlers(node)]
+        forms = {name: self._form(name, node) for name, node in page.dialogs.items()}
+        self.document = Document(
+            "", "", page.lang, page.uri, forms, tuple(handlers), (), (), (), {}, page.root
+        )
+        self._finder = Finder(self.document, self._thrown)
+
+    @property
+    def units(self) -> list[tuple[Form, Unit]]:
+        """The units around form items, each with its form."""
+        return [*self._units.values()]
+
+    def reach(self, unit: Node | Unit) -> Reach:
+        """All that may run in a unit."""
+        node = unit.node if isinstance(unit, Unit) else unit
+        return self._finder.reach(*self._units[node.index])
+
+    # Dialogs ------------------------------------------------------------------------------
+
+    def _form(self, name: str, node: Node) -> Form:
+        items = [node] if node.tag == "menu" else node.nodes
+        made = [self._item(one) for one in items if _is_item(one)]
+        filled = [self._filled(one) for one in node.all("filled")]
+        if node.all("grammar"):  # an answer may fill any item of the form
+            inner = [
+                item for one in made for item in (one.items if isinstance(one, Unit) else [one])
+            ]
+            filled += [one for item in inner if isinstance(item, Field) for one in item.filled]
+        handlers = () if node.tag == "menu" else self._handlers(node)
+        form = Form(name, tuple(made), handlers, (), (), (), tuple(filled), {}, node)
+        self._units |= {one.node.index: (form, one) for one in made if isinstance(one, Unit)}
+        return form
+
+    def _item(self, node: Node) -> Item:
+        name = node.get("name") or f"#{node.index}"
+        expr, cond = _code(node, "expr"), _code(node, "cond")
+        properties: dict[str, Json] = {}
+        own = (name, expr, cond, self._handlers(node), properties, node, None)
+        if is_unit(node):
+            inner = tuple(self._item(one) for one in node.nodes if _is_item(one))
+            return Unit(*own, items=inner, longest=longest_of(node))
+        if node.tag == "block":
+            return Block(*own, content=self._acts(node.content))
+        filled = tuple(self._filled(one) for one in node.all("filled"))
+        if node.tag not in ASKING:
+            return Subdialog(*own, filled=filled)
+        # Commands among what it asks: they are done before the question.
+        asked = tuple(one for one in self._acts(node.content) if isinstance(one, Run))
+        filled = (*filled, Filled("any", (), asked, node))
+        return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
+
+    def _filled(self, node: Node) -> Filled:
+        names = tuple(node.get("namelist").split())
+        return Filled(node.get("mode") or "all", names, self._acts(node.content), node)
+
+    def _handlers(self, holder: Node) -> tuple[Handler, ...]:
+        return tuple(
+            Handler(
+                tuple(handler_names(node)),
+                _code(node, "cond"),
+                handler_number(node),
+                None,
+                self._acts(node.content),
+                node,
+            )
+            for node in holder.all(*HANDLERS)
+        )
+
+    def _prompts(self, item: Node) -> Iterator[Prompt]:
+        for pieces, node in _spoken(item.content):
+            words = text_of(pieces)
+            if words and node is not None:
+                count = handler_number(node)
+                yield Prompt(words, count, _code(node, "cond"), None, None, node)
+            elif words:
+                yield Prompt(words, 1, None, None, None, item)
+
+    # Content ------------------------------------------------------------------------------
+
+    def _acts(self, content: Iterable[Node | str]) -> tuple[Act, ...]:
+        made: list[Act] = []
+        for pieces, node in _spoken(content):
+            if pieces:
+                made += self._saying(pieces, node)
+            elif node is not None:
+                made += self._act(node)
+        return tuple(made)
+
+    def _saying(self, pieces: list[Node | str], node: Node | None) -> Iterator[Act]:
+        """What is said, and the Commands of the robot among it."""
+        said = node or next((one for one in pieces if isinstance(one, Node)), None)
+        words = text_of(pieces)
+        if words:
+            yield _run([_speak(words, said or self.page.root)])
+        for piece in pieces:
+            commands = commands_in(piece) if isinstance(piece, Node) else []
+            if commands:
+                yield _run(commands)
+
+    def _act(self, node: Node) -> Iterator[Act]:
+        if node.namespace == PRIMA_NAMESPACE:
+            yield _run(commands_in(node))
+            return
+        if node.tag in FETCHING and self._plays(node):
+            yield _run([_speak((Expression("", node, "fetchaudio"),), node)])
+        match node.tag:
+            case "if":
+                branches = [(cond, self._acts(part)) for cond, part in _divided(node)]
+                yield If(tuple(branches), node)
+            case "foreach":
+                yield Foreach(
+                    node.get("item"),
+                    Expression(node.get("array"), node, "array"),
+                    self._acts(node.content),
+                    node,
+                )
+            case "assign":
+                yield Assign(node.get("name"), Expression(node.get("expr"), node), node)
+            case "throw":
+                event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
+                yield Throw(event, "", node)
+            case "goto" | "submit":
+                item = node.get("nextitem") or _code(node, "expritem")
+                yield Goto(None if item else self._target(node), item, node)
+            case tag if tag in LEAVING:
+                yield Exit(node)
+
+    def _plays(self, node: Node) -> bool:
+        """Whether something is played while an element's resource is fetched."""
+        if node.get("fetchaudio"):
+            return True
+        properties = [one for wider in self._wider for one in wider.walk() if one.key == "property"]
+        return any(one.get("name") == "fetchaudio" for one in properties)
+
+    def _target(self, node: Node) -> str | Expression | None:
+        """The dialog of this document that an element leads to, if it leads to one."""
+        if "expr" in node.attributes:
+            return Expression(node.get("expr"), node)
+        uri = node.get("next").strip()
+        if uri[:1] == "#":
+            return uri[1:]
+        base, name = urldefrag(self.page.resolve(uri, node) if uri else "")
+        if base.startswith("service:") and name in self.page.dialogs:
+            return name
+        return name or next(iter(self.page.dialogs), "") if base == self.page.uri else None
+
+    # Events -------------------------------------------------------------------------------
+
+    def _thrown(self, item: Item) -> Iterator[str | None]:
+        """What visiting an item may throw by itself: also by what the user says to a link."""
+        yield from thrown_by(item)
+        yield from FAILURES
+        if not isinstance(item, Field):
+            return
+        yield "maxspeechtimeout"
+        around = [item.node, *self._wider]
+        around += [form.node for form, unit in self._units.values() if item in unit.items]
+        for node in around:
+            for link in node.all("link"):
+                if link.attributes.keys() & {"event", "eventexpr"}:
+                    yield link.get("event") or None
+            if any(one.get("name") == "universals" for one in node.all("property")):
+                yield from UNIVERSAL
+
+
+def text_of(pieces: Iterable[Node | str]) -> Text:
+    """What is said of some pieces of a prompt, with its pauses; nothing of blanks alone."""
+    found = tuple(_words(pieces))
+    return found if any(not isinstance(one, str) or one.strip() for one in found) else ()
+
+
+def _words(pieces: Iterable[Node | str]) -> Iterator[str | Expression | Pause]:
+    for piece in pieces:
+        if isinstance(piece, str):
+            yield piece
+        elif piece.tag == "break":
+            yield Pause(break_ms(piece.get("time"), piece.get("strength"), piece.get("size")))
+        elif piece.tag in ("value", "enumerate") or (piece.tag == "audio" and not piece.content):
+            yield Expression(piece.get("expr"), piece)
+        elif piece.tag == "sub":
+            yield piece.get("alias")
+        elif piece.namespace != PRIMA_NAMESPACE and piece.tag not in SILENT:
+            yield from _words(piece.content)
+
+
+def commands_in(piece: Node) -> list[CommandTemplate]:
+    """The Commands of the robot in an element, itself included, in document order."""
+    return [
+        command_of(node)
+        for node in piece.walk()
+        if node.namespace == PRIMA_NAMESPACE and node.tag not in (*ARRANGING, "param")
+    ]
+
+
+def command_of(node: Node) -> CommandTemplate:
+    """A Command's element as PRIMA's language has it, without its arguments."""
+    name = node.get("type") if node.tag == "command" else node.tag
+    return CommandTemplate(name, {}, text_of(node.content) or None, False, (), (), node)
+
+
+def _speak(words: Text, node: Node) -> CommandTemplate:
+    return CommandTemplate("speak", {}, words, False, (), (), node)
+
+
+def _run(commands: list[CommandTemplate]) -> Run:
+    steps = [StepTemplate(one, (index - 1,) if index else ()) for index, one in enumerate(commands)]
+    return Run(tuple(steps), commands[0].node)
+
+
+def _is_item(node: Node) -> bool:
+    return node.tag in ITEMS or node.tag == "menu" or is_unit(node)
+
+
+def _code(node: Node, attribute: str) -> Expression | None:
+    return (
+        Expression(node.get(attribute), node, attribute) if attribute in node.attributes else None
+    )
+
+
+def _spoken(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | str], Node | None]]:
+    """Content as what is said, with its prompt where it has one, and as other elements alone."""
+    loose: list[Node | str] = []
+    for piece in content:
+        if isinstance(piece, str) or piece.tag in SPOKEN - {"prompt"}:
+            loose.append(piece)
+            continue
+        if loose:
+            yield loose, None
+            loose = []
+        yield ([*piece.content] if piece.tag == "prompt" else []), piece
+    if loose:
+        yield loose, None
+
+
+def _divided(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]:
+    """The branches of an ``if``, each with its condition; that of ``else`` is none."""
+    cond, part = _code(node, "cond"), list[Node | str]()
+    for child in node.content:
+        if isinstance(child, Node) and child.tag in ("elseif", "else"):
+            yield cond, part
+            cond, part = _code(child, "cond"), []
+        else:
+            part.append(child)
+    yield cond, part

@@ -1,0 +1,79 @@
+"""What is found of a VoiceXML document as it is found of one in PRIMA's own language.
+
+Units around form items and what they reach (U4, U5), how long units speak, what is told twice (O3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from prima.commands import TABLE_4_2, CommandType
+from prima.errors import Problem
+from prima.interpreter.repeats import told_twice
+from prima.interpreter.selection import takes
+from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
+from prima.markup.tree import Node
+from prima.voicexml.arranging import UNIT, is_unit
+from prima.voicexml.document import Page
+from prima.voicexml.sketch import Sketch, commands_in
+
+PREFIX = "p:"
+OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout", "connection")
+"""What begins an event that no part of what is being said can be told twice by: VoiceXML's own."""
+REMEDY = "Leave out the <goto>: the dialog goes on then. Or give what is said a cond."
+LATER = " At run time it is error.semantic."
+
+
+def unit_errors(page: Page) -> list[Problem]:
+    """Commands of a document that cannot stand in its units, or that these cannot reach (U5)."""
+    return list(_unit_problems(Sketch(page, None)))
+
+
+def check_sketched(page: Page, root: Page | None) -> Iterator[Problem]:
+    """What is no error of a document, but that its author wants to know."""
+    sketch = Sketch(page, root)
+    told = {one.place for one in page.problems}
+    for problem in _unit_problems(sketch) if root is not None else ():
+        if problem.place not in told:  # a handler of the root's, which is another's document
+            yield problem._replace(severity="warning", remedy=problem.remedy + LATER)
+    for _, unit in sketch.units:
+        yield from long_unit(unit.node, unit_speaks(unit, page.lang))
+    for node in page.root.walk():
+        if is_unit(node) and node.key != UNIT:
+            yield from long_unit(node, speak(commands_in(node), page.lang))
+    own = {*OWN, *_thrown_in(page.root), *(_thrown_in(root.root) if root is not None else ())}
+    yield from told_twice(sketch.document, lambda name: _is_foreign(name, own), REMEDY)
+
+
+def added_in_units(page: Page, commands: Mapping[str, CommandType]) -> Iterator[Problem]:
+    """Commands that a robot adds and that cannot stand in the units that they stand in."""
+    added = {name: row for name, row in commands.items() if name not in TABLE_4_2}
+    for problem in _unit_problems(Sketch(page, None), added):
+        yield problem._replace(severity="warning", remedy=problem.remedy + LATER)
+    for node in page.root.walk():
+        for one in commands_in(node) if is_unit(node) and node.key != UNIT else ():
+            found = unit_problem(Reached(one, True), added.get(one.type), prefix=PREFIX)
+            if found is not None:
+                yield found._replace(severity="warning", remedy=found.remedy + LATER)
+
+
+def _unit_problems(
+    sketch: Sketch, commands: Mapping[str, CommandType] = TABLE_4_2
+) -> Iterator[Problem]:
+    for _, unit in sketch.units:
+        for one in sketch.reach(unit).commands:
+            problem = unit_problem(one, commands.get(one.command.type), unit, PREFIX)
+            if problem is not None:
+                yield problem
+
+
+def _is_foreign(name: str, own: set[str]) -> bool:
+    """Whether a handler that names an event waits for what is not of the dialog itself."""
+    return bool(name) and not any(takes(one, name) for one in own)
+
+
+def _thrown_in(root: Node) -> Iterator[str]:
+    """The events that a document throws itself: also by what the user says or chooses."""
+    for node in root.walk():
+        if node.tag in ("throw", "link", "choice", "return") and node.get("event"):
+            yield node.get("event")

@@ -1,0 +1,105 @@
+"""Units around form items (rule U5): what is asked and said in one is one Atomic Behavior.
+
+An event that is thrown in a unit is handled in it, wherever the handler stands. One that comes
+from outside is handled in it by the handlers of its items and its own alone; any other handler
+leaves it first, as VoiceXML does one thing at a time. What is left to do in it is then another
+unit, once the form goes on.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.frame import GoOut
+from prima.interpreter.units import Reach
+from prima.markup.tree import Node
+from prima.script.evaluation import ScriptError
+from prima.voicexml.arranging import longest_of
+from prima.voicexml.content import ITEMS
+from prima.voicexml.document import Page
+from prima.voicexml.events import HANDLERS
+from prima.voicexml.sketch import Sketch
+from prima.voicexml.state import Context, Flow, HungUp, Leave, Thrown, UnitOver
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+
+class Units:
+    """Opens and closes the units of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+        self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
+        """What each unit reaches, with the application root that was its document's then."""
+
+    def span(self, context: Context, unit: Node, wanted: str) -> Flow:
+        """Visit the items of a unit, which is left by whatever way.
+
+        Args:
+            context: that of its dialog.
+            unit: its element.
+            wanted: the name of the item in it to begin with, if a goto names one.
+        """
+        if self.owner.queue:
+            yield from self.owner.play(context)  # what was said before is no part of it
+        app, items = self.owner.owner, self.owner.items_of
+        app.open_unit(self._reach(context, unit), longest_of(unit), unit)
+        context.unit = unit
+        items.mark(context, unit)
+        try:
+            yield from self.owner.visit_all(context, wanted)
+            items.mark(context, unit)  # a clear in it makes its items be visited again, not itself
+        except (Leave, GoOut) as way:
+            if not (isinstance(way, GoOut) and way.failed):
+                yield from self._say_rest(context)
+            raise
+        finally:
+            context.item, context.unit = unit, None
+            app.close_unit()
+
+    def _say_rest(self, context: Context) -> Flow:
+        """What is said before a unit is left belongs to it (O3); nothing breaks it off."""
+        if not self.owner.queue or self.owner.gone:
+            return
+        self.owner.owner.leaving = True
+        try:
+            yield from self.owner.play(context)
+        finally:
+            self.owner.owner.leaving = False
+
+    def left_by(self, context: Context, error: Thrown | ScriptError) -> bool:
+        """Whether an event leaves the unit that the dialog is in before it is handled."""
+        unit = context.unit
+        if unit is None or isinstance(error, UnitOver):
+            return unit is not None
+        if isinstance(error, ScriptError) or not error.outside:
+            return False
+        if not isinstance(error, HungUp) and self._takes(context, unit, error):
+            return False
+        if any(not self.owner.guarded(context, one) for one in unit.all(*ITEMS)):
+            self._unmark(context, unit)
+        return True
+
+    def _takes(self, context: Context, unit: Node, thrown: Thrown) -> bool:
+        """Whether a handler that stands in a unit takes an event, or nobody can tell."""
+        try:
+            handler = self.owner.events.taker(context, thrown)
+        except Thrown:
+            return True
+        inside = [unit, *([context.item] if context.item is not None else [])]
+        return any(handler is one for node in inside for one in node.all(*HANDLERS))
+
+    def _unmark(self, context: Context, unit: Node) -> None:
+        """Let the form visit a unit again."""
+        context.visited.discard(unit.index)
+        if unit.get("name"):
+            self.owner.engine.unset(context.dialog, unit.get("name"))
+
+    def _reach(self, context: Context, unit: Node) -> Reach:
+        """What may be asked for in a unit, by all handlers that it can reach."""
+        kept = self._reached.get(id(unit))
+        if kept is None or kept[1] is not context.root:
+            reach = Sketch(context.page, context.root).reach(unit)
+            kept = self._reached[id(unit)] = unit, context.root, reach
+        return kept[2]
