@@ -193,21 +193,41 @@ class _Voice(_Author):
         if self.maybe(0.2):
             items.append('<subdialog name="s" src="more.vxml"/>' if name != "more" else "")
         self.random.shuffle(items)
+        if self.maybe(0.3):
+            items.insert(self.random.randint(0, len(items)), self.unit())
         end = "<return/>" if name == "more" else self.goto()
         return f'<form id="{name}">{"".join(items)}<block>{end}</block></form>'
+
+    def unit(self) -> str:
+        """A unit around form items (U5)."""
+        items = [f"<block>{self.still()}</block>"]
+        if self.maybe(0.7):
+            items.append(self.field("u"))
+        if self.maybe(0.2):
+            items.append(f'<catch event="{self.random.choice(EVENTS)}">{self.still()}</catch>')
+        self.random.shuffle(items)
+        return f'<p:iu longest="{self.random.choice((2, 20))}s">{"".join(items)}</p:iu>'
+
+    def still(self) -> str:
+        """Content that may stand in a unit."""
+        return "".join(
+            self.random.choice((self.words, lambda: prefixed(self.motion(MOTIONS[:4]))))()
+            for _ in range(self.random.randint(1, 3))
+        )
 
     def goto(self) -> str:
         return f'<goto next="#{self.random.choice(self.forms)}"/>' if self.maybe(0.5) else ""
 
-    def field(self) -> str:
-        prompt = f'<prompt timeout="2s">{self.prompt()}</prompt>'
+    def field(self, name: str = "q") -> str:
+        asked = self.prompt() if name == "q" else self.words()  # a unit holds no loops
+        prompt = f'<prompt timeout="2s">{asked}</prompt>'
         leave = "<exit/>"
         handlers = ""
         if self.maybe(0.6):
             handlers = f'<noinput count="2">{self.words()}{leave}</noinput>'
             handlers += f"<nomatch>{self.words()}<reprompt/></nomatch>"
         said = f"<filled>{self.words()}</filled>"
-        return f'<field name="q" type="boolean">{prompt}{said}{handlers}</field>'
+        return f'<field name="{name}" type="boolean">{prompt}{said}{handlers}</field>'
 
     def prompt(self) -> str:
         parts = [self.words()]
@@ -221,12 +241,16 @@ class _Voice(_Author):
         return " ".join(parts)
 
     def command(self) -> str:
-        made = self.motion() if self.maybe(0.85) else self.motion(LOOPS[:1])
-        return made.replace("</", "</p:").replace("<", "<p:").replace("<p:/p:", "</p:")
+        return prefixed(self.motion() if self.maybe(0.85) else self.motion(LOOPS[:1]))
 
     def content(self) -> str:
         kinds = (lambda: f"<prompt>{self.prompt()}</prompt>", self.words, self.command)
         return "".join(self.random.choice(kinds)() for _ in range(self.random.randint(1, 3)))
+
+
+def prefixed(made: str) -> str:
+    """Commands of PRIMA's language as they stand in VoiceXML."""
+    return made.replace("</", "</p:").replace("<", "<p:").replace("<p:/p:", "</p:")
 
 
 def _scenario(random: Random) -> str:

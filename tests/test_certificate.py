@@ -328,6 +328,69 @@ def test_a_unit_of_voicexml_ends_after_a_minute_as_in_primas_language(tmp_path: 
     assert any(one.get("event") == "error.unit.timeout" for one in records)
 
 
+def in_unit(inner: str, longest: str = "20s", around: str = "") -> str:
+    return f'<form><p:iu longest="{longest}">{inner}</p:iu>{around}</form>'
+
+
+ASKED = '<field name="a" type="boolean"><prompt>Well?</prompt>{}</field>'
+
+
+def voice_parts(folder: Path, body: str) -> list[Price]:
+    """What a VoiceXML document is said to cost."""
+    _, _, ea = voiced(folder, body)
+    document, problems = read_application(ea, read_file(Path(ea)))
+    assert [str(one) for one in problems] == []
+    return prices(document, PROFILE)
+
+
+def test_a_unit_around_items_of_voicexml_costs_its_longest(tmp_path: Path) -> None:
+    inner = "<block>One.</block>" + ASKED.format("<filled>Fine.</filled><noinput>Hm?</noinput>")
+    (unit,) = voice_parts(tmp_path, in_unit(inner))
+    assert (unit.what, unit.devices) == ("unit", {"speaker", "speech-recognition"})
+    said = lasting("I did not understand.")  # the longest that may be said before it is asked again
+    assert unit.lasts == 20_000 + said + 5000 + 1
+    assert unit.engages and unit.listens and unit.known
+    assert {one.what for one in unit.inner} == {"speak", "question"}
+
+
+def test_a_unit_around_blocks_of_voicexml_costs_their_sum(tmp_path: Path) -> None:
+    inner = '<block>One.</block><block><p:gesture name="bow"/>Two.</block>'
+    (unit,) = voice_parts(tmp_path, in_unit(inner))
+    assert unit.lasts == lasting("One.") + 1500 + lasting("Two.")
+    outer = '<catch event="x">Three.</catch>'
+    (three, more) = voice_parts(
+        tmp_path, in_unit(f'{inner}<block><throw event="x"/></block>') + outer
+    )
+    assert (more.what, more.lasts) == ("unit", 20_000 + 1500), "nobody knows how often it is thrown"
+    assert (three.what, three.lasts) == ("speak", lasting("Three."))
+
+
+def test_a_unit_of_voicexml_may_end_long_after_its_time(tmp_path: Path) -> None:
+    words = SPOKEN * 10
+    inner = ASKED.format("") + "<block>One.</block>"
+    (said, unit) = voice_parts(tmp_path, in_unit(inner) + f"<noinput>{words}<exit/></noinput>")
+    assert said.lasts == lasting(words)
+    assert unit.lasts == 20_000 + lasting(words) + 5001, "that is said before it is asked again"
+
+
+@pytest.mark.parametrize(
+    ("inner", "most"),
+    [
+        ("<block>One.</block>" + ASKED.format(""), 30),
+        (f"<block>{SPOKEN}<prompt>So.</prompt></block>", 10),
+        (f"<block>{SPOKEN * 8}</block>", 40),
+        ("<block><foreach item='i' array='[1,2,3,4,5,6,7,8]'>One and two.</foreach></block>", 22),
+    ],
+)
+def test_what_a_unit_of_voicexml_costs_is_true(tmp_path: Path, inner: str, most: int) -> None:
+    found, fa, ea = voiced(tmp_path, in_unit(inner, around="<error><exit/></error>"))
+    (delay,) = found.delays
+    at = TOUCH.replace("1s", "10ms")
+    needed = waited(run(tmp_path, fa, ea, at, "99s")) * 1000
+    assert 1000 < needed <= delay.lasts + 10 <= most * 1000
+    assert found.longest_unit is not None and found.longest_unit.node.tag == "iu"
+
+
 def test_a_reaction_of_voicexml_begins_with_all_branches_of_a_par(tmp_path: Path) -> None:
     par = '<p:par><p:seq><p:speak>Oh.</p:speak><p:gesture name="nod"/></p:seq><p:turn angle="5"/></p:par>'
     body = f'<form><block/></form><catch event="bell">{par}</catch>'

@@ -499,6 +499,84 @@ def told_twice_in(body: str) -> list[Problem]:
     return [one for one in problems if one.code == "told-twice"]
 
 
+ASKS_VOICE = "<form id='a'><field name='x' type='boolean'><prompt>Well?</prompt>{}</field>{}</form>"
+BACK_VOICE = "<form id='b'>{}<block><goto next='#a'/></block></form>"
+TOUCHED = "<catch event='touch'>{}<goto next='#{}'/></catch>"
+HANDLED = "<catch event='message'>{}<goto next='#a'/></catch>"
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (ASKS_VOICE.format("", TOUCHED.format("", "a")), 'the form "a" asks this (line 2)'),
+        (ASKS_VOICE.format("", TOUCHED.format("Oh.", "b")) + BACK_VOICE.format(""), "asks this"),
+        (ASKS_VOICE.format("<catch event='touch.head'><goto next='#a'/></catch>", ""), "touch.head"),
+        (ASKS_VOICE.format("", "") + TOUCHED.format("", "a"), 'If "touch" comes'),
+        ("<form id='a'><block>Hi.</block>" + TOUCHED.format("", "a") + "</form>", "says this (line 2)"),
+        ("<form id='a'><block>Hi.</block><catch event='touch'><if cond='true'><goto next='#a'/></if>"
+         "</catch></form>", "says this"),
+        ("<form><block><prompt>Hi.</prompt></block><catch event='touch'><goto next='main.vxml'/></catch>"
+         "</form>", "the form #1 says this (line 2), it is told twice: this leads back to the form's"),
+        ("<menu id='a'>Well? <choice next='#a'>yes</choice>" + TOUCHED.format("", "a") + "</menu>",
+         'the menu "a" asks this (line 2), it is told twice: this leads back to the menu\'s beginning'),
+        ("<form id='a'><p:iu xmlns:p='urn:prima:dialogue:1'><block>Hi.</block></p:iu>"
+         + TOUCHED.format("", "a") + "</form>", "says this"),
+        (ASKS_VOICE.format("", "<catch event='touch'><submit next='service:s#a'/></catch>"), "asks"),
+    ],
+    ids=["at once", "by way of another", "in a field", "of the document", "a sentence", "in an if",
+         "by its file", "a menu", "in a unit", "by a submit"],
+)  # fmt: skip
+def test_voicexml_is_warned_of_what_it_tells_twice(tmp_path: Path, body: str, says: str) -> None:
+    (problem,) = told_twice_by(tmp_path, body)
+    assert problem.severity == "warning" and says in problem.message
+    assert problem.remedy.startswith("Leave out the <goto>: the dialog goes on then.")
+    at = f"<vxml>\n{body}".splitlines()[problem.place.line - 1][problem.place.column - 1 :]
+    assert at.startswith(("<goto", "<submit"))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ASKS_VOICE.format("", "<catch event='touch'>Oh. <reprompt/></catch>"),
+        ASKS_VOICE.format("", TOUCHED.format("", "b")) + "<form id='b'/>",
+        ASKS_VOICE.format("<noinput><goto next='#a'/></noinput>", ""),
+        ASKS_VOICE.format("<catch><goto next='#a'/></catch>", ""),
+        ASKS_VOICE.format("<error><goto next='#a'/></error>", ""),
+        ASKS_VOICE.format("<catch event='connection.disconnect'><goto next='#a'/></catch>", ""),
+        ASKS_VOICE.format("", TOUCHED.format("", "b"))
+        + BACK_VOICE.format("<field name='y' type='boolean'><prompt>So?</prompt></field>"),
+        ASKS_VOICE.replace("<prompt>", "<prompt cond='!first'>").format("", TOUCHED.format("", "a")),
+        ASKS_VOICE.format("", HANDLED.format("<assign name='n' expr='session.event.data.text'/>")),
+        ASKS_VOICE.format("", "<link event='again' dtmf='1'/><catch event='again'><goto next='#a'/></catch>"),
+        ASKS_VOICE.format("<filled><throw event='touch'/></filled>", TOUCHED.format("", "a")),
+        "<form id='a'><block><log>Hi.</log></block>" + TOUCHED.format("", "a") + "</form>",
+        "<form id='a'><block cond='!first'>Hi.</block>" + TOUCHED.format("", "a") + "</form>",
+    ],
+    ids=["stays", "goes and ends", "own event", "any event", "error", "hangup", "asks between", "cond",
+         "news", "asked for", "thrown", "silent", "a condition"],
+)  # fmt: skip
+def test_voicexml_may_tell_again_what_is_meant_so(tmp_path: Path, body: str) -> None:
+    assert told_twice_by(tmp_path, body) == []
+
+
+def test_a_handler_of_the_application_root_makes_its_leaf_tell_twice(tmp_path: Path) -> None:
+    (tmp_path / "root.vxml").write_text(VXML.format("", TOUCHED.format("", "a")))
+    leaf = VXML.format(' application="root.vxml"', ASKS_VOICE.format("", ""))
+    (tmp_path / "leaf.vxml").write_text(leaf)
+    found = loading.validate([tmp_path / "leaf.vxml"])
+    (problem,) = [one for one in found if one.code == "told-twice"]
+    assert problem.place.file.endswith("root.vxml")
+
+
+def told_twice_by(folder: Path, body: str) -> list[Problem]:
+    """What a VoiceXML document is warned of; its content stands in line 2."""
+    head = "<var name='first'/><var name='n'/>"
+    (folder / "main.vxml").write_text(VXML.format("", f"\n{body}{head}"))
+    found = loading.validate([folder / "main.vxml"])
+    assert [str(one) for one in found if one.severity == "error"] == []
+    return [one for one in found if one.code == "told-twice"]
+
+
 # Documents of VoiceXML together ---------------------------------------------------------
 
 VXML = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"{}>{}</vxml>'

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
+from prima.voicexml.arranging import UNIT
 from prima.voicexml.events import HANDLERS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
@@ -22,6 +23,7 @@ def holders(node: Node) -> Iterator[Node]:
     """An element and all in it that may say something themselves."""
     if node.tag in HOLDING:
         yield node
+    if node.tag in HOLDING or node.key == UNIT:
         for inner in node.nodes:
             yield from holders(inner)
 
@@ -38,13 +40,6 @@ def commands_in(node: Node) -> Iterator[Node]:
 def says(pieces: Iterable[Node | str]) -> bool:
     """Whether there is anything to say among some pieces."""
     return any(isinstance(one, Node) or one.strip() for one in pieces)
-
-
-def names_of(handler: Node) -> list[str]:
-    """The events that a handler names; of one that names none, those that it takes."""
-    if handler.tag != "catch":
-        return [handler.tag]
-    return [name.rstrip(".") for name in handler.get("event").split()] or [""]
 
 
 def is_foreign(name: str) -> bool:

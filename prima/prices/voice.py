@@ -7,18 +7,16 @@ from collections.abc import Iterator
 from prima.commands import TABLE_4_2
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
-from prima.prices.commands import command_price, group_price
+from prima.prices.commands import command_price, group_price, unit_price
 from prima.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
-from prima.prices.model import Gap, Outline, Price, Reaction, State
+from prima.prices.model import Gap, Outline, Price, Reaction, State, devices_of
 from prima.prices.pages import TARGETS, Pages
 from prima.prices.speech import Reader, Said, utterances
 from prima.prices.tags import (
-    ITEMS,
     commands_in,
     holders,
     is_foreign,
     leaves,
-    names_of,
     returns,
     says,
     thrown_by,
@@ -27,12 +25,13 @@ from prima.prices.tags import (
 from prima.sim.scenario import Profile
 from prima.sim.voice import duration
 from prima.values import milliseconds
-from prima.voicexml.arranging import arrange, longest_of
+from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
-from prima.voicexml.events import HANDLERS, WORDS
+from prima.voicexml.events import HANDLERS, WORDS, handler_names
 from prima.voicexml.prompts import SPOKEN
 from prima.voicexml.recorder import BEEP_MS
+from prima.voicexml.sketch import Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 SPEAKER = frozenset({"speaker"})
@@ -40,6 +39,8 @@ ASKING = ("field", "initial", "record", "menu")
 TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
 """How long a question of a call listens at most, before it is asked again."""
+AGAIN = (*HANDLERS, "clear", "foreach", "goto", "assign", "script")
+"""By what in a unit something in it may be done more than once."""
 SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
 
 
@@ -59,6 +60,9 @@ class _Reader:
         self.parts: list[Price] = []
         self.states: dict[str, State] = {}
         self.caught: list[tuple[Node, State]] = []
+        self.inside: set[int] = set()
+        """What stands in units around form items, by the elements' identities."""
+        self.sketch = Sketch(document.page, None)
         for page in self.pages:
             self._say(page)
         for page in self.pages:
@@ -73,7 +77,9 @@ class _Reader:
 
     def _read(self, page: Page) -> None:
         """What a document does."""
-        self.page = page
+        self.page, self.sketch = page, Sketch(page, self.pages.root(page))
+        units = [one for dialog in page.dialogs.values() for one in dialog.nodes if one.key == UNIT]
+        self.inside |= {id(node) for unit in units for node in unit.walk()}
         for name, dialog in page.dialogs.items():
             self.states[self._key(page, name)] = self._dialog(name, dialog)
         for node in page.root.all(*HANDLERS):
@@ -97,7 +103,7 @@ class _Reader:
                 None if leaves(node.content) and not returns(node) else "",
             )
             for node, state in self.caught
-            if (names := [name for name in names_of(node) if is_foreign(name)])
+            if (names := [name for name in handler_names(node) if is_foreign(name)])
         ]
         return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
 
@@ -119,14 +125,14 @@ class _Reader:
     def _dialog(self, name: str, dialog: Node) -> State:
         """What a dialog does, and what answers and its own events lead to."""
         state = State(self._key(self.page, name), dialog)
-        items = [dialog] if dialog.tag == "menu" else dialog.all(*ITEMS)
+        items = [dialog] if dialog.tag == "menu" else dialog.nodes
         root = self.pages.root(self.page)
         around = [*self.page.root.nodes, *(root.root.nodes if root else ())]
         wider = [node for node in around if node.tag in (*HANDLERS, "link")]
         for node in [dialog, *wider]:
             for inner in self._walk(node):
                 self._lead(state, inner)
-                state.parts += self.said.get(id(inner), ())
+                state.parts += self.said.get(id(inner), ()) if id(inner) not in self.inside else ()
         for item in items:
             self._item(state, item, dialog)
         for node in dialog.walk():
@@ -137,7 +143,7 @@ class _Reader:
 
     def _walk(self, node: Node) -> Iterator[Node]:
         """An element and what is in it, without handlers that only wait for events from outside."""
-        if node.tag == "catch" and all(self._is_outside(name) for name in names_of(node)):
+        if node.tag == "catch" and all(self._is_outside(name) for name in handler_names(node)):
             return
         yield node
         for inner in node.nodes:
@@ -149,7 +155,9 @@ class _Reader:
 
     def _item(self, state: State, item: Node, dialog: Node) -> None:
         """What a form item asks."""
-        if item.tag == "transfer":
+        if item.key == UNIT:
+            state.parts.append(self._unit(item, dialog))
+        elif item.tag == "transfer":
             state.parts += self._call(item)
         elif item.tag in ASKING:
             asked = self._question(item, dialog)
@@ -174,7 +182,7 @@ class _Reader:
         does = State(node.get("event") or node.tag, node)
         for holder in holders(node):
             does.parts += self.said[id(holder)]
-        self.parts += does.parts
+        self.parts += does.parts if id(node) not in self.inside else ()
         for inner in node.walk():
             self._lead(does, inner)
         # VoiceXML always asks on: a reaction that stays goes on with its dialog.
@@ -187,7 +195,7 @@ class _Reader:
         scope = [one for node in self._scopes(item, dialog) for one in node.all(*HANDLERS)]
         return all(
             any(
-                event in names_of(one) and not one.get("cond") and leaves(one.content)
+                event in handler_names(one) and not one.get("cond") and leaves(one.content)
                 for one in scope
             )
             for event in ("noinput", "nomatch")
@@ -205,7 +213,7 @@ class _Reader:
                 for one in commands_in(piece) if isinstance(piece, Node) else ():
                     yield from self._steps(one)
         for node in holder.nodes:
-            yield from self._steps(node)
+            yield from self._steps(node) if node.key != UNIT else ()
             audio = node.get("fetchaudio") or node.get("transferaudio")
             yield from self._waiting(node, audio)
 
@@ -223,6 +231,20 @@ class _Reader:
         steps = arrange(node.nodes, self._step)
         inner, afters = [one for one, _ in steps], [one for _, one in steps]
         return group_price(node, longest_of(node), inner, afters)
+
+    def _unit(self, unit: Node, dialog: Node) -> Price:
+        """A unit around form items: its longest duration, and what runs then to its end (U5)."""
+        inner = [one for node in holders(unit) for one in self.said[id(node)]]
+        asking = unit.all(*ASKING)
+        inner += [self._question(item, dialog) for item in asking]
+        reach = self.sketch.reach(unit)
+        around = [*dialog.all("filled"), *self._handlers(unit, dialog)]
+        said = [one for node in around for inner in holders(node) for one in self.said[id(inner)]]
+        lasts = longest_of(unit) + max((one.lasts for one in [*inner, *said]), default=0)
+        again = any(one.tag in AGAIN for one in unit.walk())
+        if not asking and not again and all(one.inside for one in reach.commands):
+            lasts = min(lasts, sum(one.lasts for one in inner))
+        return unit_price(unit, reach.devices | devices_of(inner), lasts, [*inner, *said])
 
     def _command(self, node: Node) -> Price:
         """A Command of PRIMA's namespace."""
@@ -298,7 +320,8 @@ class _Reader:
 
     def _scopes(self, item: Node, dialog: Node) -> list[Node]:
         root = self.pages.root(self.page)
-        found = [item, dialog, self.page.root, *([root.root] if root else [])]
+        units = [one for one in dialog.nodes if one.key == UNIT and item in one.nodes]
+        found = [item, *units, dialog, self.page.root, *([root.root] if root else [])]
         return list({id(node): node for node in found}.values())
 
     def _setting(self, item: Node, dialog: Node, name: str) -> str:

@@ -104,18 +104,18 @@ class Sketch:
             inner = tuple(self._item(one) for one in node.nodes if _is_item(one))
             return Unit(*own, items=inner, longest=longest_of(node))
         if node.tag == "block":
-            return Block(*own, content=self._acts(node.content))
+            return Block(*own, content=self._acts(node, node.content))
         filled = tuple(self._filled(one) for one in node.all("filled"))
         if node.tag not in ASKING:
             return Subdialog(*own, filled=filled)
         # Commands among what it asks: they are done before the question.
-        asked = tuple(one for one in self._acts(node.content) if isinstance(one, Run))
+        asked = tuple(one for one in self._acts(node, node.content) if isinstance(one, Run))
         filled = (*filled, Filled("any", (), asked, node))
         return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
 
     def _filled(self, node: Node) -> Filled:
         names = tuple(node.get("namelist").split())
-        return Filled(node.get("mode") or "all", names, self._acts(node.content), node)
+        return Filled(node.get("mode") or "all", names, self._acts(node, node.content), node)
 
     def _handlers(self, holder: Node) -> tuple[Handler, ...]:
         return tuple(
@@ -124,7 +124,7 @@ class Sketch:
                 _code(node, "cond"),
                 handler_number(node),
                 None,
-                self._acts(node.content),
+                self._acts(node, node.content),
                 node,
             )
             for node in holder.all(*HANDLERS)
@@ -141,21 +141,22 @@ class Sketch:
 
     # Content ------------------------------------------------------------------------------
 
-    def _acts(self, content: Iterable[Node | str]) -> tuple[Act, ...]:
+    def _acts(self, holder: Node, content: Iterable[Node | str]) -> tuple[Act, ...]:
+        """Content of an element as acts; what is said without an element of its own is its."""
         made: list[Act] = []
         for pieces, node in _spoken(content):
             if pieces:
-                made += self._saying(pieces, node)
+                made += self._saying(pieces, node or holder)
             elif node is not None:
                 made += self._act(node)
         return tuple(made)
 
-    def _saying(self, pieces: list[Node | str], node: Node | None) -> Iterator[Act]:
+    @staticmethod
+    def _saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
         """What is said, and the Commands of the robot among it."""
-        said = node or next((one for one in pieces if isinstance(one, Node)), None)
         words = text_of(pieces)
         if words:
-            yield _run([_speak(words, said or self.page.root)])
+            yield _run([_speak(words, node)])
         for piece in pieces:
             commands = commands_in(piece) if isinstance(piece, Node) else []
             if commands:
@@ -169,13 +170,13 @@ class Sketch:
             yield _run([_speak((Expression("", node, "fetchaudio"),), node)])
         match node.tag:
             case "if":
-                branches = [(cond, self._acts(part)) for cond, part in _divided(node)]
+                branches = [(cond, self._acts(node, part)) for cond, part in _divided(node)]
                 yield If(tuple(branches), node)
             case "foreach":
                 yield Foreach(
                     node.get("item"),
                     Expression(node.get("array"), node, "array"),
-                    self._acts(node.content),
+                    self._acts(node, node.content),
                     node,
                 )
             case "assign":
