@@ -346,7 +346,7 @@ def voice_parts(folder: Path, body: str) -> list[Price]:
 def test_a_unit_around_items_of_voicexml_costs_its_longest(tmp_path: Path) -> None:
     inner = "<block>One.</block>" + ASKED.format("<filled>Fine.</filled><noinput>Hm?</noinput>")
     (unit,) = voice_parts(tmp_path, in_unit(inner))
-    assert (unit.what, unit.devices) == ("unit", {"speaker", "speech-recognition"})
+    assert unit.what == "unit" and unit.devices == {"speaker", "speech-recognition"}
     said = lasting("I did not understand.")  # the longest that may be said before it is asked again
     assert unit.lasts == 20_000 + said + 5000 + 1
     assert unit.engages and unit.listens and unit.known

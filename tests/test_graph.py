@@ -316,6 +316,24 @@ def test_what_commands_of_voicexml_say_is_shown(tmp_path: Path) -> None:
     assert graph.nodes[next(iter(graph.nodes))].notes == ['says "One {n}. Two."']
 
 
+def test_a_unit_around_items_of_voicexml_is_looked_into(tmp_path: Path) -> None:
+    inner = (
+        '<field name="x" type="boolean"><prompt>Well?</prompt>'
+        '<filled><goto next="#b"/></filled></field>'
+        '<catch event="touch"><goto next="#c"/></catch>'
+    )
+    rest = '<form id="b"><block>So.</block></form><form id="c"><block>Oh.</block></form>'
+    body = f'<form id="a"><p:iu>{inner}</p:iu></form>{rest}'
+    graph = drawn(tmp_path, vxml(body, 'xmlns:p="urn:prima:dialogue:1"'), "a.vxml")
+    box = graph.nodes["a.vxml#a"]
+    assert box.marks == ["asks", "unit"] and box.notes == ['asks "Well?"']
+    ways = {(edge.target, label) for edge in graph.out("a.vxml#a") for label in edge.labels}
+    assert ways >= {
+        ("a.vxml#b", "answered"),
+        ("a.vxml#c", "touch"),
+    }
+
+
 def test_voicexml_menus_links_submits_and_ends(tmp_path: Path) -> None:
     graph = drawn(
         tmp_path,

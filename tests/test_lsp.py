@@ -392,6 +392,14 @@ PROPOSED = {
         set(),
     ),
     "voice elements": ("ea/x.vxml", VOICE + '<form id="a"><block><|', {"prompt", "p:speak"}, {"field"}),
+    "voice arranging": ("ea/x.vxml", VOICE + '<form id="a"><block><p:|', {"p:par", "p:seq", "p:iu"}, set()),
+    "voice arranged": ("ea/x.vxml", VOICE + '<form id="a"><block><p:par><|', {"p:speak", "p:iu"}, {"prompt"}),
+    "voice grouped": ("ea/x.vxml", VOICE + '<form id="a"><block><p:iu |', {"longest", "restartable"}, {"cond"}),
+    "voice form": ("ea/x.vxml", VOICE + '<form id="a"><|', {"p:iu", "field"}, {"p:par", "p:speak"}),
+    "voice unit": ("ea/x.vxml", VOICE + '<form id="a"><p:iu><|', {"block", "record", "noinput"}, {"p:speak", "on", "subdialog"}),
+    "voice unit attributes": ("ea/x.vxml", VOICE + '<form id="a"><p:iu |', {"longest", "cond", "name"}, {"restartable"}),
+    "voice unit content": ("ea/x.vxml", VOICE + '<form id="a"><p:iu><block><|', {"prompt", "p:speak"}, {"field"}),
+    "voice unit items": ("ea/x.vxml", VOICE + '<form id="a"><p:iu name="u"><field name="f"/></p:iu><block><goto nextitem="|"/>', {"u", "f"}, set()),
     "voice goto": ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="|"/>', {"#a", "pizza.vxml"}, set()),
     "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "one-of"}, {"prompt"}),
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
@@ -604,6 +612,8 @@ def test_files_that_the_editor_moves_are_followed(editor: Editor) -> None:
         ("ea/x.vxml", VOICE + '<form id="a"><block><go|to next="#a"/>', ["VoiceXML 5.3.7"]),
         ("ea/x.vxml", VOICE + '<form id="a"><block><prompt barge|in="true"/>', ["before it ends"]),
         ("ea/x.vxml", VOICE + '<form id="a"><block><p:turn an|gle="1"/>', ["counter-clockwise"]),
+        ("ea/x.vxml", VOICE + '<form id="a"><p:i|u>', ["around form items", "rule U5"]),
+        ("ea/x.vxml", VOICE + '<form id="a"><block><p:i|u>', ["around Commands", "rule U4"]),
     ],
 )  # fmt: skip
 def test_hover(editor: Editor, name: str, text: str, words: list[str]) -> None:

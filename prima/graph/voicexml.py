@@ -23,6 +23,7 @@ from prima.graph.words import (
 )
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
+from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE
 
@@ -118,11 +119,13 @@ class _Reader:
 
     def _describe(self, box: Box, dialog: Node) -> None:
         """What is special about a dialog, and what it asks or says."""
-        asking = [one for one in (dialog, *dialog.nodes) if one.tag in ASKING]
+        parts = parts_of(dialog)
+        asking = [one for one in (dialog, *parts) if one.tag in ASKING]
         leaving = [one for one in dialog.walk() if _leaves(one)]
-        tags = {one.tag for one in dialog.nodes}
+        tags = {one.tag for one in parts}
         marks = {
             "asks": bool(asking),
+            "unit": any(is_unit(one) for one in dialog.walk()),
             "records": "record" in tags,
             "calls somebody": "transfer" in tags,
             "leaves the user": bool(leaving),
@@ -134,7 +137,7 @@ class _Reader:
         if len(told) > 3:
             box.notes.append(f"and {len(told) - 3} more")
         if not asking:
-            said = [text for block in dialog.all("block") if (text := _said(block))]
+            said = [text for one in parts if one.tag == "block" and (text := _said(one))]
             box.notes += [f"says {quoted(said[0])}"] if said else []
         box.notes += [clean(TABLE_4_2[one.tag].title) for one in leaving[:1]]
 
@@ -144,10 +147,15 @@ class _Reader:
         self._links(dialog.all("link"))
         if dialog.tag == "menu":
             self._choices(dialog)
-        asked = dialog.all(*ASKING)
-        for item in dialog.all(*ITEMS):
-            self.scopes = [item, dialog, *self._outer()]
+        parts = parts_of(dialog)
+        asked = [one for one in parts if one.tag in ASKING]
+        for item in [one for one in parts if one.tag in ITEMS]:
+            units = [one for one in dialog.nodes if is_unit(one) and item in one.nodes]
+            self.scopes = [item, *units, dialog, *self._outer()]
             self._item(item, len(asked) > 1)
+        for unit in [one for one in dialog.nodes if is_unit(one)]:
+            self.scopes = [unit, dialog, *self._outer()]
+            self._handlers(unit.all(*HANDLERS))
         self.scopes = [dialog, *self._outer()]
         for filled in dialog.all("filled"):
             names = ", ".join(filled.get("namelist").split()) or "all"
@@ -388,8 +396,10 @@ def _leaves(node: Node) -> bool:
 
 def _leaves_at_its_end(form: Node) -> bool:
     """Whether a form is left before its items are through; else the application ends (2.1.6)."""
-    for item in form.all(*ITEMS):
-        if item.attributes.keys() & {"cond", "expr"}:
+    units = {id(one): node for node in form.nodes if is_unit(node) for one in node.nodes}
+    for item in [one for one in parts_of(form) if one.tag in ITEMS]:
+        around = units.get(id(item))
+        if item.attributes.keys() & {"cond", "expr"} or (around and around.get("cond")):
             continue
         contents = [item] if item.tag == "block" else item.all("filled")
         if any(_never_ends(content.nodes) for content in contents):

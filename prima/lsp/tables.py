@@ -15,6 +15,7 @@ from prima.markup.vocabulary import (
     attributes_by_name,
 )
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.check import SPEAKING
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, SRGS, VALUES, VOICEXML
 
@@ -114,7 +115,8 @@ def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
     if tag.namespace and tag.namespace != inner.namespace and tag.namespace in BY_NAMESPACE:
         own = BY_NAMESPACE[tag.namespace]
         if not (inner is GRAMMAR and own is VOICEXML):
-            return own, tag.local
+            around_items = own is DIALOGUE and tag.local == "iu" and parent.key == "form"
+            return own, UNIT if around_items else tag.local
     key = inner.child(parent.key, tag.local) if parent.key in inner.elements else None
     if key is None:
         key = next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
@@ -135,6 +137,8 @@ def children(tag: Tag) -> list[Choice]:
     element, vocabulary = tag.element, tag.vocabulary
     if element is None or vocabulary is None:
         return []
+    if tag.key == UNIT and tag.parent is not None and tag.parent.vocabulary is VOICEXML:
+        return _in_unit(tag)
     inner = vocabulary
     if vocabulary is VOICEXML and tag.key == "grammar":
         inner, element = GRAMMAR, GRAMMAR.elements["grammar"]
@@ -143,13 +147,26 @@ def children(tag: Tag) -> list[Choice]:
         for key in element.children
         if key in inner.elements
     ]
-    prefix = next((p for p, uri in tag.namespaces.items() if uri == DIALOGUE.namespace and p), "")
-    acts = tag.key in SPEAKING or (inner is VOICEXML and VOICEXML.child(tag.key, "assign"))
-    if vocabulary is VOICEXML and prefix and acts:
-        found += [
-            Choice(f"{prefix}:{key}", DIALOGUE.elements[key], DIALOGUE) for key in sorted(COMMANDS)
-        ]
+    prefix = _prefix(tag, DIALOGUE)
+    if inner is VOICEXML and prefix:
+        acts = tag.key in SPEAKING or VOICEXML.child(tag.key, "assign")
+        keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
+        own = [DIALOGUE.elements[key] for key in keys]
+        found += [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
     return found
+
+
+def _in_unit(tag: Tag) -> list[Choice]:
+    """The elements that may stand in a ``p:iu`` around form items of VoiceXML."""
+    prefix = _prefix(tag, VOICEXML)
+    keys = [key for key in VOICEXML.elements if key in UNIT_HOLDS]
+    return [Choice(prefix + key, VOICEXML.elements[key], VOICEXML) for key in keys]
+
+
+def _prefix(tag: Tag, vocabulary: Vocabulary) -> str:
+    """The prefix of a vocabulary's elements at a place, with its colon; none by default."""
+    known = [prefix for prefix, uri in tag.namespaces.items() if uri == vocabulary.namespace]
+    return f"{known[0]}:" if known and known[0] else ""
 
 
 def roots() -> list[Choice]:
