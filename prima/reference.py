@@ -36,8 +36,14 @@ from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
-from prima.markup.schema import XML_SCHEMA, make_catalog, make_locating_rules, make_schema
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.schema import (
+    XML_SCHEMA,
+    make_catalog,
+    make_guest_schema,
+    make_locating_rules,
+    make_schema,
+)
+from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, selector
 from prima.script import budget, evaluation, host, syntax
 from prima.sim import rehearsal
@@ -45,7 +51,8 @@ from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
 from prima.transcript.record import Record
 from prima.values import KINDS, LONGEST_MS
-from prima.voicexml.vocabulary import EXPRESSIONS, VALUES, VOICEXML
+from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
 ROOT = Path(__file__).resolve().parent.parent
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO)
@@ -569,7 +576,36 @@ def voicexml() -> Vocabulary:
         for element in VOICEXML.elements.values()
     ]
     free = ("grammar", "metadata")
-    return Vocabulary(VOICEXML.namespace, VOICEXML.name, VOICEXML.root, elements, free=free)
+    return Vocabulary(
+        VOICEXML.namespace, VOICEXML.name, VOICEXML.root, elements, free=free, guests=_guests()
+    )
+
+
+def _guests() -> Guests:
+    """The elements of PRIMA's own language that stand in VoiceXML documents."""
+    made = [_guest(DIALOGUE.elements[key]) for key in sorted([*COMMANDS, *ARRANGING])]
+    made += [replace(DIALOGUE.elements["param"], children=())]
+    return Guests(DIALOGUE.namespace, f"{VOICEXML.name}-prima", tuple(made))
+
+
+def _guest(element: Element) -> Element:
+    """A Command without what only PRIMA's language has for it; a unit of either kind."""
+    row = TABLE_4_2.get(element.key)
+    held = [one for one in element.attributes if row is None or one.name in row.arguments]
+    if element.key == "command":
+        held = [one for one in held if one.name == "type"]
+    children: tuple[str, ...] = ()
+    if element.key == "iu":
+        own = {one.name for one in held}
+        items = DIALOGUE.elements[UNIT]
+        children = tuple(key for key in VOICEXML.elements if key in UNIT_HOLDS)
+        held += [one for one in items.attributes if one.name not in own]
+        element = replace(
+            element,
+            doc=f"{element.doc} In a form: {items.doc}",
+            source="thesis 4.1 (2); rules U4 and U5",
+        )
+    return replace(element, attributes=tuple(held), children=children)
 
 
 VOICEXML_SECTION = re.compile(r"^([0-9].*)")
@@ -614,6 +650,8 @@ def outputs(root: Path) -> dict[Path, str]:
         {one.namespace: f"{one.name}.rnc" for one in kinds}
     )
     made[schemas / "xml.xsd"] = XML_SCHEMA
+    guests = _guests()
+    made[schemas / f"{guests.name}.xsd"] = make_guest_schema(guests)
     made[schemas / "transcript.schema.json"] = record_schema()
     for path in sorted(docs.glob("*.md")):
         text = path.read_text(encoding="utf-8")

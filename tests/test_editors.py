@@ -27,6 +27,7 @@ KINDS = (*VOCABULARIES, voicexml())
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">'
 SCENE = '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="x" world="w" robot="r">'
 VOICE = '<vxml xmlns="http://www.w3.org/2001/vxml" version="2.1"'
+P = ' xmlns:p="urn:prima:dialogue:1"'
 WRONG = {
     "element": f'{BEGIN}<form id="a"><blok/></form></prima>',
     "misplaced": f"{BEGIN}<block/></prima>",
@@ -37,6 +38,10 @@ WRONG = {
     "text": f"{SCENE}words</scenario>",
     "voice": f'{VOICE}><form id="a"><block><gotto next="#a"/></block></form></vxml>',
     "voice-value": f'{VOICE}><form id="a"><block><prompt bargein="maybe"/></block></form></vxml>',
+    "voice-unit": f'{VOICE}{P}><form id="a"><p:iu longer="2s"><block/></p:iu></form></vxml>',
+    "voice-time": f'{VOICE}{P}><form id="a"><p:iu longest="2"><block/></p:iu></form></vxml>',
+    "voice-par": f'{VOICE}{P}><form id="a"><block><p:par at="1s"/></block></form></vxml>',
+    "voice-turn": f'{VOICE}{P}><form id="a"><block><p:turn angel="1"/></block></form></vxml>',
 }
 """Documents with one mistake each that every schema language can tell."""
 RIGHT = {
@@ -51,6 +56,10 @@ RIGHT = {
     '<p:point-by-hand angle="30"/>Hello.<goto next="#a"/></block><field name="f">'
     '<grammar version="1.0" root="r"><rule id="r"><one-of><item>yes</item></one-of></rule>'
     "</grammar></field></form></vxml>",
+    "voice-unit": f'{VOICE}{P}><form id="a"><p:iu longest="20s" name="u" cond="x"><block>Hi.'
+    '<p:par><p:speak>You <value expr="x"/></p:speak><p:seq><p:turn angle-expr="1"/></p:seq>'
+    '</p:par><p:command type="hum"><param name="a" value="1"/></p:command></block>'
+    '<field name="f" type="boolean"/><noinput>Hm?</noinput></p:iu></form></vxml>',
 }
 
 

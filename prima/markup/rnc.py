@@ -11,29 +11,41 @@ default namespace = "{namespace}"
 namespace own = "{namespace}"
 namespace xsi = "http://www.w3.org/2001/XMLSchema-instance"
 datatypes xsd = "http://www.w3.org/2001/XMLSchema-datatypes"
-
+{more}
 start = e-{root}
 """
 ANYTHING = """
 anything = (attribute * { text } | text | element * { anything })*
-foreign = element * - own:* { anything }
+"""
+FOREIGN = "foreign = element * - own:* { anything }\n"
+GUESTS = """\
+foreign = element * - (own:* | p:*) { anything } | guest
+guest = {names}
 """
 
 
 def make_rnc(vocabulary: Vocabulary) -> str:
     """Give the RELAX NG schema of a kind of document in the compact syntax."""
-    parts = [HEAD.format(namespace=vocabulary.namespace, root=vocabulary.root)]
+    guests = vocabulary.guests
+    more = f'namespace p = "{guests.namespace}"\n' if guests is not None else ""
+    parts = [HEAD.format(namespace=vocabulary.namespace, root=vocabulary.root, more=more)]
     parts += [_element(vocabulary, element) for element in vocabulary.elements.values()]
-    if vocabulary.open:
-        parts.append(ANYTHING)
-    kinds = {
-        item.kind
-        for element in vocabulary.elements.values()
-        for item in element.attributes
-        if not item.choices
-    }
+    parts += _foreign(vocabulary)
+    elements = [*vocabulary.elements.values(), *(guests.elements if guests is not None else ())]
+    kinds = {item.kind for one in elements for item in one.attributes if not item.choices}
     parts += ["\n", *(_kind(kind) for kind in sorted(kinds | {"expression"}))]
     return "".join(parts)
+
+
+def _foreign(vocabulary: Vocabulary) -> list[str]:
+    """The elements of other namespaces, where any may stand."""
+    if not vocabulary.open:
+        return []
+    if vocabulary.guests is None:
+        return [ANYTHING, FOREIGN]
+    guests = vocabulary.guests.elements
+    names = " | ".join(f"p-{one.key}" for one in guests)
+    return [ANYTHING, GUESTS.replace("{names}", names), *map(_guest, guests)]
 
 
 def _element(vocabulary: Vocabulary, element: Element) -> str:
@@ -53,6 +65,16 @@ def _element(vocabulary: Vocabulary, element: Element) -> str:
             parts.append("text" if held == ["text"] else f"({' | '.join(held)})*")
     body = ",\n    ".join(parts) or "empty"
     return f"\n{_doc(element.doc, element.source)}e-{element.key} =\n  element {element.tag} {{\n    {body}\n  }}\n"
+
+
+def _guest(element: Element) -> str:
+    """An element of another namespace: its attributes; its children are the vocabulary's own."""
+    parts = [*(_attribute(item) for item in element.attributes), "attribute xml:* { text }*"]
+    others = "(own:* | p:*)" if element.children else "p:*"
+    own = "".join(f"e-{key} | " for key in element.children)
+    parts.append(f"(text | guest | {own}element * - {others} {{ anything }})*")
+    body, doc = ",\n    ".join(parts), _doc(element.doc, element.source)
+    return f"\n{doc}p-{element.key} =\n  element p:{element.tag} {{\n    {body}\n  }}\n"
 
 
 def _doc(doc: str, source: str) -> str:

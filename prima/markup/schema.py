@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.values import KINDS
 
 XML_SCHEMA = r"""<?xml version="1.0" encoding="UTF-8"?>
@@ -65,17 +65,46 @@ def make_schema(vocabulary: Vocabulary) -> str:
         f'           xmlns="{vocabulary.namespace}" targetNamespace="{vocabulary.namespace}"',
         '           elementFormDefault="qualified">',
         '  <xs:import namespace="http://www.w3.org/XML/1998/namespace" schemaLocation="xml.xsd"/>',
+        *_import(vocabulary.guests),
         f'  <xs:element name="{vocabulary.elements[vocabulary.root].tag}" type="{vocabulary.root}"/>',
     ]
     for element in vocabulary.elements.values():
         lines += _complex_type(vocabulary, element)
-    kinds = sorted(
-        {a.kind for e in vocabulary.elements.values() for a in e.attributes if not a.choices}
-        | {"expression"}
-    )
-    for kind in kinds:
-        lines += _simple_type(kind)
-    return "\n".join([*lines, "</xs:schema>", ""])
+    return "\n".join([*lines, *_kinds(vocabulary.elements.values()), "</xs:schema>", ""])
+
+
+def make_guest_schema(guests: Guests) -> str:
+    """Give the XML Schema 1.0 of elements that stand in documents of another namespace."""
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"',
+        f'           xmlns="{guests.namespace}" targetNamespace="{guests.namespace}"',
+        '           elementFormDefault="qualified">',
+    ]
+    for element in guests.elements:
+        lines += [f'  <xs:element name="{element.tag}">', '    <xs:complexType mixed="true">']
+        lines += [
+            _doc(f"{element.doc} ({element.source})", "      "),
+            '      <xs:sequence><xs:any namespace="##any" processContents="lax"'
+            ' minOccurs="0" maxOccurs="unbounded"/></xs:sequence>',
+        ]
+        lines += [f"  {line}" for item in element.attributes for line in _attribute(item)]
+        lines += ['      <xs:anyAttribute namespace="##other" processContents="skip"/>']
+        lines += ["    </xs:complexType>", "  </xs:element>"]
+    return "\n".join([*lines, *_kinds(guests.elements), "</xs:schema>", ""])
+
+
+def _import(guests: Guests | None) -> list[str]:
+    if guests is None:
+        return []
+    return [f'  <xs:import namespace="{guests.namespace}" schemaLocation="{guests.name}.xsd"/>']
+
+
+def _kinds(elements: Iterable[Element]) -> list[str]:
+    """The simple types of attributes."""
+    named = [item for one in elements for item in one.attributes]
+    kinds = {item.kind for item in named if not item.choices} | {"expression"}
+    return [line for kind in sorted(kinds) for line in _simple_type(kind)]
 
 
 def _doc(text: str, indent: str) -> str:

@@ -54,6 +54,19 @@ class Element:
         return self.name or self.key
 
 
+@dataclass(frozen=True, slots=True)
+class Guests:
+    """Elements of a foreign namespace that may stand among a vocabulary's own.
+
+    They hold each other and whatever else; of the vocabulary, if anything in particular, what
+    their children name.
+    """
+
+    namespace: str
+    name: str
+    elements: tuple[Element, ...]
+
+
 class Vocabulary:
     """All elements of one kind of document."""
 
@@ -65,6 +78,7 @@ class Vocabulary:
         elements: Iterable[Element],
         hints: Mapping[str, str] | None = None,
         free: Iterable[str] = (),
+        guests: Guests | None = None,
     ) -> None:
         self.namespace = namespace
         self.name = name
@@ -75,6 +89,7 @@ class Vocabulary:
         self.free = frozenset(free)
         """Keys of elements that may hold anything; where there are any, elements of foreign
         namespaces may stand among others'."""
+        self.guests = guests
         self._children = {
             key: {self.elements[child].tag: child for child in element.children}
             for key, element in self.elements.items()
