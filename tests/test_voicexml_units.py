@@ -573,6 +573,9 @@ def test_at_run_time_a_unit_refuses_what_it_does_not_own() -> None:  # E3
         ("<noinput/>", "empty", "holds no form item"),
         ("Hm. <block/>", "stray-text", "Write it into a <block>"),
         ("<block/><p:turn angle='1'/>", "misplaced-element", "Write it into a <block>."),
+        ("<block/><p:par/>", "misplaced-element", "Write it into a <block>."),
+        ("<block/><prompt/>", "misplaced-element", "Write it into a <block>."),
+        ("<block/><on event='x'/>", "misplaced-element", 'Write <catch event="...">.'),
         ("<block/><filled/>", "misplaced-element", "beside the <p:iu>, with a namelist"),
         ("<block/><var name='v'/>", "misplaced-element", "Write it into the form, beside"),
         ("<subdialog src='#a'/><block/>", "misplaced-element", "Write it into the form, beside"),
@@ -674,3 +677,8 @@ def test_a_units_condition_is_checked(tmp_path: Path, code: str) -> None:
 
 def test_the_fields_of_a_unit_are_variables_of_the_form(tmp_path: Path) -> None:
     assert warned(tmp_path, vxml(unit(ask(), "<block cond='x &amp;&amp; u'/>", "name='u'"))) == []
+
+
+def test_a_document_with_errors_is_told_of_nothing_else_in_its_units(tmp_path: Path) -> None:
+    body = unit(f"<block>{LONG}</block>") + f"<form {P}><block><p:unit/></block></form>"
+    assert [one.code for one in warned(tmp_path, vxml(body))] == ["unknown-element"]

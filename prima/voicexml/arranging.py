@@ -8,14 +8,14 @@ from itertools import combinations
 from typing import TypeVar
 
 from prima.commands import TABLE_4_2
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Problem, did_you_mean, one_of, parted
 from prima.interpreter.elements import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.values import milliseconds, read_value
-from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 ARRANGING = ("par", "seq", "iu")
 UNIT = "iu-items"
@@ -205,9 +205,12 @@ def _not_among_items(child: Node) -> Problem:
     name = f"p:{child.tag}" if child.namespace == PRIMA_NAMESPACE else child.tag
     message = f"<{name}> cannot stand in a <p:iu> around form items."
     remedy = f"It holds {one_of(f'<{one}>' for one in UNIT_ITEMS)}, and handlers of events."
-    if child.tag in COMMANDS and child.namespace == PRIMA_NAMESPACE:
+    own = child.namespace == PRIMA_NAMESPACE and child.tag in (*COMMANDS, "par", "seq")
+    if own or (child.namespace == NAMESPACE and VOICEXML.child("block", child.tag)):
         remedy = "Write it into a <block>."
-    elif child.tag in BESIDE:
+    if child.tag == "on":
+        remedy = 'Write <catch event="...">.'
+    elif child.tag in BESIDE and not own:
         remedy = f"Write it into the form, beside the <p:iu>{BESIDE[child.tag]}."
     return Problem(child.place, "error", "misplaced-element", message, remedy)
 
@@ -227,8 +230,9 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
         try:
             read_value(known[name].kind, text)
         except ValueError as error:
-            place = node.attribute_place(name)
-            problems.append(Problem(place, "error", "bad-value", str(error)))
+            place, (wrong, remedy) = node.attribute_place(name), parted(str(error))
+            message = f'{name} "{text}" {wrong}'
+            problems.append(Problem(place, "error", "bad-value", message, remedy))
 
 
 def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:

@@ -164,7 +164,8 @@ class Sketch:
 
     def _act(self, node: Node) -> Iterator[Act]:
         if node.namespace == PRIMA_NAMESPACE:
-            yield _run(commands_in(node))
+            commands = commands_in(node)
+            yield from [_run(commands)] if commands else ()  # none in a document with errors
             return
         if node.tag in FETCHING and self._plays(node):
             yield _run([_speak((Expression("", node, "fetchaudio"),), node)])

@@ -14,7 +14,7 @@ from prima.interpreter.selection import takes
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, is_unit
-from prima.voicexml.document import Page
+from prima.voicexml.document import Page, broken
 from prima.voicexml.sketch import Sketch, commands_in
 
 PREFIX = "p:"
@@ -31,6 +31,8 @@ def unit_errors(page: Page) -> list[Problem]:
 
 def check_sketched(page: Page, root: Page | None) -> Iterator[Problem]:
     """What is no error of a document, but that its author wants to know."""
+    if broken(page) is not None:
+        return  # what is to be found in it is told once it can be run
     sketch = Sketch(page, root)
     told = {one.place for one in page.problems}
     for problem in _unit_problems(sketch) if root is not None else ():
