@@ -161,6 +161,15 @@ def test_a_record_may_stand_in_a_unit() -> None:
     assert call.said() == ["Speak.", "la la"]
 
 
+def test_a_clear_in_a_unit_lets_its_items_be_visited_again_and_not_itself() -> None:
+    again = "<if cond='n++ &lt; 1'><clear/></if>"
+    body = f"<var name='n' expr='0'/>{unit(say('One.') + f'<block>{again}</block>', say('Bye.'))}"
+    call = Call(body)
+    call.play()
+    assert " ".join(call.said()) == "One. One. Bye."
+    assert units(call) == ["request", "start", "end"]
+
+
 # Leaving it -------------------------------------------------------------------------------
 
 
@@ -325,6 +334,15 @@ def test_what_handles_a_unit_that_took_too_long_is_no_part_of_it() -> None:
     assert call.saying() == ["Too long."]
 
 
+def test_no_handler_of_an_item_takes_that_its_unit_took_too_long() -> None:
+    inner = ask("<catch event='error.unit'>In the field.</catch>")
+    around = "<catch event='error.unit'>In the form.</catch>"
+    call = Call(unit(inner, "", "longest='2s'", around))
+    call.step(at=2_200)
+    call.silence()
+    assert call.saying() == ["In the form."]
+
+
 # Events ------------------------------------------------------------------------------------
 
 
@@ -347,6 +365,16 @@ def test_a_handler_in_a_unit_takes_an_event_from_outside_in_it() -> None:
     assert call.saying() == ["May I?", "iu"]
     call.answer("yes")
     assert call.said() == ["May I?", "Not now.", "May I?", "Ouch.", "Bye."]
+
+
+def test_a_unit_that_an_event_leads_to_is_a_reaction() -> None:  # C5
+    call = Call(
+        "<form><field name='w' type='boolean'><prompt>Well?</prompt></field>"
+        "<catch event='phone'><goto next='#a'/></catch></form>" + unit(ask())
+    )
+    call.event("phone")
+    [asked] = [r for r in call.phases("request") if r["command"] == "iu"]
+    assert asked["reactive"] is True
 
 
 def test_a_handler_outside_of_a_unit_leaves_it_and_the_rest_is_another_unit() -> None:
@@ -504,6 +532,13 @@ def test_nobody_takes_a_device_that_only_a_handler_needs() -> None:
     assert call.saying() == ["May I?", "iu"], "the wheels are the unit's"
     call.hears("yes")
     assert call.saying() == ["iu", "turn"]
+
+
+def test_a_unit_owns_what_an_answer_for_another_item_leads_to() -> None:
+    grammar = '<grammar src="a.grxml"/>'
+    other = '<field name="z"><filled><p:turn angle="9"/></filled></field>'
+    assert devices_of(reaching(form=other)) == SPEECH
+    assert devices_of(reaching(form=grammar + other)) == {*SPEECH, "locomotion"}
 
 
 # What is refused -----------------------------------------------------------------------------
