@@ -15,7 +15,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from prima import loading
+from prima import api, loading
 from prima.diagnostics import excerpt, render, sarif
 from prima.errors import DocumentError, Place, Problem
 from prima.interpreter.reader import read_document
@@ -818,3 +818,23 @@ def test_an_answer_that_no_question_contains_is_told(
     found = loading.validate([tmp_path / "visit.xml"])
     assert [one.code for one in found] == ["never-said"] * (remedy is not None)
     assert all((remedy or "") in one.remedy for one in found)
+
+
+def test_a_grammar_in_the_place_of_a_document_is_told_to_be_one(tmp_path: Path) -> None:
+    (tmp_path / "g.gram").write_text("#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = yes;\n")
+    told = r"This is a grammar, not XML\. Name it in a VoiceXML"
+    with pytest.raises(DocumentError, match=told):
+        api.stage([], [str(tmp_path / "g.gram")])
+    with pytest.raises(DocumentError, match=told):
+        api.load_scenario(tmp_path / "g.gram")
+
+
+def test_an_argument_of_a_command_in_voicexml_that_is_given_twice(tmp_path: Path) -> None:
+    path = tmp_path / "a.vxml"
+    path.write_text(
+        '<vxml xmlns="http://www.w3.org/2001/vxml" version="2.1" xmlns:p="urn:prima:dialogue:1">'
+        '<form><block><p:turn angle="30" angle-expr="40"/></block></form></vxml>'
+    )
+    (problem,) = api.validate([str(path)])
+    assert problem.code == "exclusive"
+    assert problem.message == '<p:turn> has both "angle" and "angle-expr".'

@@ -281,6 +281,9 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
     if source.text.lstrip().startswith("{"):
         remedy = "If it is a transcript, prima show prints it."
         return _error(place, "not-xml", "This is JSON, not XML.", remedy)
+    if source.text.lstrip().startswith(("#ABNF", "#JSGF", "#GSL", ";GSL")):
+        remedy = "Name it in a VoiceXML document (<grammar src>); prima validate checks it."
+        return _error(place, "not-xml", "This is a grammar, not XML.", remedy)
     if "depth" in message.lower():
         return _too_deep(place)
     if "Entity" in message:  # told where it ends

@@ -596,6 +596,10 @@ def _command_problems(node: Node, row: CommandType) -> list[Problem]:
     ]
     if excluding := excluding_arguments(row, given):
         found.append(_warned(node, "exclusive", excluding, "Keep one of them."))
+    for name in row.arguments:
+        if {name, f"{name}-expr"} <= node.attributes.keys():
+            message = f'<p:{node.tag}> has both "{name}" and "{name}-expr".'
+            found.append(_warned(node, "exclusive", message, "Keep one of them."))
     if row.text == "required" and not says and not node.nodes:
         message = f"<p:{node.tag}> has nothing to say."
         found.append(_warned(node, "nothing-to-say", message, "Write its text inside it."))
