@@ -188,6 +188,15 @@ def _bytes() -> Iterator[Attack]:
         f"{long}<form>{declared}<block><submit next='service:x' namelist='{names}'/></block></form>"
     )
     yield Attack("bytes", "namelist of submit", {"bad.vxml": text})
+    heard = "<script>var l = 'x'.repeat(90000);</script>"
+    array = "Array.from({length: 9000}, function () { return l; })"
+    text = voice(
+        f"{heard}<form><block><foreach item='i' array=\"{array}\"><value expr='i'/></foreach></block></form>"
+    )
+    yield Attack("bytes", "values in a prompt", {"bad.vxml": text})
+    breaks = '<value expr="s"/><break time="1ms"/>' * 20_000
+    text = document(f"<block><speak>{breaks}</speak><exit/></block>", long)
+    yield Attack("bytes", "values between pauses", {"bad.xml": text})
     say = '<block name="b"><speak><value expr="s"/></speak><clear/></block>'
     yield Attack("bytes", "says all it can", {"bad.xml": document(say, long)})
     log = '<block name="b"><foreach item="i" array="Array(9)"><log><value expr="s"/></log></foreach><pause time="60ms"/><clear/></block>'

@@ -118,6 +118,8 @@ class Executor:
                 piece.append(part)
                 continue
             said = " ".join(filter(None, (said, self.text(piece, fiber))))
+            if len(said) > MAX_TEXT:
+                break
             if part is not None:
                 cues.append(Cue(len(said), "pause", part.lasts))
             piece = []

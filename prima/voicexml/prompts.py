@@ -317,7 +317,9 @@ class Speaker:
         """Read one element of a prompt."""
         match node.tag:
             case "value":
-                speech.parts.append(self.text(node, context, local))
+                text = self.text(node, context, local)
+                self.owner.count_output(len(text), node)
+                speech.parts.append(text)
             case "audio":
                 self.audio(node, context, local, speech)
             case "sub":
