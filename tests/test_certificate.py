@@ -183,7 +183,7 @@ def test_no_reaction_waits_longer_than_is_certified(tmp_path: Path, touched: int
     text = (
         f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="20s"'
         f' world="{ROOT}/documents/worlds/room.xml" robot="{ROBOT}"><robot at="middle"/>'
-        '<person x="1" y="0"/><application src="theirs.xml"/><application src="mine.xml"/>'
+        '<person x="1" y="0"/><application src="theirs.xml"/><application src="mine.xml" kind="fa"/>'
         f'<when at="{touched}ms"><touch sensor="head"/></when></scenario>'
     )
     (tmp_path / "s.xml").write_text(text)
@@ -221,7 +221,7 @@ def run(folder: Path, fa: str, ea: str, whens: str, until: str = "60s") -> list[
     text = (
         f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="{until}"'
         f' world="{ROOT}/documents/worlds/room.xml" robot="{ROBOT}"><robot at="middle"/>'
-        f'<person x="1" y="0"/><application src="{Path(fa).name}"/>'
+        f'<person x="1" y="0"/><application src="{Path(fa).name}" kind="fa"/>'
         f'<application src="{Path(ea).name}" id="theirs"/>{whens}</scenario>'
     )
     (folder / "s.xml").write_text(text)

@@ -372,7 +372,7 @@ SCENARIO = Vocabulary(
                 attribute(
                     "kind",
                     "text",
-                    "what a VoiceXML document is",
+                    "whether it is the robot's own or a place's; it counts, whatever the document says",
                     default="ea",
                     choices=("fa", "ea"),
                 ),
