@@ -376,7 +376,7 @@ class Session:
                 return
         if question is None and self._breaks_in(value, said):
             return
-        if self._follow_links(value.text, said):
+        if self._follow_links(value.text, said, question):
             return
         if question is None or question.silent:
             self.unheard = value.text
@@ -409,10 +409,13 @@ class Session:
                 return True
         return False
 
-    def _follow_links(self, text: str, said: list[Hypothesis]) -> bool:
+    def _follow_links(self, text: str, said: list[Hypothesis], question: Behavior | None) -> bool:
+        """V1: links take it; what was said to a question, no link of another application's EA."""
         taken = False
         event = Event("speech", self._serial, {"text": text})
         for app in self._in_order():
+            if question is not None and app.kind != "fa" and app.name != question.app.name:
+                continue
             with self._contained(app):
                 link = app.listens_to(said)
                 if link is not None:

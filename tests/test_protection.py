@@ -98,3 +98,127 @@ def test_what_a_place_offers_is_an_ea(tmp_path: Path) -> None:
     loaded = api.load_scenario(path)
     assert "but a place offers EAs: it runs as an EA" in loaded.problems[0].message
     assert "Only an FA may give" in " ".join(whats(api.rehearse(loaded)))
+
+
+# What reaches whom --------------------------------------------------------------------
+
+HEARS = app("hears", '<form id="f"><on event="message"><speak>For me?</speak></on></form>')
+
+
+def test_a_message_to_an_application_reaches_it_alone(tmp_path: Path) -> None:
+    guide = app("guide", '<form id="f"><on event="message"><speak>Thanks.</speak></on></form>')
+    both = '<application src="hears.xml"/><application src="guide.xml"/>'
+    arrives = '<when at="1s"><message from="Kidode" to="guide">Hi.</message></when>'
+    path = staged(tmp_path, both + arrives, hears=HEARS, guide=guide)
+    made = api.rehearse(path)
+    assert whats(made)[2:] == ["a message from Kidode arrives", '"Thanks."']
+    assert made.rows()[2].app == "guide"
+    assert api.replay(made, path).dumps() == made.dumps()
+    path = staged(tmp_path, both + arrives.replace(' to="guide"', ""))
+    assert sorted(whats(api.rehearse(path))[3:]) == ['"For me?"', '"Thanks."']
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<when at="1s"><message to="giude">Hi.</message></when>',
+        '<service name="server" application="giude"/>',
+    ],
+)
+def test_an_application_that_is_not_there_is_refused(tmp_path: Path, content: str) -> None:
+    guide = app("guide", '<form id="f"><on event="message"><exit/></on></form>')
+    path = staged(tmp_path, f'<application src="guide.xml"/>{content}', guide=guide)
+    told = [one for one in api.validate([path]) if one.code == "no-such-name"]
+    assert [one.remedy for one in told] == ['Did you mean "guide"?']
+    assert told[0].severity == "error"
+
+
+ASKS = """<form id="f"><block><send to="server"/></block>
+<on event="reply.server"><log>it says <value expr="event.data.n"/></log></on>
+<on event="error.service"><log><value expr="event.data.message"/></log></on></form>"""
+
+
+def services(*owners: str) -> str:
+    """Services of one name, each with what it says."""
+    made = ""
+    for owner in owners:
+        whose = f' application="{owner}"' if owner else ""
+        made += f'<service name="server"{whose}><reply after="1s"><data name="n" value="{owner or "all"}"/>'
+        made += "</reply></service>"
+    return made
+
+
+@pytest.mark.parametrize(
+    ("owners", "one", "two"),
+    [
+        (("",), "log: it says all", "log: it says all"),
+        (("one",), "log: it says one", 'log: the service "server" is another application\'s'),
+        (("two", "one"), "log: it says one", "log: it says two"),
+        (("", "two"), "log: it says all", "log: it says two"),
+    ],
+)
+def test_a_service_answers_the_application_that_it_belongs_to(
+    tmp_path: Path, owners: tuple[str, ...], one: str, two: str
+) -> None:
+    both = '<application src="one.xml"/><application src="two.xml"/>'
+    path = staged(tmp_path, both + services(*owners), one=app("one", ASKS), two=app("two", ASKS))
+    said = {row.app: row.what for row in api.rehearse(path).rows() if row.what.startswith("log:")}
+    assert said == {"one": one, "two": two}
+    told = [problem for problem in problems_of(path) if problem.code == "no-such-name"]
+    assert [problem.message for problem in told] == [
+        'The scenario has the service "server" for one alone.'
+    ] * ("another" in two)
+
+
+def test_two_services_of_one_name_for_one_application_are_refused(tmp_path: Path) -> None:
+    content = '<application src="one.xml"/>' + services("one", "one")
+    path = staged(tmp_path, content, one=app("one", ASKS))
+    assert 'Two services have the name "server" for the application "one".' in str(
+        problems_of(path)
+    )
+
+
+FETCHES = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form><block>
+<data name="d" src="{}"/><log>it is there</log></block>
+<catch event="error.badfetch"><log><value expr="_message"/></log></catch></form></vxml>"""
+
+
+@pytest.mark.parametrize("uri", ["service:server", "https://e.example/x"])
+def test_a_fetch_reaches_only_services_of_its_application(tmp_path: Path, uri: str) -> None:
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.vxml").write_text(FETCHES.format(uri))
+    both = '<application src="one.vxml"/><application src="two.vxml"/>'
+    served = services("one").replace(" application", ' uri="https://e.example/" application')
+    made = api.rehearse(staged(tmp_path, both + served))
+    said = {row.app: row.what for row in made.rows() if row.what.startswith("log:")}
+    assert said["one"] == "log: it is there" and "it is there" not in said["two"]
+
+
+QUESTION = """<form id="f"><field name="a"><prompt>Shall I?</prompt><option>yes</option>
+<nomatch><speak>Pardon?</speak><exit/></nomatch><noinput><exit/></noinput></field></form>"""
+LISTENS = """<link event="heard"><grammar>buy it</grammar></link><form id="f">
+<on event="heard"><log>caught</log></on></form>"""
+
+
+@pytest.mark.parametrize(("kind", "caught"), [("ea", False), ("fa", True)])
+def test_an_answer_is_not_offered_to_the_link_of_another_ea(
+    tmp_path: Path, kind: str, caught: bool
+) -> None:
+    both = f'<application src="asks.xml"/><application src="listens.xml" kind="{kind}"/>'
+    documents = {"asks": app("asks", QUESTION), "listens": app("listens", LISTENS, kind)}
+    path = staged(tmp_path, both + '<answer to="Shall I">Buy it.</answer>', **documents)
+    said = whats(api.rehearse(path))
+    assert ("log: caught" in said) == caught and ('"Pardon?"' in said) == (not caught)
+
+
+def test_the_asking_applications_own_link_takes_what_its_question_does_not(tmp_path: Path) -> None:
+    asks = app("asks", LISTENS.partition("<form")[0] + QUESTION.replace("</form>", (
+        '<on event="heard"><log>caught</log></on></form>')))  # fmt: skip
+    content = '<application src="asks.xml"/><answer to="Shall I" times="1">Buy it.</answer>'
+    assert "log: caught" in whats(api.rehearse(staged(tmp_path, content, asks=asks)))
+
+
+def test_while_no_question_listens_everybodys_links_do(tmp_path: Path) -> None:
+    content = '<application src="listens.xml"/><when at="1s"><say>Buy it.</say></when>'
+    path = staged(tmp_path, content, listens=app("listens", LISTENS))
+    assert "log: caught" in whats(api.rehearse(path))

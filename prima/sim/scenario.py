@@ -432,6 +432,8 @@ class Service:
     name: str
     uri: str
     replies: list[Reply]
+    application: str = ""
+    """The application that alone may ask it; empty if all may."""
 
 
 UNANSWERED = ("busy", "noanswer", "network_busy")
@@ -589,6 +591,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
                 node.get("name"),
                 node.get("uri"),
                 [_reply(reader, child) for child in node.nodes if child.key],
+                node.get("application"),
             )
             for node in root.all("service")
         ],
@@ -601,15 +604,16 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
 
 
 def _check_services(reader: Reader) -> None:
-    """Each service has its own name: what is sent to a name goes to one of them."""
-    seen: set[str] = set()
+    """What an application sends to a name goes to one service: its own, or that of all."""
+    seen: set[tuple[str, str]] = set()
     for node in reader.root.all("service"):
-        name = node.get("name")
-        if name in seen:
-            message = f'Two services have the name "{name}".'
+        name, owner = node.get("name"), node.get("application")
+        if (name, owner) in seen:
+            whose = f' for the application "{owner}"' if owner else ""
+            message = f'Two services have the name "{name}"{whose}.'
             remedy = "Rename one, or put the replies of both into one."
             reader.problem(node, "duplicate-name", message, "name", remedy)
-        seen.add(name)
+        seen.add((name, owner))
 
 
 def _when(reader: Reader, node: Node) -> When:

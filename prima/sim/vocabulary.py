@@ -448,7 +448,10 @@ SCENARIO = Vocabulary(
         Element(
             "message",
             "A message arrives from the network: the event message, with its sender and text.",
-            (attribute("from", "text", "who sends it", default=""),),
+            (
+                attribute("from", "text", "who sends it", default=""),
+                attribute("to", "id", "the application that alone gets it; without, all do"),
+            ),
             text=True,
         ),
         Element(
@@ -512,6 +515,9 @@ SCENARIO = Vocabulary(
                 attribute("name", "id", "its name", "required"),
                 attribute(
                     "uri", "text", "an http(s) URI: it answers what is fetched from there or below"
+                ),
+                attribute(
+                    "application", "id", "the application that alone may ask it; without, all may"
                 ),
             ),
             ("reply", "failure"),
