@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import replace
 from itertools import islice
 from os.path import exists, getsize, isfile, normpath
 from typing import TYPE_CHECKING, TypeVar
@@ -125,6 +124,8 @@ def read_application(
     if not is_voicexml(data):
         native, problems = read_document(path, data)
         if kind and native.kind != kind:
+            from dataclasses import replace
+
             native = replace(native, kind=kind)  # others may run the same document as it is
         return native, problems
     from prima.voicexml.document import VoiceDocument, read_page
