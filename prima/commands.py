@@ -34,6 +34,9 @@ wherever the human went, and how its head is turned."""
 ABSENCE_MS = 20_000
 """After how long without being seen, heard or felt the user is absent (rule K1), unless the
 profile says otherwise."""
+PATIENCE_MS = 60_000
+"""How long an application may keep another from the speaker (rule E6), unless the run says
+otherwise."""
 LOOP_MS = 500
 """How long one loop of a feedback Command lasts unless the profile says otherwise."""
 

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from prima.commands import ABSENCE_MS, CommandType
+from prima.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.frame import GoOut
@@ -95,6 +95,7 @@ class Session:
         date: str = START,
         absence: int = ABSENCE_MS,
         isolate: str = "ea",
+        patience: int = PATIENCE_MS,
     ) -> None:
         self._began = moment(date)
         self._engines = Engines(isolate)
@@ -104,7 +105,7 @@ class Session:
         }
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
-        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence)
+        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence, patience)
         self.failures: list[str] = []
         self.unheard = ""
         """What the user said last that nobody took."""

@@ -58,6 +58,12 @@ ENDS_OF_FOLDERS = ("/", os.sep)
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
+@click.option(
+    "--patience",
+    metavar="TIME",
+    callback=lambda context, option, text: _milliseconds(text),
+    help="Let no application keep another from the speaker for longer, 60s by default (rule E6).",
+)
 @why_option
 @click.option(
     "--allow-host",
@@ -98,6 +104,7 @@ def run(
     output: str | None,
     policies: tuple[str, ...],
     bound: int | None,
+    patience: int | None,
     why: bool,
     hosts: tuple[str, ...],
     isolate: str,
@@ -260,4 +267,5 @@ def _outline(transcript: Transcript) -> str:
         reactions += f" after {summary.response_mean:.2f} s"
     if summary.reactions > 1:
         reactions += " on average"
-    return f"{records} of {summary.seconds:.1f} s, {broken} broken, {reactions}"
+    starved = f", {counted(summary.starved, 'behavior')} starved" if summary.starved else ""
+    return f"{records} of {summary.seconds:.1f} s, {broken} broken{starved}, {reactions}"

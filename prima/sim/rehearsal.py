@@ -113,6 +113,7 @@ class Rehearsal:
         bound: int | None = None,
         web: Web | None = None,
         isolate: str = "ea",
+        patience: int | None = None,
     ) -> None:
         self.cast = cast
         problems = check_cast(cast)
@@ -139,6 +140,7 @@ class Rehearsal:
             scenario.date,
             absence=cast.robot.absence,
             isolate=isolate,
+            patience=scenario.patience if patience is None else patience,
         )
         native = [doc for doc in cast.documents if isinstance(doc, Document)]
         self._watching = any(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from prima.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
+from prima.commands import ABSENCE_MS, DEVICES, PATIENCE_MS, TABLE_4_2, Argument, CommandType
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
@@ -505,6 +505,8 @@ class Scenario:
     date: str
     """When the run begins by its own calendar, as ``2005-03-01T10:00:00`` (UTC)."""
     policy: str
+    patience: int
+    """How long (ms) an application may keep others from the speaker (E6); 0 for ever."""
     entrances: bool
     robot_at: str
     robot_heading: float | None
@@ -573,6 +575,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         until=600_000 if (until := reader.get(root, "until")) is None else until,
         date=reader.get(root, "date") or START,
         policy=root.get("policy", "prima"),
+        patience=PATIENCE_MS if (patience := reader.get(root, "patience")) is None else patience,
         entrances=root.get("entrances") == "open",
         robot_at=robots[0].get("at") if robots else "",
         robot_heading=(

@@ -324,6 +324,12 @@ SCENARIO = Vocabulary(
                 ),
                 attribute("policy", "text", "the mediator's policy", default="prima"),
                 attribute(
+                    "patience",
+                    "duration",
+                    "how long an application may keep others from the speaker (E6); 0s for ever",
+                    default="60s",
+                ),
+                attribute(
                     "entrances",
                     "text",
                     "whether the robot takes up the applications that the world's areas offer",
