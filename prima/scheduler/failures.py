@@ -152,7 +152,7 @@ class Failures(Endings):
         )
         if pressed:
             self.halted = True
-            self._selector.patience.interrupt()
+            self._selector.patience.interrupt(self._now())
             running = [ab for ab in self.memory.running.values() if ab.unit is None]
             for ab in running:
                 self._halt(ab)

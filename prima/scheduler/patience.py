@@ -30,8 +30,9 @@ class Patience:
             if ab.kept_from >= 0:
                 ab.kept += now - ab.kept_from
                 ab.overdue = ab.kept >= self._most
-            if ab.waits_from >= 0 and not ab.starves and now - ab.waits_from >= self._most:
-                self._report(ab, now)
+            waited = max(now - ab.waits_from, ab.kept) if ab.waits_from >= 0 else 0
+            if waited >= self._most and not ab.starves:
+                self._report(ab, waited)
 
     def after(self, now: int) -> None:
         """Note who is kept waiting by whom from here on, and when the next one will starve."""
@@ -39,16 +40,19 @@ class Patience:
         if not self._most:
             return
         for ab in self._memory.waiting.values():
-            ab.kept_from = now if rules.keeps_speaker(ab, self._memory) else -1
+            ab.kept_from = -1
             if application(ab.blocked[1]) in ("", ab.app.name):
                 ab.waits_from = -1
-            elif ab.waits_from < 0:
+                continue
+            if rules.keeps_speaker(ab, self._memory):
+                ab.kept_from = now
+            if ab.waits_from < 0:
                 ab.waits_from = now
-            if ab.waits_from >= 0 and not ab.starves:
+            if not ab.starves:
                 due = ab.waits_from + self._most
                 self.due = due if self.due is None else min(due, self.due)
 
-    def _report(self, ab: Behavior, now: int) -> None:
+    def _report(self, ab: Behavior, waited: int) -> None:
         ab.starves = True
         rule, by = ab.blocked
         self._chronicle.add(
@@ -58,7 +62,7 @@ class Patience:
             behavior=ab.id,
             rule="E6" if ab.overdue else rule,
             by=by,
-            data={"waited": (now - ab.waits_from) / 1000},
+            data={"waited": waited / 1000},
         )
 
     def over(self, ab: Behavior) -> None:
@@ -67,8 +71,9 @@ class Patience:
         ab.kept = 0
         ab.starves = ab.overdue = False
 
-    def interrupt(self) -> None:
+    def interrupt(self, now: int) -> None:
         """E5: in an emergency nobody keeps anybody waiting."""
+        self.before(now)
         self.due = None
         for ab in self._memory.waiting.values():
             ab.waits_from = ab.kept_from = -1
