@@ -167,7 +167,7 @@ def run(
             paths,
             policies,
             output or "",
-            Options(bound, hosts, resume, isolate=isolate),
+            Options(bound, hosts, resume, isolate=isolate, patience=patience),
             workers or 0,
             form,
         )
@@ -182,11 +182,25 @@ def run(
         says,
         output,
         policy,
-        Options(bound, hosts, isolate=isolate),
+        Options(bound, hosts, isolate=isolate, patience=patience),
         why,
         form,
         maps,
     )
+
+
+def _milliseconds(text: str | None) -> int | None:
+    """A time as documents write it.
+
+    Raises:
+        UsageError: it is none.
+    """
+    from prima.values import read_value
+
+    try:
+        return None if text is None else int(read_value("duration", text))
+    except ValueError as error:
+        raise UsageError(f'--patience "{text}" {error}') from None
 
 
 def _run_one(
@@ -211,7 +225,7 @@ def _run_one(
     )
 
     def rehearse(sink: api.Sink | None, keep: bool) -> api.Transcript:
-        given = options.bound, sink, keep, options.hosts, options.isolate
+        given = options.bound, sink, keep, options.hosts, options.isolate, options.patience
         return api.rehearse(loaded, policy, *given)
 
     if output is not None:

@@ -236,9 +236,10 @@ class Selection(Patience):
             busy = other is not None and other.phase == RUNNING
             return busy and other is not None and bool(other.devices & ab.devices)
         if rule == "S3":
-            waits = other is not None and other.phase == WAITING
-            waits = waits and (other.cause is not None or self.overdue(other))
-            return waits and other is not None and bool(other.devices & ab.devices)
+            if other is None or other.phase != WAITING:
+                return False
+            waits = other.cause is not None or self.overdue(other)
+            return waits and bool(other.devices & ab.devices)
         kept = {
             "F2": self.refused_by_floor(ab, surely=False),
             "F6": self.refused_by_topic(ab),
