@@ -222,3 +222,54 @@ def test_while_no_question_listens_everybodys_links_do(tmp_path: Path) -> None:
     content = '<application src="listens.xml"/><when at="1s"><say>Buy it.</say></when>'
     path = staged(tmp_path, content, listens=app("listens", LISTENS))
     assert "log: caught" in whats(api.rehearse(path))
+
+
+# How long one of them may keep the speaker ----------------------------------------------
+
+PAUSE = '<break time="50s"/>' * 5
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "<speak>{}</speak>".format("x" * 50_000),
+        f"<speak>One.{PAUSE * 3}Two.</speak>",
+        f"<face-human-and-speak>One.{PAUSE * 3}Two.</face-human-and-speak>",
+    ],
+)
+def test_an_utterance_that_is_too_long_is_an_error_of_validation(tmp_path: Path, said: str) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(app("a", f'<form id="f"><block>{said}<exit/></block></form>'))
+    assert [one.code for one in api.validate([path])] == ["too-long"]
+
+
+@pytest.mark.parametrize(
+    ("body", "taken"),
+    [
+        (f"<speak>{PAUSE}{PAUSE}<value expr=\"'x'.repeat(5000)\"/></speak>", False),
+        (f"<speak>{PAUSE}<value expr=\"'x'.repeat(5000)\"/></speak>", True),
+    ],
+)
+def test_an_utterance_that_turns_out_too_long_is_refused(
+    tmp_path: Path, body: str, taken: bool
+) -> None:
+    handler = '<on event="error.semantic"><log>too long</log><exit/></on>'
+    long = app("long", f'<form id="f"><block>{body}<exit/></block>{handler}</form>')
+    made = api.rehearse(staged(tmp_path, '<application src="long.xml"/>', long=long))
+    assert ("log: too long" in whats(made)) == (not taken)
+    refused = [one["rule"] for one in made.records if one["phase"] == "fail"]
+    assert refused == ([] if taken else ["E3"])
+
+
+@pytest.mark.parametrize(("time", "taken"), [("36000s", False), ("90s", True)])
+def test_a_question_of_voicexml_that_waits_too_long_is_refused(
+    tmp_path: Path, time: str, taken: bool
+) -> None:
+    (tmp_path / "asks.vxml").write_text(
+        '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form><field name="a" type="boolean">'
+        f'<prompt timeout="{time}">Well?</prompt><noinput><exit/></noinput></field>'
+        '<catch event="error.semantic"><log>too long</log><exit/></catch></form></vxml>'
+    )
+    made = api.rehearse(staged(tmp_path, '<application src="asks.vxml"/>'))
+    assert ("log: too long" in whats(made)) == (not taken)
+    assert made.records[-1]["time"] < 120
