@@ -53,8 +53,8 @@ SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="days"
     world="{documents}/worlds/room.xml" robot="{documents}/robots/papero.xml">
   <robot at="middle"/>
   <person x="4.5" y="4.5"/>
-  <application src="{documents}/fa/emotions.xml"/>
-  <application src="{documents}/fa/follow.xml"/>
+  <application src="{documents}/fa/emotions.xml" kind="fa"/>
+  <application src="{documents}/fa/follow.xml" kind="fa"/>
   <application src="host.xml"/>
   <service name="office"><reply after="2s"><data name="known" value="yes"/></reply></service>
   <when at="1s"><event name="visit"/></when>

@@ -21,7 +21,7 @@ VISIT = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visits"
     world="{documents}/worlds/room.xml" robot="{documents}/robots/papero.xml">
   <robot at="middle"/>
   <person x="4.6" y="0" speed="2"/>
-  <application src="{documents}/fa/emotions.xml"/>
+  <application src="{documents}/fa/emotions.xml" kind="fa"/>
   <when at="1s">
     <walk x="1" y="0"/><touch sensor="head"/><wait for="5s"/><walk x="4.6" y="0"/>
   </when>

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from prima.codes import CODES
-from prima.commands import ABSENCE_MS
+from prima.commands import ABSENCE_MS, PATIENCE_MS
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
 from prima.interpreter.elements import Document
@@ -141,6 +141,7 @@ def rehearse(
     keep: bool = True,
     hosts: Iterable[str] = (),
     isolate: str = "ea",
+    patience: int | None = None,
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -156,6 +157,8 @@ def rehearse(
         isolate: whose scripts get a process of their own: each EA's and one for all FAs
             (``ea``), each application's (``all``), or nobody's (``none``: nothing can stop
             a script that escapes the engine's limits).
+        patience: rule E6's bound (ms) on how long an application may keep others from the
+            speaker, 0 for ever; by default the scenario's own.
 
     Raises:
         DocumentError: documents are wrong.
@@ -176,7 +179,9 @@ def rehearse(
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
-    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)), isolate)
+    if patience is None:
+        patience = cast.scenario.patience
+    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)), isolate, patience)
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -187,6 +192,7 @@ def rehearse(
             "policy": name,
             "bound": bound,
             **({} if absence == ABSENCE_MS else {"absence": absence / 1000}),
+            **({} if patience == PATIENCE_MS else {"patience": patience / 1000}),
             "date": cast.scenario.date,
             "applications": [doc.id for doc in cast.documents],
             "files": loaded.files,

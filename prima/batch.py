@@ -105,6 +105,8 @@ class Options:
     """Whose scripts get a process of their own (``prima.api.rehearse``)."""
     parts: str = ""
     """The folder in which transcripts grow."""
+    patience: int | None = None
+    """Rule E6's bound (ms), where it is not the scenario's."""
 
 
 # What is run ----------------------------------------------------------------------------
@@ -488,7 +490,8 @@ def _rehearse(
     """Run a scenario by the options that all runs have in common; records are not kept."""
     from prima import api
 
-    return api.rehearse(loaded, policy, options.bound, sink, False, options.hosts, options.isolate)
+    more = options.hosts, options.isolate, options.patience
+    return api.rehearse(loaded, policy, options.bound, sink, False, *more)
 
 
 def _key(options: Options, job: Job) -> dict[str, Any]:
@@ -498,6 +501,7 @@ def _key(options: Options, job: Job) -> dict[str, Any]:
         "scenario": job.scenario,
         "policy": job.policy,
         "bound": options.bound,
+        "patience": options.patience,
         "hosts": list(options.hosts),
         "limits": dict(options.limits),
     }

@@ -45,6 +45,11 @@ CODES: dict[str, str] = {
     "no-such-name": "A scenario, world or application names a place, thing, gesture, sensor, device or"
     " application that the world, robot or scenario does not have.",
     "no-such-argument": "A Command is given an argument that the robot's profile does not name.",
+    "too-long": "One utterance, or one question, keeps the speaker for ten minutes at most, counted at 50 ms a"
+    " letter: nobody can answer the user meanwhile, as no unit is cut. A run refuses it as error.semantic"
+    " (rule E3).",
+    "other-kind": "A document says that it is an FA, the scenario, the command line or the world that it"
+    " is an EA, or the other way round. These decide: no document makes itself the robot's own.",
     "no-such-file": "A scenario or a grammar names a file that cannot be read. Paths are relative to"
     " the folder of the document that names them.",
     "no-answer": "A field without options, grammar or type takes no answer: the user could never"

@@ -34,6 +34,13 @@ wherever the human went, and how its head is turned."""
 ABSENCE_MS = 20_000
 """After how long without being seen, heard or felt the user is absent (rule K1), unless the
 profile says otherwise."""
+LONGEST_TURN_MS = 600_000
+"""How long one utterance, or one question, may keep the speaker (rule E3)."""
+LETTER_MS = 50
+"""How long a letter counts in that: less than it takes, so that what is refused is surely too long."""
+PATIENCE_MS = 60_000
+"""How long an application may keep another from the speaker (rule E6), unless the run says
+otherwise."""
 LOOP_MS = 500
 """How long one loop of a feedback Command lasts unless the profile says otherwise."""
 
@@ -369,6 +376,15 @@ def check_arguments(
         if name not in values and argument.default is not None:
             values[name] = argument.default
     return values
+
+
+def too_long(letters: int, silence: float) -> str:
+    """What is wrong with an utterance or question of so many letters and ms of silence, if anything."""
+    lasts = letters * LETTER_MS + silence
+    if lasts <= LONGEST_TURN_MS:
+        return ""
+    most = LONGEST_TURN_MS // 1000
+    return f"It keeps the speaker for at least {lasts / 1000:.0f} s; {most} s are the most."
 
 
 def missing_argument(row: CommandType, given: Iterable[str]) -> str:

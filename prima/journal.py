@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from prima.commands import ABSENCE_MS, CommandType
+from prima.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.errors import UsageError
 from prima.messages import (
     Emergency,
@@ -80,7 +80,11 @@ def replay_records(
     yield {**head, "time": round(head["time"] * 1000)}
     date = settings.get("date", START)
     policy = policy_named(settings["policy"])
-    session = Session(documents, policy, commands, settings.get("bound"), date, absence=absence)
+    bound, patience = (
+        settings.get("bound"),
+        round(settings.get("patience", PATIENCE_MS / 1000) * 1000),
+    )
+    session = Session(documents, policy, commands, bound, date, absence=absence, patience=patience)
     batches: dict[int, list[Inbound]] = {}
     for record in held:
         value = inbound_of(record)

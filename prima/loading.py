@@ -115,13 +115,19 @@ def read_application(
 ) -> tuple[AnyDocument, list[Problem]]:
     """Read an application of either language; a VoiceXML document is named after its file.
 
+    ``kind`` is ``fa`` or ``ea`` where the run says so; it counts, whatever the document says.
     ``site`` says where a VoiceXML document and its folder are served.
 
     Raises:
         DocumentError: no document at all can be given.
     """
     if not is_voicexml(data):
-        return read_document(path, data)
+        native, problems = read_document(path, data)
+        if kind and native.kind != kind:
+            from dataclasses import replace
+
+            native = replace(native, kind=kind)  # others may run the same document as it is
+        return native, problems
     from prima.voicexml.document import VoiceDocument, read_page
 
     file = _path(path)
@@ -486,8 +492,7 @@ def stage(
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
-        UsageError: a file cannot be read, two of the applications have one id, or one is of the
-            other kind.
+        UsageError: a file cannot be read, or two of the applications have one id.
     """
     from html import escape
 
@@ -519,10 +524,12 @@ def stage(
         ):
             _refuse_same_id(given)
         raise
-    for (kind, path), document in zip(given, loaded.cast.documents, strict=True):
-        if document.kind != kind:
-            what = "the robot's own (FA)" if document.kind == "fa" else "a place's (EA)"
-            raise UsageError(f"--{kind} {path}: this is {what}; write --{document.kind} {path}.")
+    problems = [one for one in loaded.problems if one.code != "other-kind"]
+    for (kind, _), document in zip(given, loaded.cast.documents, strict=True):
+        own, place = document.node.get("kind"), document.node.attribute_place("kind")
+        remedy = f'Name it with --{own}, or write kind="{kind}".'
+        problems += _other_kind(document, "The document", f"--{kind} names it", place, remedy)
+    loaded.problems = sorted(problems)
     return _without_ignored(loaded)
 
 
@@ -664,7 +671,8 @@ class _Reading:
 
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
-        own = (node.get("id"), node.get("kind")) if node is not None else ("", "")
+        said = node.get("kind") if node is not None else "ea"  # what a place offers is an EA
+        own = (node.get("id") if node is not None else "", said or "ea")
         site = self.site(src, node) if node is not None else None
 
         def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
@@ -680,6 +688,11 @@ class _Reading:
         document, problems = read
         self.problems += problems
         self.documents.append(document)
+        if node is not None:
+            who = "this scenario says EA" if said == "ea" else "this scenario does not say so"
+            who = "this scenario says FA" if said == "fa" else who
+            remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
+            self.problems += _other_kind(document, f'"{src}"', who, place, remedy)
         if site is not None and node is not None and isinstance(document, Document):
             message = f'"{src}" is not VoiceXML, which alone is served at a URI.'
             remedy = "Remove uri and folder."
@@ -740,10 +753,9 @@ class _Reading:
         """What an area offers: an EA."""
         place = area.node.attribute_place("application")
         document = self.application(name, place)
-        if document is not None and document.kind != "ea":
-            message = f'"{area.src}" is an FA; a place offers EAs.'
-            remedy = "A scenario names FAs in its <application>."
-            self.problems.append(Problem(place, "error", "bad-value", message, remedy))
+        if document is not None:
+            who, remedy = "a place offers EAs", 'Write kind="ea" in the document.'
+            self.problems += _other_kind(document, f'"{area.src}"', who, place, remedy)
         return document
 
     def check_commands(self, robot: Profile) -> None:
@@ -769,6 +781,18 @@ class _Reading:
             self.problems.append(Problem(place, "error", "bad-value", wrong, remedy))
         if problem := favourite_problem(scenario.policy, self.documents):
             self.problems.append(Problem(place, "error", "no-such-name", *problem))
+
+
+def _other_kind(
+    document: AnyDocument, name: str, who: str, place: Place, remedy: str
+) -> list[Problem]:
+    """Warn of a document that says it is of another kind than the run does, which counts."""
+    own = document.node.get("kind")
+    if not isinstance(document, Document) or own in ("", document.kind):
+        return []
+    runs = f"it runs as an {document.kind.upper()}"
+    message = f"{name} says that it is an {own.upper()}, but {who}: {runs}."
+    return [Problem(place, "warning", "other-kind", message, remedy)]
 
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:

@@ -98,10 +98,10 @@ def _scenario(path: Path) -> list[Path]:
     world = read_world(str(found["world"][0]), read_file(found["world"][0]))
     place, (x, y) = next(iter(world.places.items()))
     applications = [
-        f'  <application src="{escape(one.name)}"' + (' kind="ea"' if one.suffix == ".vxml" else "")
-        + "/>"
-        for one in [*found["fa"], *found["ea"]]
-    ]  # fmt: skip
+        f'  <application src="{escape(one.name)}" kind="{kind}"/>'
+        for kind in ("fa", "ea")
+        for one in found[kind]
+    ]
     said = "".join(read_file(one).decode(errors="replace") for one in [*found["fa"], *found["ea"]])
     answers = [
         f'  <answer to="{escape(question)}">{escape(answer)}</answer>'

@@ -21,7 +21,7 @@ from typing import Any
 import prima
 from prima import examples, prelude
 from prima.codes import CODES
-from prima.commands import TABLE_4_2, CommandType
+from prima.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.errors import UsageError
 from prima.interpreter import (
     application,
@@ -235,6 +235,11 @@ def limits() -> str:
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
         ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
+        (
+            "what one utterance or question keeps the speaker, at 50 ms a letter",
+            f"{LONGEST_TURN_MS // 1000} s",
+            "`too-long`, `error.semantic`",
+        ),
         (
             "what an application says, logs and sends in one instant",
             f"{bounds.MAX_OUTPUT:,} characters",

@@ -210,6 +210,12 @@ EXAMPLES: dict[str, Example] = {
     "E5": Example(
         "rules/stopped.xml", "Everything ends at 2.00 s, and goes on at 4.00 s.", "pressed"
     ),
+    "E6": Example(
+        "rules/patience.xml",
+        "trains wants to speak at 0.60 s. barker goes on by S2c, for 5 s; then it is trains' turn"
+        " at the next end of a sentence, and barker goes on afterwards.",
+        '"I like trains',
+    ),
     "X1": Example(
         "scenarios/situations/s07.xml",
         "The robot goes back to where it was before the topic is resumed.",

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from prima.commands import ABSENCE_MS, CommandType
+from prima.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.frame import GoOut
@@ -95,6 +95,7 @@ class Session:
         date: str = START,
         absence: int = ABSENCE_MS,
         isolate: str = "ea",
+        patience: int = PATIENCE_MS,
     ) -> None:
         self._began = moment(date)
         self._engines = Engines(isolate)
@@ -104,7 +105,7 @@ class Session:
         }
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
-        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence)
+        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence, patience)
         self.failures: list[str] = []
         self.unheard = ""
         """What the user said last that nobody took."""
@@ -376,7 +377,7 @@ class Session:
                 return
         if question is None and self._breaks_in(value, said):
             return
-        if self._follow_links(value.text, said):
+        if self._follow_links(value.text, said, question):
             return
         if question is None or question.silent:
             self.unheard = value.text
@@ -409,10 +410,13 @@ class Session:
                 return True
         return False
 
-    def _follow_links(self, text: str, said: list[Hypothesis]) -> bool:
+    def _follow_links(self, text: str, said: list[Hypothesis], question: Behavior | None) -> bool:
+        """V1: links take it; what was said to a question, no link of another application's EA."""
         taken = False
         event = Event("speech", self._serial, {"text": text})
         for app in self._in_order():
+            if question is not None and app.kind != "fa" and app.name != question.app.name:
+                continue
             with self._contained(app):
                 link = app.listens_to(said)
                 if link is not None:

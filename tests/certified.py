@@ -204,7 +204,8 @@ def _starved(certificate: Certificate, run: Watched, rates: dict[str, float]) ->
         if waited > allowed + SLACK and not told and not certificate.others.unknown:
             found.append(f"{spell.name} starves for {waited:.3f} > {allowed:.3f}")
     for record in run.records:
-        if record["phase"] == "starve" and record["app"] == certificate.fa:
+        loops = record["phase"] == "starve" and record["rule"] == "E4"
+        if loops and record["app"] == certificate.fa:
             spell = run.spells[record["behavior"].partition(".")[0]]
             if not any(_covers(one, spell) for one in certificate.starves):
                 found.append(f"{spell.name} starves by {record['by']}")

@@ -20,7 +20,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from prima.commands import TABLE_4_2, CommandType
+from prima.commands import PATIENCE_MS, TABLE_4_2, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.reader import read_document
 from prima.messages import (
@@ -237,7 +237,9 @@ class Play:
     world: World
 
 
-def perform(play: Play, policy: str = "prima", bound: int | None = None) -> Run:
+def perform(
+    play: Play, policy: str = "prima", bound: int | None = None, patience: int = PATIENCE_MS
+) -> Run:
     """Run a play to its end, or cut it off."""
     documents = []
     for number, text in enumerate(play.documents):
@@ -245,7 +247,8 @@ def perform(play: Play, policy: str = "prima", bound: int | None = None) -> Run:
         errors = [str(problem) for problem in problems if problem.severity == "error"]
         assert not errors, (errors, text)
         documents.append(document)
-    session = Session(documents, policy_named(policy), play.world.table, bound)
+    chosen = policy_named(policy)
+    session = Session(documents, chosen, play.world.table, bound, patience=patience)
     devices = Devices(play.world)
     for document, start in zip(documents, play.loads, strict=True):
         devices.plan(start, Loaded(document.id))
@@ -737,10 +740,10 @@ class Requester:
             self.act(mediator, self.windows.pop(0))
 
 
-def drive(script: Script, policy: str = "prima") -> Run:
+def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) -> Run:
     """Run a script; it does what a session does, by rule V3."""
     chronicle = Chronicle()
-    mediator = Mediator(policy_named(policy), script.world.table, chronicle)
+    mediator = Mediator(policy_named(policy), script.world.table, chronicle, patience=patience)
     apps = {
         name: Requester(name, windows) for name, windows in zip(APPS, script.windows, strict=False)
     }

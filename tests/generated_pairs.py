@@ -274,6 +274,6 @@ def _scenario(random: Random) -> str:
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="70s"'
         f' world="{folder}/worlds/room.xml" robot="{folder}/robots/papero.xml">'
         f'<robot at="middle"/><person {place}/>'
-        '<application src="mine.xml"/><application src="{ea}" id="theirs"/>'
+        '<application src="mine.xml" kind="fa"/><application src="{ea}" id="theirs"/>'
         f"{''.join(whens)}</scenario>"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from prima.commands import TABLE_4_2, CommandType
+from prima.commands import PATIENCE_MS, TABLE_4_2, CommandType
 from prima.messages import (
     CloseUnit,
     Command,
@@ -60,9 +60,11 @@ class Stage:
         apps: Mapping[str, str] | None = None,
         table: Mapping[str, CommandType] = TABLE_4_2,
         bound: int | None = None,
+        patience: int = PATIENCE_MS,
     ) -> None:
         self.chronicle = Chronicle()
-        self.mediator = Mediator(policy_named(policy), table, self.chronicle, bound)
+        chosen = policy_named(policy)
+        self.mediator = Mediator(chosen, table, self.chronicle, bound, patience=patience)
         for name, kind in ({"fa": "fa", "ea": "ea"} if apps is None else apps).items():
             self.mediator.load(name, kind)
         self.runs = 0

@@ -183,7 +183,7 @@ def test_no_reaction_waits_longer_than_is_certified(tmp_path: Path, touched: int
     text = (
         f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="20s"'
         f' world="{ROOT}/documents/worlds/room.xml" robot="{ROBOT}"><robot at="middle"/>'
-        '<person x="1" y="0"/><application src="theirs.xml"/><application src="mine.xml"/>'
+        '<person x="1" y="0"/><application src="theirs.xml"/><application src="mine.xml" kind="fa"/>'
         f'<when at="{touched}ms"><touch sensor="head"/></when></scenario>'
     )
     (tmp_path / "s.xml").write_text(text)
@@ -221,7 +221,7 @@ def run(folder: Path, fa: str, ea: str, whens: str, until: str = "60s") -> list[
     text = (
         f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="{until}"'
         f' world="{ROOT}/documents/worlds/room.xml" robot="{ROBOT}"><robot at="middle"/>'
-        f'<person x="1" y="0"/><application src="{Path(fa).name}"/>'
+        f'<person x="1" y="0"/><application src="{Path(fa).name}" kind="fa"/>'
         f'<application src="{Path(ea).name}" id="theirs"/>{whens}</scenario>'
     )
     (folder / "s.xml").write_text(text)
@@ -622,3 +622,38 @@ def test_the_demos_have_useful_certificates(fa: Path, ea: Path) -> None:
             "an expression gives its text",
             "an expression gives a part of what it says",
         }
+
+
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        ('<block><speak>Buy.</speak><goto next="#f"/></block>', "f follows itself"),
+        (
+            '<block><speak>Buy.</speak></block><on event="end.speak"><speak>More.</speak></on>',
+            "what is done about end.speak leads to it again",
+        ),
+        (
+            '<subdialog name="s" src="#sub"><filled><clear/></filled></subdialog></form>'
+            '<form id="sub"><block><speak>Buy.</speak><return/></block>',
+            "items of the form are visited again",
+        ),
+        (
+            '<subdialog name="s" src="#sub"/><block><goto next="#f"/></block></form>'
+            '<form id="sub"><block><speak>Buy.</speak><return/></block>',
+            "f follows itself",
+        ),
+    ],
+)
+def test_whoever_talks_without_an_end_is_certified_to(tmp_path: Path, body: str, why: str) -> None:
+    """As the run shows: an FA's sentence that is no reaction waits as long as that goes on."""
+    own = (
+        '<form id="s"><block><send event="now" delay="1s"/></block>'
+        '<on event="now"><speak>It is three.</speak><exit/></on></form>'
+    )
+    found = certified(tmp_path, f'<form id="f">{body}</form>', own)
+    (starved,) = found.starves
+    assert why in starved.what and (starved.rule, starved.devices) == ("S2c", ("speaker",))
+    assert "(S2c), each for a run's patience, 60 s by default (E6)" in format_certificate(found)
+    records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), "", "100s")
+    told = [(one["app"], one["rule"]) for one in records if one["phase"] == "starve"]
+    assert told == [("mine", "E6")]

@@ -40,7 +40,7 @@ INSIDE = {
         {"behavior"},
         {"chronicle", "memory", "intake"},
         {"rules"},
-        {"selection"},
+        {"patience", "selection"},
         {"selector"},
         {"endings"},
         {"failures"},

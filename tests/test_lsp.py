@@ -671,7 +671,7 @@ FIXED = {
     "end tag": (BEGIN + '<form id="a"><block><exit/></form></prima>', "<exit/></block></form>"),
     "end": (BEGIN + '<form id="a"><block><exit/></block></form>\n', "</form></prima>\n"),
     "namespace": (BEGIN.replace("dialogue", "dialoge") + '<form id="a"/></prima>', "urn:prima:dialogue:1"),
-    "place": (SCENE + '<robot at="entrace"/><application src="../fa/follow.xml"/></scenario>', 'at="entrance"'),
+    "place": (SCENE + '<robot at="entrace"/><application src="../fa/follow.xml" kind="fa"/></scenario>', 'at="entrance"'),
 }  # fmt: skip
 
 

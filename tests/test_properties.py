@@ -85,6 +85,15 @@ def test_records_tell_what_was_when_they_were_made_however_late_they_are_drained
     assert sessions[0].chronicle.drain() == records
 
 
+@given(plays(), scripts(), st.sampled_from([0, 5, 30, 200]), st.one_of(st.just("prima"), extended))
+@examples(12)
+def test_whoever_is_kept_from_the_speaker_has_a_turn(
+    play: Play, script: Script, patience: int, policy: str
+) -> None:
+    for run in (perform(play, policy, patience=patience), drive(script, policy, patience)):
+        assert check(run.records, policy, APPS, patience) + run.problems == []
+
+
 @given(plays(), extended)
 @examples(20)
 def test_documents_keep_the_invariants_with_extensions(play: Play, policy: str) -> None:

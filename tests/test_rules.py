@@ -861,6 +861,114 @@ def test_e2_an_unloaded_application_gives_back_what_it_holds() -> None:
     assert stage.select() == ["fa#1"]
 
 
+def test_e6_who_is_kept_from_the_speaker_has_a_turn_at_last() -> None:
+    stage = Stage(patience=5000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."), say("Two."))
+    stage.select()
+    for number in range(1, 20):
+        stage.at(1000 * number)
+        stage.end(f"ea#{number}", then=lambda: stage.request("ea", say("On.")))
+        if (started := stage.select()) != [f"ea#{number + 1}"]:
+            break
+    assert started == ["fa#1"] and stage.chronicle.now == 6000
+    assert stage.rule("fa#1") == "E6" and stage.losers("fa#1") == ["ea#7"]
+    assert stage.floor == [], "no reaction, so that nobody is suspended"
+    assert [(r["time"], r["rule"]) for r in stage.phases("starve")] == [(6000, "E6")]
+    stage.at(7000).end("fa#1")
+    assert stage.select() == ["fa#2"], "its stream goes on (S2c)"
+    stage.at(8000).end("fa#2")
+    assert stage.select() == ["ea#7"], "and then the other one"
+
+
+@pytest.mark.parametrize(("patience", "turns"), [(0, []), (5000, ["fa#1"])])
+def test_e6_without_patience_it_waits_for_ever(patience: int, turns: list[str]) -> None:
+    stage = Stage(patience=patience)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    found: list[str] = []
+    for number in range(1, 9):
+        stage.at(1000 * number)
+        if f"ea#{number}" in stage.running:
+            stage.end(f"ea#{number}", then=lambda: stage.request("ea", say("On.")))
+        found += [one for one in stage.select() if one.startswith("fa")]
+    assert found == turns
+
+
+def test_e6_only_the_speaker_counts_and_no_floor() -> None:
+    """A reaction's stream has the floor (F2): who waits for that is not kept from the speaker."""
+    stage = Stage(patience=5000)
+    stage.request("ea", say("Yes?"), say("A"), say("long"), say("story."), cause=EVENT)
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    for number in range(1, 4):
+        stage.at(4000 * number).end(f"ea#{number}")
+        assert stage.select() == [f"ea#{number + 1}"]
+    assert [(r["rule"], r["by"]) for r in stage.phases("starve")] == [("F2", "ea:1")]
+    stage.at(16_000).end("ea#4", then=lambda: stage.request("ea", say("Next.")))
+    assert stage.select() == ["ea#5"]
+
+
+def test_e6_a_reaction_goes_first() -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).request("ea", say("Ouch."), cause=EVENT)
+    stage.end("ea#1")
+    assert stage.select() == ["ea#2"]
+
+
+@pytest.mark.parametrize(
+    ("then", "started"), [(say("Thank you."), ["ea#2"]), (ask("And why?"), ["fa#1"])]
+)
+def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
+    then: Command, started: list[str]
+) -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    stage.settle(lambda: stage.request("ea", then, say("More.")))
+    assert stage.select() == started
+    if started == ["ea#2"]:
+        stage.at(6000).end("ea#2")
+        assert stage.select() == ["fa#1"], "before its next sentence"
+
+
+def test_e6_holds_other_devices_back_as_well() -> None:
+    """Two devices that another application uses in turn are kept for it (S3)."""
+    stage = Stage(patience=1000)
+    stage.request("ea", Group(chain(say("One."), command("move-head", pan=1))))
+    stage.select()
+    stage.at(1).request("fa", Group(chain(say("Me."), command("move-head", pan=2))))
+    stage.select()
+    stage.at(500).end("ea#2")
+    stage.select()
+    stage.at(2000).end("ea#3")
+    assert stage.select() == ["fa#1", "fa#2"]
+
+
+def test_e6_k1_stands_above_it() -> None:
+    """What leaves the user waits for the conversation, however long that takes."""
+    stage = Stage(patience=1000)
+    stage.request("ea", ask(), ask(), ask())
+    stage.select()
+    stage.at(1).request("fa", move())
+    stage.select()
+    for number in range(1, 3):
+        stage.at(4000 * number).end(f"ea#{number}")
+        assert stage.select() == [f"ea#{number + 1}"]
+    assert [r["rule"] for r in stage.phases("starve")] == ["K1"]
+
+
 @pytest.mark.parametrize(
     "bad",
     [

@@ -40,7 +40,7 @@ def rehearse(
 ) -> api.Transcript:
     """Run one application (and perhaps another) in the office."""
     (folder / "app.xml").write_text(HEAD.format("fa", "app", lang) + body + "</prima>", "utf-8")
-    applications = '<application src="app.xml"/>'
+    applications = '<application src="app.xml" kind="fa"/>'
     if other:
         (folder / "other.xml").write_text(HEAD.format("ea", "other", "en") + other + "</prima>")
         applications += '<application src="other.xml"/>'
@@ -604,7 +604,7 @@ def test_a_pause_of_a_move_loses_no_corner(tmp_path: Path, policy: str, at: floa
     path.write_text(
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="ward.xml"'
         f' robot="{ROOT}/documents/robots/papero.xml" until="60s"><robot at="door"/>'
-        '<application src="nice.xml"/><application src="guide.xml"/>'
+        '<application src="nice.xml" kind="fa"/><application src="guide.xml"/>'
         f'<when at="{at}s"><touch sensor="head"/></when></scenario>'
     )
     said = [row.what for row in api.rehearse(path, policy).rows() if row.what.startswith('"')]

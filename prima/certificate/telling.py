@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from prima.certificate.finding import Delay, Starving
+from prima.commands import PATIENCE_MS
 from prima.prices import Gap, Price
 
 if TYPE_CHECKING:
@@ -100,6 +101,8 @@ def _starving(starved: Starving, one: Certificate) -> list[str]:
         kinds.append(f"all, where {one.ea} has the floor (F2)")
     if starved.devices:
         rule = f" ({starved.rule})" if starved.rule else ""
+        if starved.rule == "S2c" and "speaker" in starved.devices:
+            rule += f", each for a run's patience, {PATIENCE_MS / 1000:g} s by default (E6)"
         kinds.append(f"equal ones on {_list(starved.devices)}{rule}")
     if starved.leaving:
         kinds.append("those that leave the user (K1)")

@@ -58,6 +58,12 @@ ENDS_OF_FOLDERS = ("/", os.sep)
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
+@click.option(
+    "--patience",
+    metavar="TIME",
+    callback=lambda context, option, text: _milliseconds(text),
+    help="Let no application keep another from the speaker for longer, 60s by default (rule E6).",
+)
 @why_option
 @click.option(
     "--allow-host",
@@ -98,6 +104,7 @@ def run(
     output: str | None,
     policies: tuple[str, ...],
     bound: int | None,
+    patience: int | None,
     why: bool,
     hosts: tuple[str, ...],
     isolate: str,
@@ -160,7 +167,7 @@ def run(
             paths,
             policies,
             output or "",
-            Options(bound, hosts, resume, isolate=isolate),
+            Options(bound, hosts, resume, isolate=isolate, patience=patience),
             workers or 0,
             form,
         )
@@ -175,11 +182,25 @@ def run(
         says,
         output,
         policy,
-        Options(bound, hosts, isolate=isolate),
+        Options(bound, hosts, isolate=isolate, patience=patience),
         why,
         form,
         maps,
     )
+
+
+def _milliseconds(text: str | None) -> int | None:
+    """A time as documents write it.
+
+    Raises:
+        UsageError: it is none.
+    """
+    from prima.values import read_value
+
+    try:
+        return None if text is None else int(read_value("duration", text))
+    except ValueError as error:
+        raise UsageError(f'--patience "{text}" {error}') from None
 
 
 def _run_one(
@@ -204,7 +225,7 @@ def _run_one(
     )
 
     def rehearse(sink: api.Sink | None, keep: bool) -> api.Transcript:
-        given = options.bound, sink, keep, options.hosts, options.isolate
+        given = options.bound, sink, keep, options.hosts, options.isolate, options.patience
         return api.rehearse(loaded, policy, *given)
 
     if output is not None:
@@ -260,4 +281,5 @@ def _outline(transcript: Transcript) -> str:
         reactions += f" after {summary.response_mean:.2f} s"
     if summary.reactions > 1:
         reactions += " on average"
-    return f"{records} of {summary.seconds:.1f} s, {broken} broken, {reactions}"
+    starved = f", {counted(summary.starved, 'behavior')} starved" if summary.starved else ""
+    return f"{records} of {summary.seconds:.1f} s, {broken} broken{starved}, {reactions}"

@@ -27,6 +27,7 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
+from prima.commands import PATIENCE_MS
 from prima.errors import TOO_MUCH, RunError, UsageError
 
 if TYPE_CHECKING:
@@ -180,6 +181,7 @@ def _head(game: Game, loaded: Loaded) -> Record:
             "scenario": scenario.id,
             "policy": game.policy,
             "bound": None,
+            **({} if scenario.patience == PATIENCE_MS else {"patience": scenario.patience / 1000}),
             "date": scenario.date,
             "applications": [doc.id for doc in game.cast.documents],
             "files": {name: digest for name, digest in loaded.files.items() if name != own},

@@ -11,6 +11,7 @@ from prima.commands import (
     check_argument,
     excluding_arguments,
     missing_argument,
+    too_long,
 )
 from prima.deferred import pattern
 from prima.errors import Problem, parted
@@ -48,6 +49,7 @@ from prima.interpreter.elements import (
     Throw,
     Unit,
     Watch,
+    pauses_in,
     run_commands,
 )
 from prima.interpreter.grammar import (
@@ -466,6 +468,8 @@ class Builder:
             )
             for child in parts.get("prompt", ())
         )
+        for prompt in prompts:
+            self.check_length(prompt.node, prompt.text)
         answers = Answers(type=node.get("type"))
         for child in parts.get("option", ()):
             said = child.text
@@ -690,12 +694,19 @@ class Builder:
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]
             choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]
             self.problem(node, "exclusive", excluding, "Keep one of them.", choices[-1])
+        self.check_length(node, text)
         wordless = text is not None and all(isinstance(part, Pause) for part in text)
         if wordless or (row.text == "required" and text is None):
             remedy = "Write its text inside it."
             if wordless and row.text == "required":
                 remedy += ' A pause between Commands is <pause time="1s"/>.'
             self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
+
+    def check_length(self, node: Node, text: Text | None) -> None:
+        """Whether what is said takes longer than one utterance may (E3), as far as it is known."""
+        letters = sum(len(part) for part in text or () if isinstance(part, str))
+        if problem := too_long(letters, pauses_in(text)):
+            self.problem(node, "too-long", problem, "Divide it: say it in several Commands.")
 
     def act(self, node: Node) -> Act | None:
         """One element of executable content that is no Command."""

@@ -315,6 +315,8 @@ REFERS: dict[tuple[str, str, str], Use] = {
     ("scenario", "when", "done"): Use(("command",)),
     ("scenario", "when", "on"): Use(("event",)),
     ("scenario", "unload", "application"): Use(("application",)),
+    ("scenario", "service", "application"): Use(("application",)),
+    ("scenario", "message", "to"): Use(("application",)),
     ("voicexml", "goto", "next"): Use(("form",), "uri"),
     ("voicexml", "link", "next"): Use(("form",), "uri"),
     ("voicexml", "choice", "next"): Use(("form",), "uri"),

@@ -95,7 +95,7 @@ def loops(outline: Outline) -> list[Loop]:
     found = []
     for states in _cycles(outline):
         names = frozenset(state.name for state in states)
-        parts = [part for state in states for part in state.parts]
+        parts = [part for state in _with_called(outline, states) for part in state.parts]
         first = min(states, key=lambda state: state.node.index)
         told = [one for state in states for one in state.repeats]
         if len(states) == 1 and first.name not in first.goes and told:
@@ -108,6 +108,18 @@ def loops(outline: Outline) -> list[Loop]:
         what = f"{listed} {follows} without a wait for an event"
         found.append(_loop(place, what, parts, names))
     return [loop for loop in found if loop.devices]
+
+
+def _with_called(outline: Outline, states: list[State]) -> list[State]:
+    """Some states, and those that their subdialogs lead to: they are done in every round."""
+    called = {
+        one
+        for state in states
+        for callee in state.calls
+        for one in (callee, *_reach(outline, callee))
+    }
+    own = {state.name for state in states}
+    return [*states, *(outline.states[one] for one in outline.states if one in called - own)]
 
 
 def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) -> Loop:

@@ -39,6 +39,7 @@ from prima.prices.contents import (
     contents_of,
     handlers_of,
     inside,
+    leads_round,
     own_contents,
     sent_by,
     thrown_by,
@@ -232,7 +233,13 @@ class _Reader:
             handlers += item.handlers
             self._add_item(state, item, form)
             contents += [] if item.node.index in self.inside else own_contents(item)
-        contents += [one.content for one in handlers if self._inner(one)]
+        inner = [one for one in handlers if self._inner(one)]
+        state.repeats += [
+            Gap(one.node.place, f"what is done about {one.events[0]} leads to it again")
+            for one in inner
+            if leads_round(one, inner)
+        ]
+        contents += [one.content for one in inner]
         return self._content(state, contents, form)
 
     def _add_item(self, state: State, item: Item, form: Form) -> None:

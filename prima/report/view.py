@@ -127,12 +127,20 @@ def _facts(records: Sequence[Record], head: dict[str, Json]) -> list[tuple[str, 
         ("Scenario", _short(head.get("scenario"))),
         ("Policy", _short(head.get("policy"))),
         ("Bound (E4)", _short(head.get("bound"))),
+        ("Patience (E6), in seconds", _short(head.get("patience"))),
         ("Applications", _short(", ".join(apps))),
         ("Date of the run", _short(head.get("date"))),
         ("PRIMA", _short(head.get("version"))),
         ("Length", f"{last['time']:.2f} s; {_short(end)}"),
     ]
     return [(name, value) for name, value in told if value]
+
+
+def _starved(records: Sequence[Record]) -> list[tuple[str, str, str]]:
+    """What another application has kept waiting for too long, if anything."""
+    count = sum(record["phase"] == "starve" for record in records)
+    told = "behaviours that another application has kept waiting for too long (E4, E6)"
+    return [("Starved", str(count), told)] if count else []
 
 
 def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
@@ -147,6 +155,7 @@ def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
         ("Waiting", str(found.broken_waiting), "waits for a server that were broken"),
         ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
         ("Left", str(found.left), "conversations that the robot left"),
+        *_starved(records),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
         ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
         (

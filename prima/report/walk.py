@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from prima.commands import PATIENCE_MS
 from prima.errors import UsageError
 from prima.messages import Json, Record
 
@@ -115,8 +116,12 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     policy, bound = head.get("policy"), head.get("bound")
     if bound is not None and (not isinstance(bound, int) or bound < 1):
         return None
+    patience = head.get("patience", PATIENCE_MS / 1000)
+    if not isinstance(patience, int | float) or patience < 0:
+        return None
     try:
-        rehearsal = Rehearsal(loaded.cast, policy_named(str(policy)), bound)
+        policy = policy_named(str(policy))
+        rehearsal = Rehearsal(loaded.cast, policy, bound, patience=round(patience * 1000))
     except UsageError:
         return None
     watch = Watch(rehearsal.world)

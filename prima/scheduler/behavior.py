@@ -55,6 +55,8 @@ class Stream:
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: bool = False
     """Whether another stream has taken the floor and nothing of this one has started since (C2)."""
+    answered: int = -1
+    """The instant in which the user has answered a question of it (E6)."""
     place: int = 0
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
     that resumes keeps its place until the selection is over; 0 for others."""
@@ -163,6 +165,16 @@ class Behavior:
     """The rule by which the mediator itself put the AB in (X1, X4)."""
     blocked: tuple[str, str] = ("", "")
     waited_loops: int = 0
+    waits_from: int = -1
+    """Since when (ms) another application keeps it waiting; -1 while none does."""
+    starves: bool = False
+    """Whether that has been reported."""
+    kept: int = 0
+    """How long (ms) others have kept it from the speaker alone (E6)."""
+    kept_from: int = -1
+    """Since when (ms) they do so; -1 while they do not."""
+    overdue: bool = False
+    """Whether they have done so for as long as they may."""
     # Units only (U4, U5):
     spans: bool = False
     open: bool = False

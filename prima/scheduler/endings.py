@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from prima.commands import ABSENCE_MS
+from prima.commands import ABSENCE_MS, PATIENCE_MS
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import (
     GONE,
@@ -44,6 +44,7 @@ class Endings:
         chronicle: Chronicle,
         bound: int | None = None,
         absence: int = ABSENCE_MS,
+        patience: int = PATIENCE_MS,
     ) -> None:
         """Begin with nothing.
 
@@ -53,6 +54,7 @@ class Endings:
             chronicle: takes the records.
             bound: after how many loops of another a waiting AB counts as a reaction (E4).
             absence: after how long (ms) without being sensed the user is absent (K1).
+            patience: how long (ms) others may keep an AB from the speaker (E6); 0 for ever.
         """
         self._absence = absence
         self.chronicle = chronicle
@@ -60,7 +62,7 @@ class Endings:
         self.memory = Memory()
         self.told: deque[Told] = deque()
         self._maker = Maker(table)
-        self._selector = Selector(self.memory, policy, self._maker, chronicle, bound)
+        self._selector = Selector(self.memory, policy, self._maker, chronicle, bound, patience)
         self.holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
         self._restoring = policy.has("x1")
@@ -222,6 +224,8 @@ class Endings:
             body.moved(ab.type, ab.command, data)
             if ab.inserted != "X1" and (ending or "follow" in ab.type.effects):
                 ab.stream.effects.add(ab.type, ab.command, data, body)
+        if not inbound and ab.type is not None and "speech-recognition" in ab.type.devices:
+            ab.stream.answered = self._now()
         if ending:
             self._finish(ab, data)
         else:

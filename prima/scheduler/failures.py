@@ -64,6 +64,9 @@ class Failures(Endings):
         lapse = self._lapse()
         if lapse is not None:
             late.append(lapse)
+        starving = self._selector.patience.due
+        if starving is not None and not self.halted:
+            late.append(starving)
         return min((*late, *self.holds.values()), default=None)
 
     def _lapse(self) -> int | None:
@@ -149,6 +152,7 @@ class Failures(Endings):
         )
         if pressed:
             self.halted = True
+            self._selector.patience.interrupt(self._now())
             running = [ab for ab in self.memory.running.values() if ab.unit is None]
             for ab in running:
                 self._halt(ab)

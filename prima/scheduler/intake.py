@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from prima.commands import TABLE_4_2, CommandType, check_arguments
+from prima.commands import TABLE_4_2, CommandType, check_arguments, too_long
 from prima.errors import did_you_mean
 from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
 from prima.scheduler.behavior import GONE, Application, Behavior, Run, Stream
@@ -46,7 +46,19 @@ def check_command(command: Command, app: Application, table: Table) -> None:
         command.args = dict(check_arguments(row, command.text, command.args))
     except ValueError as error:
         raise Refused("error.semantic", str(error), command) from None
+    if problem := too_long(len(command.text or ""), silence(command)):
+        raise Refused("error.semantic", f"{problem} Divide it.", command)
     command.now = command.now or row.now
+
+
+def silence(command: Command) -> float:
+    """How long (ms) it keeps the speaker without a word: its pauses, and a question's timeout."""
+    if command.text is None and command.type != "q-and-a":
+        return 0
+    times = [cue.value for cue in command.cues if cue.kind in ("pause", "lasts")]
+    stated = [one for one in times if isinstance(one, int | float)]
+    timeout = command.args.get("timeout") if command.type == "q-and-a" else 0
+    return sum(stated) + (timeout if isinstance(timeout, int | float) else 0)
 
 
 def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:

@@ -1,6 +1,6 @@
-"""The rules of selection (S2, F2, F3, F6, K1), each in one function named after it.
+"""The rules of selection (S2, E6, F2, F3, F6, K1), each in one function named after it.
 
-``s2*`` rank an AB: the smaller goes first. The others say what keeps a waiting AB from
+``s2*`` and ``e6`` rank an AB: the smaller goes first. The others say what keeps a waiting AB from
 starting, as a :data:`Refusal`, or None.
 """
 
@@ -28,6 +28,32 @@ def s2b(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
     if ab.reaction is None:
         return NO_REACTION
     return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
+
+
+def e6(ab: Behavior, memory: Memory, now: int) -> int:
+    """Then what others have kept from the speaker for too long, after what follows an answer."""
+    if not ab.overdue:
+        return 1
+    return 1 if any(acknowledges(other, now) for other in memory.waiting.values()) else 0
+
+
+def acknowledges(ab: Behavior, now: int) -> bool:
+    """E6: whether it is what a user hears who has just answered, and no further question."""
+    asks = ab.type is not None and "speech-recognition" in ab.type.devices
+    return ab.stream.answered == now and ab.freed == now and "speaker" in ab.devices and not asks
+
+
+def keeps_speaker(ab: Behavior, memory: Memory) -> bool:
+    """E6: whether another application keeps a waiting AB from the speaker, and no rule does.
+
+    A floor (F2) and a channel (K1) are rules; a topic between two utterances (F6) is not.
+    """
+    if "speaker" not in ab.devices or ab.reaction is not None:
+        return False
+    if f2(ab, memory) is not None or k1(ab, memory) is not None:
+        return False
+    other = memory.occupied.get("speaker")
+    return f6(ab, memory) is not None if other is None else other.app is not ab.app
 
 
 def s2c(ab: Behavior, now: int) -> int:

@@ -25,7 +25,7 @@ class Policy:
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
-    rules: tuple[str, ...] = ("S2a", "S2b", "S2c", "S2d", "S2e", "S2f")
+    rules: tuple[str, ...] = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
     """The name of the rule behind each place of a rank."""
     turning: bool = False
     """Whether a start changes how other ABs rank."""
@@ -41,6 +41,7 @@ class Policy:
         return (
             rules.s2a(ab),
             rules.s2b(ab, memory),
+            rules.e6(ab, memory, now),
             rules.s2c(ab, now),
             rules.s2d(ab),
             rules.s2e(ab),
@@ -59,8 +60,8 @@ class Policy:
         return rules.f2(ab, memory) or rules.f6(ab, memory) or rules.k1(ab, memory)
 
     def holds_back(self, ab: Behavior) -> bool:
-        """S3: whether a waiting AB keeps its devices from those it outranks."""
-        return ab.reaction is not None
+        """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
+        return ab.reaction is not None or ab.overdue
 
 
 @dataclass(frozen=True, slots=True)

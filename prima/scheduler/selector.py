@@ -11,6 +11,7 @@ from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
+from prima.scheduler.patience import Patience
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.selection import Policy
 
@@ -28,7 +29,13 @@ class Selector:
     """Starts ABs by a policy; knows working memory but nothing of requests or ends."""
 
     def __init__(
-        self, memory: Memory, policy: Policy, maker: Maker, chronicle: Chronicle, bound: int | None
+        self,
+        memory: Memory,
+        policy: Policy,
+        maker: Maker,
+        chronicle: Chronicle,
+        bound: int | None,
+        patience: int,
     ) -> None:
         self.memory = memory
         self.policy = policy
@@ -49,11 +56,13 @@ class Selector:
         """Streams that were ``suspended`` or have ``resumed``, for their applications to hear."""
         self._suspensions = 0
         self._starved = 0
+        self.patience = Patience(memory, chronicle, patience if policy.floor else 0)
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
         self.started = []
         memory = self.memory
+        self.patience.before(now)
         if memory.running:
             for unit in [ab for ab in memory.running.values() if ab.inner]:
                 self._advance(unit, now)
@@ -62,6 +71,7 @@ class Selector:
         for name, stream in self.turns:
             if name == "resumed" and not stream.suspended:
                 stream.place = 0
+        self.patience.after(now)
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true if another pass may find one that may start.
@@ -310,6 +320,8 @@ class Selector:
             self._collide(ab)
         ab.blocked = ("", "")
         ab.waited_loops = 0
+        if ab.waits_from >= 0 or ab.kept:
+            self.patience.over(ab)
         ab.resumed = ab.loop > 0 and ab.freed != now
         if ab.feedback:
             ab.next_loop()
@@ -404,6 +416,7 @@ class Selector:
                     by=ab.id,
                     loop=STARVING_LOOPS,
                 )
+                other.starves = True  # it need not be told again
             if self.bound is not None and other.waited_loops >= self.bound:
                 bounded[other.name] = other
         for _, other in self._ranked(bounded, now):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from prima.commands import TABLE_4_2
-from prima.errors import MANY_WORDS, Problem, did_you_mean
+from prima.errors import MANY_WORDS, Problem, did_you_mean, one_of
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -54,7 +54,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems += [*_corners(nodes, events, cast), *_words(nodes, cast)]
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application hears is known only when it runs
-    problems += _services(events, {service.name for service in cast.scenario.services})
+    problems += _services(events, cast)
     return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
 
 
@@ -217,13 +217,20 @@ def _nobody(nodes: list[Node]) -> Iterator[Problem]:
         yield Problem(node.place, "warning", "missing-element", message, remedy)
 
 
-def _services(events: list[Events], names: set[str]) -> Iterator[Problem]:
-    """Services that are asked and not there, where another one was most likely meant."""
-    for one in events:
-        for node, service in one.asked:
-            meant = near(service, names)
-            if service not in names and meant:
-                message = f'The scenario has no service "{service}".'
+def _services(events: list[Events], cast: Cast) -> Iterator[Problem]:
+    """Services that are asked and not there, if another was meant, or are another application's."""
+    owners: dict[str, set[str]] = {}
+    for service in cast.scenario.services:
+        owners.setdefault(service.name, set()).add(service.application)
+    for document, one in zip(cast.documents, events, strict=True):
+        for node, name in one.asked:
+            message = remedy = ""
+            if name in owners and owners[name].isdisjoint(("", document.id)):
+                message = f'The scenario has the service "{name}" for {one_of(sorted(owners[name]))} alone.'
+                remedy = f'In the scenario, write a <service name="{name}"> for this application.'
+            elif name not in owners and (meant := near(name, owners)):
+                message = f'The scenario has no service "{name}".'
                 remedy = f'Did you mean "{meant}"?'
+            if message:
                 place = node.attribute_place("to")
                 yield Problem(place, "warning", "no-such-name", message, remedy)

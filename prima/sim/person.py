@@ -263,7 +263,7 @@ class Person:
         match doing.name:
             case "message":
                 data = {"from": values["from"] or "", "text": doing.text}
-                return [Occurred("message", "environment", data)]
+                return [Occurred("message", "environment", data, values["to"])]
             case "event":
                 return [Occurred(values["name"], "environment", values["data"])]
             case "sensor":

@@ -29,6 +29,13 @@ MAX_WRITTEN = 50_000_000
 """Characters that the applications of a run may say, log and send."""
 
 
+NAMING_APPLICATIONS = (
+    *(("unload", "application"), ("load", "application")),
+    *(("service", "application"), ("message", "to")),
+)
+"""Elements of scenarios, and their attributes, that name an application."""
+
+
 @dataclass(slots=True)
 class Cast:
     """All that a run needs, read and checked."""
@@ -65,7 +72,8 @@ def check_names(
         known["when", "doing"] = known["when", "done"] = set(robot.commands), "Command"
     if documents is not None:
         ids = {document.id for document in documents}
-        known["unload", "application"] = known["load", "application"] = ids, "application"
+        for tag, name in NAMING_APPLICATIONS:
+            known[tag, name] = ids, "application"
     for node in scenario.node.walk():
         for (tag, name), (words, what) in known.items():
             word = node.attributes.get(name)
@@ -105,6 +113,7 @@ class Rehearsal:
         bound: int | None = None,
         web: Web | None = None,
         isolate: str = "ea",
+        patience: int | None = None,
     ) -> None:
         self.cast = cast
         problems = check_cast(cast)
@@ -131,6 +140,7 @@ class Rehearsal:
             scenario.date,
             absence=cast.robot.absence,
             isolate=isolate,
+            patience=scenario.patience if patience is None else patience,
         )
         native = [doc for doc in cast.documents if isinstance(doc, Document)]
         self._watching = any(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from prima.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
+from prima.commands import ABSENCE_MS, DEVICES, PATIENCE_MS, TABLE_4_2, Argument, CommandType
 from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
@@ -432,6 +432,8 @@ class Service:
     name: str
     uri: str
     replies: list[Reply]
+    application: str = ""
+    """The application that alone may ask it; empty if all may."""
 
 
 UNANSWERED = ("busy", "noanswer", "network_busy")
@@ -503,6 +505,8 @@ class Scenario:
     date: str
     """When the run begins by its own calendar, as ``2005-03-01T10:00:00`` (UTC)."""
     policy: str
+    patience: int
+    """How long (ms) an application may keep others from the speaker (E6); 0 for ever."""
     entrances: bool
     robot_at: str
     robot_heading: float | None
@@ -571,6 +575,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         until=600_000 if (until := reader.get(root, "until")) is None else until,
         date=reader.get(root, "date") or START,
         policy=root.get("policy", "prima"),
+        patience=PATIENCE_MS if (patience := reader.get(root, "patience")) is None else patience,
         entrances=root.get("entrances") == "open",
         robot_at=robots[0].get("at") if robots else "",
         robot_heading=(
@@ -589,6 +594,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
                 node.get("name"),
                 node.get("uri"),
                 [_reply(reader, child) for child in node.nodes if child.key],
+                node.get("application"),
             )
             for node in root.all("service")
         ],
@@ -601,15 +607,16 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
 
 
 def _check_services(reader: Reader) -> None:
-    """Each service has its own name: what is sent to a name goes to one of them."""
-    seen: set[str] = set()
+    """What an application sends to a name goes to one service: its own, or that of all."""
+    seen: set[tuple[str, str]] = set()
     for node in reader.root.all("service"):
-        name = node.get("name")
-        if name in seen:
-            message = f'Two services have the name "{name}".'
+        name, owner = node.get("name"), node.get("application")
+        if (name, owner) in seen:
+            whose = f' for the application "{owner}"' if owner else ""
+            message = f'Two services have the name "{name}"{whose}.'
             remedy = "Rename one, or put the replies of both into one."
             reader.problem(node, "duplicate-name", message, "name", remedy)
-        seen.add(name)
+        seen.add((name, owner))
 
 
 def _when(reader: Reader, node: Node) -> When:

@@ -21,9 +21,10 @@ class Services:
     """Answers what applications send or fetch; one that the scenario does not name does not."""
 
     def __init__(self, services: Iterable[Service], web: Web | None = None) -> None:
-        self._services = {service.name: service for service in services}
+        self._services = {(one.name, one.application): one for one in services}
+        self._names = {name for name, _ in self._services}
         self._web = web
-        self._asked: dict[str, int] = {}
+        self._asked: dict[tuple[str, str], int] = {}
         self._pending: list[tuple[int, int, Occurred | Fetched]] = []
         self._serial = 0
 
@@ -31,34 +32,47 @@ class Services:
         """Take a message to a service, or a fetch."""
         fetches = "method" in order.data
         name = order.data["to"]
-        service = self._of(name) if fetches else self._services.get(name)
+        service = self._of(name, order.app) if fetches else self._named(name, order.app)
         if service is None and fetches:
             self._later(now, 1, self._outside(order))
             return
         if service is None:
-            reply = Reply(1, error=f'there is no service "{name}"')
+            reply = Reply(1, error=self._no_such(name))
         elif not service.replies:
             return  # it takes what it is sent and says nothing
         else:
-            asked = self._asked.get(service.name, 0)
+            which = service.name, service.application
+            asked = self._asked.get(which, 0)
             reply = service.replies[min(asked, len(service.replies) - 1)]
-            self._asked[service.name] = asked + 1
+            self._asked[which] = asked + 1
         self._later(now, reply.after, _fetched(order, reply) if fetches else _event(order, reply))
 
-    def _of(self, uri: str) -> Service | None:
+    def _named(self, name: str, app: str) -> Service | None:
+        """The service of a name that an application may ask: its own, or that of all."""
+        return self._services.get((name, app)) or self._services.get((name, ""))
+
+    def _of(self, uri: str, app: str) -> Service | None:
         """The service that a URI is of: the one named, or the one with the longest address."""
         if uri.startswith(SCHEME):
-            return self._services.get(uri.removeprefix(SCHEME))
-        below = [one for one in self._services.values() if one.uri and _is_below(uri, one.uri)]
-        return max(below, key=lambda one: len(one.uri), default=None)
+            return self._named(uri.removeprefix(SCHEME), app)
+        below = [
+            one
+            for one in self._services.values()
+            if one.uri and _is_below(uri, one.uri) and one.application in ("", app)
+        ]
+        return max(below, key=lambda one: (len(one.uri), one.application), default=None)
+
+    def _no_such(self, name: str) -> str:
+        """Why an application gets no answer from a name."""
+        if name in self._names:
+            return f'the service "{name}" is another application\'s'
+        return f'there is no service "{name}"'
 
     def _outside(self, order: Order) -> Fetched:
         """What no service of the scenario answers: a host does, if it may be asked."""
         uri = order.data["to"]
         if uri.startswith(SCHEME):
-            answer = Fetched(
-                "", 0, uri, problem=f'there is no service "{uri.removeprefix(SCHEME)}"'
-            )
+            answer = Fetched("", 0, uri, problem=self._no_such(uri.removeprefix(SCHEME)))
         elif self._web is None:
             answer = Fetched("", 0, uri, problem=not_allowed(uri))
         else:

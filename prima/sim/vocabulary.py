@@ -324,6 +324,12 @@ SCENARIO = Vocabulary(
                 ),
                 attribute("policy", "text", "the mediator's policy", default="prima"),
                 attribute(
+                    "patience",
+                    "duration",
+                    "how long an application may keep others from the speaker (E6); 0s for ever",
+                    default="60s",
+                ),
+                attribute(
                     "entrances",
                     "text",
                     "whether the robot takes up the applications that the world's areas offer",
@@ -372,7 +378,7 @@ SCENARIO = Vocabulary(
                 attribute(
                     "kind",
                     "text",
-                    "what a VoiceXML document is",
+                    "whether it is the robot's own or a place's; it counts, whatever the document says",
                     default="ea",
                     choices=("fa", "ea"),
                 ),
@@ -448,7 +454,10 @@ SCENARIO = Vocabulary(
         Element(
             "message",
             "A message arrives from the network: the event message, with its sender and text.",
-            (attribute("from", "text", "who sends it", default=""),),
+            (
+                attribute("from", "text", "who sends it", default=""),
+                attribute("to", "id", "the application that alone gets it; without, all do"),
+            ),
             text=True,
         ),
         Element(
@@ -512,6 +521,9 @@ SCENARIO = Vocabulary(
                 attribute("name", "id", "its name", "required"),
                 attribute(
                     "uri", "text", "an http(s) URI: it answers what is fetched from there or below"
+                ),
+                attribute(
+                    "application", "id", "the application that alone may ask it; without, all may"
                 ),
             ),
             ("reply", "failure"),

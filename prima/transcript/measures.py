@@ -25,6 +25,8 @@ class Summary:
     """Reactions in which the robot said something or turned to the user."""
     response_mean: float
     response_max: float
+    starved: int = 0
+    """Behaviours that another application has kept waiting for too long (E4, E6)."""
 
 
 class Measure:
@@ -34,6 +36,7 @@ class Measure:
         self.records = 0
         self._last = 0.0
         self._collisions = 0
+        self._starved = 0
         self._observer = Observer(delays=False)
 
     def add(self, record: Record, time: float) -> None:
@@ -41,6 +44,7 @@ class Measure:
         self.records += 1
         self._last = time
         self._collisions += record["phase"] == "collision"
+        self._starved += record["phase"] == "starve"
         self._observer.add(record, time)
 
     def summary(self) -> Summary:
@@ -56,6 +60,7 @@ class Measure:
             found.responses,
             found.response_mean,
             found.response_max,
+            self._starved,
         )
 
 

@@ -30,6 +30,7 @@ RULES = {
     "E3": "a bad Command is refused",
     "E4": "an endless feedback Command starves another",
     "E5": "the emergency stop",
+    "E6": "an application has kept another from the speaker for as long as it may",
     "X1": "what a stream relies on is restored before it resumes",
     "X2": "a restartable AB gives way to a reaction",
     "X3": "a stream is held while its application waits for an event",

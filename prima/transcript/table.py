@@ -208,11 +208,17 @@ def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | N
         case "starve":
             request = asked.get(record["behavior"].partition(".")[0], record)
             what = describe(request.get("command") or "", request.get("text"), request.get("args"))
-            loops = counted(record["loop"], "loop")
-            return _plain(record, f"still waits after {loops}: {what}", "starve")
+            return _plain(record, f"still waits after {_waited(record)}: {what}", "starve")
         case "log":
             return _plain(record, f"log: {record['message']}", "log")
     return None
+
+
+def _waited(record: Record) -> str:
+    """How long an AB has waited: so many loops of another (E4), or seconds."""
+    if record.get("loop"):
+        return counted(record["loop"], "loop")
+    return f"{(record.get('data') or {}).get('waited', 0):g} s"
 
 
 def _place_row(record: Record) -> Row | None:

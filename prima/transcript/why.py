@@ -10,7 +10,7 @@ from prima.deferred import dataclass
 from prima.messages import Record
 from prima.transcript.table import Row
 
-TOLD = frozenset({"request", "interrupt", "hold", "resume"})
+TOLD = frozenset({"request", "interrupt", "hold", "resume", "starve"})
 """Phases of records that say something of when an AB came."""
 
 
@@ -82,6 +82,11 @@ def _reason(record: Record, row: Row) -> Reason | None:
             return Reason(time, f"{asked} ({record['priority']} priority{flag}).")
         case "hold":
             return Reason(time, f"{it}held back by {by} (rule {rule}).", rule, by=by)
+        case "starve" if not record.get("loop"):
+            waited = (record.get("data") or {}).get("waited", 0)
+            return Reason(
+                time, f"{it}kept waiting by {by} for {waited:g} s (rule {rule}).", rule, by=by
+            )
         case "resume":
             stream = f"the stream of {about}" if it else f"its stream {record.get('tree')}"
             return Reason(time, f"{stream} resumes (rule C2).", "C2")

@@ -24,7 +24,8 @@ class Checker(Endings):
             "emergency": self.note_emergency,
             "decision": self._decision,
             "start": self._start,
-            "end": self.note_end,
+            "end": self._end,
+            "starve": self.note_starve,
             "fail": self.note_fail,
             "cancel": self.note_cancel,
             "event": self.note_event,
@@ -49,8 +50,13 @@ class Checker(Endings):
         self._instant_over()
         return self.found
 
+    def _end(self, record: Record) -> None:
+        self.note_answer(record)
+        self.note_end(record)
+
     def _until(self, time: float) -> None:
         """Go on to the next instant that is recorded, past the moment in which K1 may lapse."""
+        self.pass_time(time)
         lapse = self.lapses_at
         if self.now < lapse < time and not self.in_view and not self.halted:
             self.now = lapse
@@ -277,6 +283,10 @@ class Checker(Endings):
     # The end of an instant ----------------------------------------------------------
 
     def _instant_over(self) -> None:
+        self._look_back()
+        self.note_keepers()
+
+    def _look_back(self) -> None:
         self.close_trees()
         self.holds_rightly()
         self.interruptions()

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from tests.invariants.model import AB, RUNNING, WAITING, Record, base
-from tests.invariants.streams import Streams
+from tests.invariants.patience import Patience
 
-LETTERS = "abcdef"
+RULES = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
 MANY = 8
 """Of more that wait, not all need to be looked at."""
 
 
-class Selection(Streams):
+class Selection(Patience):
     """S1 to S3, by the numbers that S2 compares."""
 
     def active_app(self) -> str | None:
@@ -30,6 +30,7 @@ class Selection(Streams):
         return (
             not ab.high,
             reaction,
+            not self.its_turn(ab),
             ab.followed_at != self.now,
             -ab.tree.rank,
             ab.requested,
@@ -41,7 +42,7 @@ class Selection(Streams):
         """The part of S2 in which two differ first."""
         pairs = zip(self.key(ab), self.key(other), strict=True)
         index = next(index for index, (one, two) in enumerate(pairs) if one != two)
-        return f"S2{LETTERS[index]}" if index < len(LETTERS) else "S2e"
+        return RULES[index] if index < len(RULES) else "S2e"
 
     def outranks(self, ab: AB, other: AB) -> bool:
         """S2: whether the first goes before the second."""
@@ -75,7 +76,7 @@ class Selection(Streams):
         """
         return any(
             other is not winner
-            and other.cause is not None
+            and (other.cause is not None or self.overdue(other))
             and other.devices & ab.devices
             and self.outranks(other, ab)
             and self.refused_by_floor(other, surely) is None
@@ -123,7 +124,7 @@ class Selection(Streams):
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
         """S2, S3: what outranks the AB that starts must be unable to start in its place."""
         rule = self.rule_between(other, ab)
-        if other.cause is not None and other.devices & ab.devices:
+        if (other.cause is not None or self.overdue(other)) and other.devices & ab.devices:
             # S3: whether or not its other devices are free, it holds this one back.
             number = 5 if other.leaves else 6
             self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
@@ -235,8 +236,10 @@ class Selection(Streams):
             busy = other is not None and other.phase == RUNNING
             return busy and other is not None and bool(other.devices & ab.devices)
         if rule == "S3":
-            waits = other is not None and other.phase == WAITING and other.cause is not None
-            return waits and other is not None and bool(other.devices & ab.devices)
+            if other is None or other.phase != WAITING:
+                return False
+            waits = other.cause is not None or self.overdue(other)
+            return waits and bool(other.devices & ab.devices)
         kept = {
             "F2": self.refused_by_floor(ab, surely=False),
             "F6": self.refused_by_topic(ab),

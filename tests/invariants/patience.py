@@ -1,0 +1,89 @@
+"""Patience (E6): who has been kept from the speaker for too long, recomputed from the records."""
+
+from __future__ import annotations
+
+from tests.invariants.model import AB, Record, base
+from tests.invariants.streams import Streams
+
+SECONDS = 60
+"""How long an application may keep another from the speaker, unless the run says otherwise."""
+
+
+class Patience(Streams):
+    """E6: how long others have kept each waiting AB from the speaker, and no rule has."""
+
+    def _read_ahead(self) -> None:
+        super()._read_ahead()
+        head = self.records[0].get("data") or {} if self.records else {}
+        self.patience: float = head.get("patience", SECONDS) * self.second
+        """The bound, in the records' unit; 0 if there is none."""
+        self._kept: dict[str, float] = {}
+        self._kept_now: set[str] = set()
+        self._answered: dict[str, float] = {}
+        """When the user has answered a question of a stream last."""
+        self._starving: set[str] = set()
+        """Of which it has been told."""
+
+    def pass_time(self, time: float) -> None:
+        """Count what goes by up to a time in which nothing changes."""
+        for name in self._kept_now:
+            self._kept[name] = self._kept.get(name, 0) + time - self.now
+
+    def note_keepers(self) -> None:
+        """At the end of an instant: who is kept from the speaker from here on."""
+        waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
+        self._kept = {name: time for name, time in self._kept.items() if name in waiting}
+        self._starving &= set(waiting)
+        self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
+        if self.halted:
+            self._kept_now = set()
+            return
+        for name in sorted(self._kept):
+            if self.overdue(waiting[name]) and name not in self._starving:
+                self.report(13, "E6", f"{name} starves, and nothing says so")
+
+    def _kept_from_speaker(self, ab: AB) -> bool:
+        if not self.prima or "speaker" not in ab.devices or ab.cause is not None:
+            return False
+        by = ab.said[1] if ab.said is not None else ""
+        if by.replace("#", ":").partition(":")[0] in ("", ab.app):
+            return False  # its own application keeps it
+        if self.refused_by_floor(ab) or self.refused_by_channel(ab):
+            return False
+        speaks = [
+            one for one in self.running.values() if one.unit is None and "speaker" in one.devices
+        ]
+        if speaks:
+            return speaks[0].app != ab.app
+        return self.refused_by_topic(ab) is not None
+
+    def overdue(self, ab: AB) -> bool:
+        """Whether others have kept it from the speaker for as long as they may."""
+        slack = 1e-6 * self.second
+        return self.patience > 0 and self._kept.get(ab.name, 0) >= self.patience - slack
+
+    def its_turn(self, ab: AB) -> bool:
+        """E6: whether it goes before all but reactions, as nobody has a word after an answer."""
+        return self.overdue(ab) and not any(map(self._acknowledges, self.waiting.values()))
+
+    def _acknowledges(self, ab: AB) -> bool:
+        asks = "speech-recognition" in ab.devices and ab.command != "iu"
+        just = ab.followed_at == self.now == self._answered.get(ab.tree.name)
+        return ab.unit is None and just and "speaker" in ab.devices and not asks
+
+    def note_answer(self, record: Record) -> None:
+        """A question that no device has ended was answered."""
+        ab = self.abs.get(base(record["behavior"]))
+        asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
+        if ab is not None and asks and not record.get("inbound"):
+            self._answered[ab.tree.name] = self.now
+
+    def note_starve(self, record: Record) -> None:
+        """Who is said to starve waits; by E6 for as long as that takes."""
+        ab = self.abs.get(base(record["behavior"]))
+        if ab is None or ab.name not in self.waiting:
+            self.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")
+            return
+        self._starving.add(ab.name)
+        if record["rule"] == "E6" and not self.overdue(ab):
+            self.report(13, "E6", f"{ab.name} is said to starve, but nobody kept it so long")
