@@ -176,7 +176,8 @@ def rehearse(
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
         raise UsageError(" ".join(problem))
-    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)), isolate)
+    web = fetcher(list(hosts), len(cast.documents))
+    rehearsal = Rehearsal(cast, chosen, bound, web, isolate)
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -237,16 +238,16 @@ def _doing(app: Application, owed: bool) -> str:
     return "waiting for a service's answer" if owed else "waiting for an event"
 
 
-def fetcher(hosts: list[str]) -> Web | None:
-    """What fetches from hosts; the network's modules are loaded only then."""
+def fetcher(hosts: list[str], applications: int) -> Web | None:
+    """What fetches from hosts for some applications; the network's modules are loaded only then."""
     if not hosts:
         return None
-    from prima.web import web
+    from prima.web import Hosts
 
     for host in hosts:
         if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
             raise UsageError(f'"{host}" is no host: write its name alone, as in example.org:8080.')
-    return web(hosts)
+    return Hosts(hosts, applications)
 
 
 def read(path: str | Path, partial: bool = False) -> Transcript:
