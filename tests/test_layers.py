@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
-    {"deferred", "errors"},
+    {"deferred", "errors", "visible"},
     {"diagnostics"},
     {"names", "values"},
     {"commands", "prelude"},
