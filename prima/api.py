@@ -346,11 +346,10 @@ def export(
         if path.exists() and Path(name).exists() and path.samefile(name):
             raise UsageError(f"{output}: this is the transcript itself: name another file.")
         made.parts()  # may be refused: before a file is overwritten
-        try:
-            with path.open("wb") as stream:
-                write(to, made, records([]), tags, VERSION, stream)
-        except OSError as error:
-            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+        from prima.writing import whole
+
+        with whole(path) as stream:
+            write(to, made, records([]), tags, VERSION, stream)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
     {"deferred", "errors", "visible"},
-    {"diagnostics"},
+    {"diagnostics", "writing"},
     {"names", "values"},
     {"commands", "prelude"},
     {"messages"},

@@ -16,6 +16,7 @@ from prima.transcript.table import Row, describe
 from prima.transcript.why import Reasons
 from prima.values import read_value
 from prima.visible import visible
+from prima.writing import write_whole
 
 SHOWN = 6
 """Answers to a question that are shown."""
@@ -262,13 +263,7 @@ class Conversation:
             UsageError: it cannot be written there.
         """
         self.check_target(path)
-        new = Path(f"{path}.new")
-        try:
-            new.write_text(self.game.saved(path), encoding="utf-8")
-            os.replace(new, path)
-        except (OSError, ValueError) as error:
-            new.unlink(missing_ok=True)
-            raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
+        write_whole(path, self.game.saved(path))
 
 
 def _why_not(error: OSError | ValueError) -> str:
