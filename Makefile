@@ -1,9 +1,13 @@
-# Verbs: demo test check bench schemas. Each sets up what it needs in .venv.
+# Verbs: demo test check bench schemas build lock. Each sets up what it needs in .venv, from the
+# versions and hashes of release/*.txt.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
+  --custom-compile-command "make lock"
 
-.PHONY: demo test check bench attack schemas build clean
+.PHONY: demo test check bench attack schemas build lock clean
 
 demo: $(VENV)/.runtime
 	@mkdir -p build
@@ -21,8 +25,9 @@ check: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/python -m prima.reference --check
 	$(BIN)/python -m prima.pictures --check
+	$(BIN)/python -m release.licences --check
 
-bench: $(VENV)/.bench
+bench: $(VENV)/.dev
 	$(BIN)/python -m bench.peers
 	$(BIN)/python -m bench.run
 
@@ -34,7 +39,14 @@ schemas: $(VENV)/.dev
 	$(BIN)/python -m prima.pictures
 
 build: $(VENV)/.dev
-	$(BIN)/python -m build --wheel
+	$(BIN)/python -m build --wheel --no-isolation
+	$(BIN)/python -m release.sbom dist
+
+lock: $(VENV)/.dev
+	$(LOCK) -o release/runtime.txt
+	$(LOCK) --all-extras -c release/runtime.txt -o release/dev.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r release/dev.txt
+	$(BIN)/python -m release.licences
 
 clean:
 	rm -rf $(VENV) dist build
@@ -43,14 +55,12 @@ $(BIN)/python:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "PRIMA needs Python 3.11 or newer")'
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.runtime: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+$(VENV)/.runtime: pyproject.toml release/runtime.txt | $(BIN)/python
+	$(PIP) --require-hashes -r release/runtime.txt
+	$(PIP) --no-deps -e .
 	touch $@
 
-$(VENV)/.dev: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+$(VENV)/.dev: pyproject.toml release/dev.txt | $(BIN)/python
+	$(PIP) --require-hashes -r release/dev.txt
+	$(PIP) --no-deps --no-build-isolation -e .
 	touch $@ $(VENV)/.runtime
-
-$(VENV)/.bench: $(VENV)/.dev
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,bench]'
-	touch $@

@@ -181,7 +181,8 @@ def rehearse(
         raise UsageError(" ".join(problem))
     if patience is None:
         patience = cast.scenario.patience
-    rehearsal = Rehearsal(cast, chosen, bound, fetcher(list(hosts)), isolate, patience)
+    web = fetcher(list(hosts), len(cast.documents))
+    rehearsal = Rehearsal(cast, chosen, bound, web, isolate, patience)
     head: Record = {
         "time": 0,
         "phase": "run",
@@ -243,16 +244,16 @@ def _doing(app: Application, owed: bool) -> str:
     return "waiting for a service's answer" if owed else "waiting for an event"
 
 
-def fetcher(hosts: list[str]) -> Web | None:
-    """What fetches from hosts; the network's modules are loaded only then."""
+def fetcher(hosts: list[str], applications: int) -> Web | None:
+    """What fetches from hosts for some applications; the network's modules are loaded only then."""
     if not hosts:
         return None
-    from prima.web import web
+    from prima.web import Hosts
 
     for host in hosts:
         if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
             raise UsageError(f'"{host}" is no host: write its name alone, as in example.org:8080.')
-    return web(hosts)
+    return Hosts(hosts, applications)
 
 
 def read(path: str | Path, partial: bool = False) -> Transcript:
@@ -351,11 +352,10 @@ def export(
         if path.exists() and Path(name).exists() and path.samefile(name):
             raise UsageError(f"{output}: this is the transcript itself: name another file.")
         made.parts()  # may be refused: before a file is overwritten
-        try:
-            with path.open("wb") as stream:
-                write(to, made, records([]), tags, VERSION, stream)
-        except OSError as error:
-            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+        from prima.writing import whole
+
+        with whole(path) as stream:
+            write(to, made, records([]), tags, VERSION, stream)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 

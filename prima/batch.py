@@ -14,7 +14,7 @@ import re
 import signal
 import stat
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from hashlib import sha256
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 TRANSCRIPT, LEDGER = ".jsonl", ".run.json"
 """How the names of a run's files end."""
-PARTS = ".prima-"
-"""How the name of the folder begins in which transcripts grow until they are complete."""
 MOST_MESSAGES = 10
 """Messages that a row has at most."""
 MOST_LEDGER = 1_000_000
@@ -248,20 +246,17 @@ def _parts(output: str) -> Iterator[str]:
     if not output:
         yield ""
         return
-    from tempfile import mkdtemp
+    from prima.writing import parts_folder
 
-    try:
-        os.makedirs(output, exist_ok=True)
-        parts = mkdtemp(prefix=PARTS, dir=output)
-    except FileExistsError:
-        message = "this is a file; the transcripts of several runs go into a folder."
-        raise UsageError(f"{output}: {message}") from None
-    except OSError as error:
-        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
-    try:
+    with ExitStack() as held:
+        try:
+            parts = held.enter_context(parts_folder(output))
+        except FileExistsError:
+            message = "this is a file; the transcripts of several runs go into a folder."
+            raise UsageError(f"{output}: {message}") from None
+        except OSError as error:
+            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
         yield parts
-    finally:
-        _remove(parts)
 
 
 def _remove(parts: str) -> None:

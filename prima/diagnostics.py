@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from prima.errors import Problem, Severity
+from prima.visible import visible
 
 WIDEST = 100
 """Columns of a source line that are shown."""
@@ -27,9 +28,9 @@ def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
     def paint(text: str, style: str) -> str:
         return f"\033[{style}m{text}\033[0m" if colour else text
 
-    told = _plain(f"{message} {remedy}" if remedy else message)
+    told = visible(f"{message} {remedy}" if remedy else message, "\n")
     head = (
-        f"{paint(_plain(str(place)), '1')}: {paint(severity, '1;' + COLOURS[severity])}: {told}"
+        f"{paint(visible(str(place)), '1')}: {paint(severity, '1;' + COLOURS[severity])}: {told}"
         f" {paint(f'[{code}]', '2')}"
     )
     held = lines(place.file)
@@ -55,12 +56,8 @@ def excerpt(line: str, column: int) -> tuple[str, str]:
     before = "".join(map(_blank, shown[: start - cut]))
     marked = sum(_width(letter) for letter in shown[start - cut : start - cut + length])
     head, tail = "..." if cut else "", "..." if cut + WIDEST < len(line) else ""
-    return f"{head}{_plain(shown)}{tail}", f"{' ' * len(head)}{before}^{'~' * (max(marked, 1) - 1)}"
-
-
-def _plain(text: str) -> str:
-    """Text without control characters, which a terminal would obey."""
-    return "".join(one if one.isprintable() or one in "\t\n\u3000" else "\ufffd" for one in text)
+    plain = visible(shown, "\t")
+    return f"{head}{plain}{tail}", f"{' ' * len(head)}{before}^{'~' * (max(marked, 1) - 1)}"
 
 
 def _width(letter: str) -> int:

@@ -324,6 +324,7 @@ class Fetched:
 
     ``serial`` is the :class:`Send`'s. ``problem`` tells why there is no answer; ``status`` is
     that of a host, or 0. ``body`` is text that ``charset`` makes the resource's bytes of.
+    ``host`` is whether a real host has sent it, and no service of the scenario.
     """
 
     app: str
@@ -333,6 +334,7 @@ class Fetched:
     charset: Literal["utf-8", "latin-1"] = "utf-8"
     status: int = 0
     problem: str = ""
+    host: bool = False
 
 
 @dataclass(slots=True)

@@ -1,80 +1,259 @@
-"""Real HTTP for a run that allows it, by host: nothing else in the package uses the network."""
+"""Real HTTP for a run that allows it, by host: nothing else in the package uses the network.
+
+What a host answers takes no simulated time, so the run waits for it, in real time: an
+application is kept waiting for a host that is silent once, and others in the same instant
+wait with it and not behind it. Simulated time never waits.
+"""
 
 from __future__ import annotations
 
+import socket
 import threading
+import time
+from collections import Counter, defaultdict
 from collections.abc import Iterable
-from http.client import HTTPException, HTTPMessage
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import partial
+from http.client import HTTPConnection, HTTPException, HTTPMessage, HTTPResponse, HTTPSConnection
 from typing import IO, NoReturn
 from urllib.error import HTTPError, URLError
-from urllib.parse import urlencode, urlsplit
-from urllib.request import HTTPRedirectHandler, OpenerDirector, Request, build_opener
+from urllib.parse import urlencode, urljoin, urlsplit
+from urllib.request import (
+    HTTPDefaultErrorHandler,
+    HTTPErrorProcessor,
+    HTTPHandler,
+    HTTPRedirectHandler,
+    HTTPSHandler,
+    OpenerDirector,
+    ProxyHandler,
+    Request,
+    UnknownHandler,
+)
 
 from prima.markup.limits import LIMITS
 from prima.messages import Data, Fetched, Json
 from prima.script.ecmascript import inward, stringify
-from prima.sim.services import Web, answer, host_of, not_allowed
+from prima.sim.services import Answering, answer, host_of, not_allowed
 
-REAL_SECONDS = 10
-"""How long a host may take, in real seconds."""
-
-
-def web(hosts: Iterable[str]) -> Web:
-    """A fetcher that asks the named hosts, as ``HOST`` or ``HOST:PORT``, and no others."""
-    allowed = frozenset(host.lower() for host in hosts)
-
-    class Redirects(HTTPRedirectHandler):
-        """Follows a redirection only to a host that may be asked."""
-
-        def redirect_request(
-            self,
-            req: Request,
-            fp: IO[bytes],
-            code: int,
-            msg: str,
-            headers: HTTPMessage,
-            newurl: str,
-        ) -> Request | None:
-            _check(newurl, allowed)
-            return super().redirect_request(req, fp, code, msg, headers, newurl)
-
-    opener = build_opener(Redirects)
-
-    def ask(uri: str, method: str, values: Data) -> Fetched:
-        try:
-            _check(uri, allowed)
-            return answer("", 0, uri, _body(opener, _request(uri, method, values)))
-        except HTTPError as error:
-            return Fetched("", 0, uri, status=error.code, problem=f"the host answers {error.code}")
-        except URLError as error:
-            return Fetched("", 0, uri, problem=f"the host does not answer: {error.reason}")
-        except (OSError, HTTPException, ValueError) as error:
-            return Fetched("", 0, uri, problem=f"it cannot be fetched: {error}")
-
-    def get(uri: str, method: str, values: Data) -> Fetched:
-        """Ask in a thread of its own: a host may send so slowly that no timeout of its own ends it."""
-        found: list[Fetched] = []
-        asking = threading.Thread(
-            target=lambda: found.append(ask(uri, method, values)), daemon=True
-        )
-        asking.start()
-        asking.join(REAL_SECONDS)
-        return found[0] if found else Fetched("", 0, uri, problem=f"no answer in {REAL_SECONDS} s")
-
-    return get
+REAL_SECONDS = 10.0
+"""How long (s) a host may take for all of an answer, redirections included, in real time."""
+MOST_REDIRECTIONS = 5
+"""Redirections of one fetch that are followed."""
+MOST_FETCHES = 1000
+"""Fetches of a run, each redirection counted; each application has an equal share."""
+MOST_BYTES = 50_000_000
+"""Bytes of a run's answers; each application has an equal share."""
+MOST_SECONDS = 120.0
+"""How long (s) a run waits for answers, in real time; each application has an equal share."""
+MOVED = frozenset([301, 302, 303, 307, 308])
+"""Statuses of redirections."""
 
 
-def _check(uri: str, allowed: frozenset[str]) -> None:
-    """Refuse what is not of an allowed host.
+class Hosts:
+    """Asks the hosts that a run allows, as ``HOST`` or ``HOST:PORT``, and no others.
 
-    Raises:
-        ValueError: with what to do.
+    ``sharing`` is how many applications share what the run may fetch.
     """
-    host = host_of(uri)
-    if urlsplit(uri).scheme not in ("http", "https"):
-        _refuse(f"{uri} is no address of the web")
-    if not {host, host.partition(":")[0]} & allowed:
-        _refuse(not_allowed(uri))
+
+    def __init__(self, allowed: Iterable[str], sharing: int) -> None:
+        self._allowed = frozenset(host.lower() for host in allowed)
+        self.sharing = max(sharing, 1)
+        self._made: Counter[str] = Counter()
+        self._bytes: Counter[str] = Counter()
+        self._waited: defaultdict[str, float] = defaultdict(float)
+        self._silent: set[tuple[str, str]] = set()
+        """Applications, each with a host that has kept it waiting in vain."""
+
+    def __call__(self, app: str, uri: str, method: str, values: Data) -> Answering:
+        """Begin to fetch a URI by a method with values; gives what waits for its answer."""
+        if problem := self._refusal(app, uri):
+            return partial(Fetched, app, 0, uri, problem=problem)
+        asking = _Asking(self, app, uri)
+        threading.Thread(target=asking.run, args=(method, values), daemon=True).start()
+        return asking.wait
+
+    def count(self, app: str) -> None:
+        """Count a request of an application.
+
+        Raises:
+            ValueError: it has made as many as it may.
+        """
+        self._made[app] += 1
+        if self._made[app] > MOST_FETCHES // self.sharing:
+            _refuse(_used_up(f"{MOST_FETCHES // self.sharing} fetches"))
+
+    def check(self, uri: str) -> None:
+        """Refuse what is not of an allowed host.
+
+        Raises:
+            ValueError: with what to do.
+        """
+        host = host_of(uri)
+        if urlsplit(uri).scheme not in ("http", "https"):
+            _refuse(f"{uri} is no address of the web")
+        if not {host, host.partition(":")[0]} & self._allowed:
+            _refuse(not_allowed(uri))
+
+    def left(self, app: str) -> int:
+        """How many bytes an application may still be sent."""
+        return max(MOST_BYTES // self.sharing - self._bytes[app], 0)
+
+    def took(self, app: str, uri: str, seconds: float, size: int | None) -> None:
+        """Note how long an answer was waited for, and its size; None where there was none."""
+        self._waited[app] += seconds
+        self._bytes[app] += size or 0
+        if size is None:
+            self._silent.add((app, host_of(uri)))
+
+    def _refusal(self, app: str, uri: str) -> str:
+        """Why an application may not ask for a URI any more; nothing if it may."""
+        if (app, host_of(uri)) in self._silent:
+            return f"the host has kept the application waiting for {REAL_SECONDS:g} s before"
+        if not self.left(app):
+            return _used_up(f"{MOST_BYTES // self.sharing:,} bytes")
+        if self._waited[app] > MOST_SECONDS / self.sharing:
+            return _used_up(f"{MOST_SECONDS / self.sharing:g} s of waiting")
+        return ""
+
+
+def _used_up(share: str) -> str:
+    return f"the application has used up its share of what a run fetches, {share}"
+
+
+@dataclass(slots=True)
+class _Asking:
+    """One fetch, in a thread of its own: a host may send so slowly that no timeout ends it."""
+
+    hosts: Hosts
+    app: str
+    uri: str
+    ends: float = field(default_factory=lambda: time.monotonic() + REAL_SECONDS)
+    done: threading.Event = field(default_factory=threading.Event)
+    found: Fetched | None = None
+    size: int = 0
+    held: list[socket.socket] = field(default_factory=list)
+
+    def wait(self) -> Fetched | None:
+        """The answer; None where there is none by the deadline."""
+        began = time.monotonic()
+        told = self.done.wait(max(self.ends - began, 0))
+        self.hosts.took(self.app, self.uri, time.monotonic() - began, self.size if told else None)
+        if not told:
+            self.close()
+        return self.found if told else None
+
+    def run(self, method: str, values: Data) -> None:
+        """Ask, and keep what is answered or what is wrong."""
+        try:
+            data = self._body(_request(self.uri, method, values))
+            self.size = len(data)
+            self.found = answer("", 0, self.uri, data)
+            self.found.host = True
+        except HTTPError as error:
+            problem = f"the host answers {error.code}"
+            self.found = Fetched("", 0, self.uri, status=error.code, problem=problem)
+            error.close()
+        except URLError as error:
+            self.found = Fetched("", 0, self.uri, problem=_silence(error.reason))
+        except (OSError, HTTPException, ValueError) as error:
+            self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {error}")
+        finally:
+            self.close()
+            self.done.set()
+
+    def close(self) -> None:
+        """End the connections, so that nothing more is sent or read."""
+        for one in self.held:
+            with suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+
+    def _body(self, request: Request) -> bytes:
+        """The bytes of the answer to a request, wherever it is moved to.
+
+        Raises:
+            HTTPError, OSError, HTTPException, ValueError: there is no such answer.
+        """
+        for _ in range(MOST_REDIRECTIONS + 1):
+            self.hosts.check(request.full_url)
+            self.hosts.count(self.app)
+            try:
+                with _opener(self.held).open(request, timeout=REAL_SECONDS) as response:
+                    return self._read(response)
+            except HTTPError as error:
+                where = error.headers.get("Location", "") if error.code in MOVED else ""
+                if not where:
+                    raise
+                error.close()
+                request = _moved(request, error.code, where)
+        _refuse(f"it is moved more than {MOST_REDIRECTIONS} times")
+
+    def _read(self, response: HTTPResponse) -> bytes:
+        """An answer's body: as long as a document may be, and as it is."""
+        if (coding := response.headers.get("Content-Encoding", "identity")) != "identity":
+            _refuse(f"the host sends it compressed, as {coding[:20]}")
+        most = min(LIMITS.bytes, self.hosts.left(self.app))
+        data: bytes = response.read(most + 1)
+        if len(data) > LIMITS.bytes:
+            _refuse(f"it is larger than {LIMITS.bytes / 1_000_000:g} MB")
+        if len(data) > most:
+            _refuse(_used_up(f"{MOST_BYTES // self.hosts.sharing:,} bytes"))
+        return data
+
+
+def _silence(reason: object) -> str:
+    told = str(reason)
+    return told if isinstance(reason, ValueError) else f"the host does not answer: {told}"
+
+
+class _Stays(HTTPRedirectHandler):
+    """Follows no redirection by itself, nor reads what comes along with one."""
+
+    def _stays(
+        self, req: Request, fp: IO[bytes], code: int, msg: str, headers: HTTPMessage
+    ) -> None:
+        """Let it be an error, as other statuses are."""
+
+    http_error_301 = http_error_302 = http_error_303 = _stays
+    http_error_307 = http_error_308 = _stays
+
+
+def _opener(held: list[socket.socket]) -> OpenerDirector:
+    """What opens http and https, and nothing else; ``held`` gets its connections."""
+
+    class Plain(HTTPConnection):
+        def connect(self) -> None:
+            super().connect()
+            held.append(self.sock)
+
+    class Secure(HTTPSConnection):
+        def connect(self) -> None:
+            super().connect()
+            held.append(self.sock)
+
+    class OpensPlain(HTTPHandler):
+        def http_open(self, req: Request) -> HTTPResponse:
+            return self.do_open(Plain, req)
+
+    class OpensSecure(HTTPSHandler):
+        def https_open(self, req: Request) -> HTTPResponse:
+            return self.do_open(Secure, req)
+
+    opener = OpenerDirector()
+    for handler in (OpensPlain(), OpensSecure(), ProxyHandler(), _Stays(), UnknownHandler()):
+        opener.add_handler(handler)
+    opener.add_handler(HTTPDefaultErrorHandler())
+    opener.add_handler(HTTPErrorProcessor())
+    return opener
+
+
+def _moved(request: Request, status: int, where: str) -> Request:
+    """A request for where a host says that something is (RFC 9110, 15.4)."""
+    uri = urljoin(request.full_url, where)
+    if status in (307, 308):
+        headers = {"User-Agent": "PRIMA"}
+        return Request(uri, request.data, headers, method=request.get_method())
+    return Request(uri, headers={"User-Agent": "PRIMA"})
 
 
 def _refuse(message: str) -> NoReturn:
@@ -95,11 +274,3 @@ def _text(value: Json) -> str:
     if isinstance(value, str):
         return value
     return "undefined" if value is None else stringify(inward(value))
-
-
-def _body(opener: OpenerDirector, request: Request) -> bytes:
-    with opener.open(request, timeout=REAL_SECONDS) as response:
-        data: bytes = response.read(LIMITS.bytes + 1)
-    if len(data) > LIMITS.bytes:
-        _refuse(f"it is larger than {LIMITS.bytes // 1024 // 1024} MB")
-    return data

@@ -37,6 +37,20 @@ def test_a_watch_that_fails_leaves_the_others_alone() -> None:
 
 
 @pytest.mark.parametrize(
+    ("handler", "outcome"),
+    [("", "error.semantic: app.xml:"), ('<on event="error"><exit/></on>', "exit")],
+)
+def test_a_watch_that_ends_the_application_is_the_last_one(handler: str, outcome: str) -> None:
+    bench = Bench(
+        f"""<var name="a"/><watch name="one" when="a.b.c"/><watch name="two" when="sensor.light &lt; 5"/>
+        {handler}<form id="f"/>"""
+    )
+    bench.step(Sensed({"light": 3}))
+    (over,) = bench.phases("unload")
+    assert str(over["outcome"]).startswith(outcome) and bench.session.defects == []
+
+
+@pytest.mark.parametrize(
     "content",
     [
         '<goto next="%00"/>',

@@ -12,8 +12,8 @@ import pytest
 ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
-    {"deferred", "errors"},
-    {"diagnostics"},
+    {"deferred", "errors", "visible"},
+    {"diagnostics", "writing"},
     {"names", "values"},
     {"commands", "prelude"},
     {"messages"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import pty
 import shutil
 import subprocess
@@ -893,3 +894,83 @@ def test_what_is_no_message_does_not_end_it() -> None:
     )
     assert done.returncode == 0
     assert b"Traceback" not in done.stderr
+
+
+# Requests that are none -----------------------------------------------------------------------
+
+WHERE = {"textDocument": {"uri": "file:///none.xml"}, "position": {"line": 0, "character": 0}}
+SPAN = {"start": WHERE["position"], "end": WHERE["position"]}
+REQUESTS: dict[str, dict[str, Any]] = {
+    **dict.fromkeys(
+        (
+            *(lsp.TEXT_DOCUMENT_COMPLETION, lsp.TEXT_DOCUMENT_HOVER, lsp.TEXT_DOCUMENT_DEFINITION),
+            *(lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, lsp.TEXT_DOCUMENT_PREPARE_RENAME),
+            lsp.TEXT_DOCUMENT_LINKED_EDITING_RANGE,
+        ),
+        WHERE,
+    ),
+    lsp.TEXT_DOCUMENT_REFERENCES: {**WHERE, "context": {"includeDeclaration": True}},
+    lsp.TEXT_DOCUMENT_RENAME: {**WHERE, "newName": "b"},
+    lsp.WORKSPACE_WILL_RENAME_FILES: {"files": [{"oldUri": "file:///a", "newUri": "file:///b"}]},
+    lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: {"textDocument": WHERE["textDocument"]},
+    lsp.TEXT_DOCUMENT_DOCUMENT_LINK: {"textDocument": WHERE["textDocument"]},
+    lsp.TEXT_DOCUMENT_CODE_ACTION: {
+        "textDocument": WHERE["textDocument"], "range": SPAN, "context": {"diagnostics": []},
+    },
+}  # fmt: skip
+
+
+def ill(params: Any) -> Iterator[Any]:
+    """Parameters, each time with one thing wrong in them."""
+    wrong: tuple[Any, ...] = (7, "x", [1], {"a": 1}, 1e300, None)
+    yield from (one for one in wrong if type(one) is not type(params))
+    if isinstance(params, dict):
+        for name, value in params.items():
+            yield {key: one for key, one in params.items() if key != name}
+            yield from ({**params, name: one} for one in ill(value))
+    elif isinstance(params, list) and params:
+        yield from ([one] for one in ill(params[0]))
+    elif type(params) is int:
+        yield from (-1, 2**31, 2**64)
+
+
+def speak(process: subprocess.Popen[bytes], message: Any) -> None:
+    assert process.stdin is not None
+    data = json.dumps(message).encode()
+    process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(data), data))
+    process.stdin.flush()
+
+
+def hear(process: subprocess.Popen[bytes]) -> Any:
+    assert process.stdout is not None
+    size = 0
+    while line := process.stdout.readline().strip():
+        size = int(line.partition(b":")[2]) if line.lower().startswith(b"content-length") else size
+    return json.loads(process.stdout.read(size))
+
+
+def test_wrong_parameters_are_answered_as_such_and_the_server_goes_on() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "prima", "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )  # fmt: skip
+    begin: Any = {"processId": None, "rootUri": None, "capabilities": {}}
+    speak(process, {"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": begin})
+    assert hear(process)["id"] == 0
+    count = 0
+    for method, params in REQUESTS.items():
+        for one in (params, *ill(params), params):
+            count += 1
+            speak(process, {"jsonrpc": "2.0", "id": count, "method": method, "params": one})
+            answer = hear(process)
+            assert answer["id"] == count
+            if one is params:
+                assert "error" not in answer
+            else:
+                assert answer.get("error", {}).get("code") == -32602, (method, one, answer)
+                assert answer["error"]["message"] == f"These are no parameters of {method}."
+    speak(process, {"jsonrpc": "2.0", "id": -1, "method": "shutdown"})
+    assert hear(process) == {"jsonrpc": "2.0", "id": -1, "result": None}
+    speak(process, {"jsonrpc": "2.0", "method": "exit"})
+    assert process.stderr is not None
+    assert (process.wait(SECONDS), process.stderr.read()) == (0, b"")

@@ -140,10 +140,9 @@ def main() -> None:
     except Exception as error:
         if "PRIMA_DEBUG" in os.environ:
             raise
-        click.echo(
+        tell(
             f"prima: this is a defect of prima: {type(error).__name__}: {error}."
-            " Please report it; PRIMA_DEBUG=1 shows where.",
-            err=True,
+            " Please report it; PRIMA_DEBUG=1 shows where."
         )
         code = 3
     sys.exit(code)

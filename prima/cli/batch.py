@@ -29,6 +29,7 @@ from prima.cli import common
 from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
 from prima.errors import UsageError, counted
 from prima.pool import warm_up
+from prima.visible import escaped
 
 MOST_LISTED = 50_000_000
 """Bytes that a list of scenarios may have."""
@@ -113,7 +114,9 @@ class _Table:
         """Print a row."""
         if self.form == "json":
             text = json.dumps(row_data(row), ensure_ascii=False)
-            click.echo(text.encode(errors="replace").decode())  # of names that are not UTF-8
+            click.echo(
+                escaped(text.encode(errors="replace").decode())
+            )  # of names that are not UTF-8
         else:
             text = clean(format_row(row, self.wide))
             click.echo(f"\033[31m{text}\033[0m" if row.exit and coloured() else text)

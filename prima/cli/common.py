@@ -12,6 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 import click
 
 from prima.errors import UsageError, did_you_mean, one_of
+from prima.visible import escaped, visible
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -89,10 +90,8 @@ def columns() -> int:
 
 
 def clean(text: str) -> str:
-    """Text of a stranger's without control characters, which a terminal would obey."""
-    return "".join(
-        letter if letter.isprintable() or letter in "\n\t" else "\ufffd" for letter in text
-    )
+    """Text for a terminal, in lines: without what it would obey."""
+    return visible(text, "\n\t")
 
 
 def escape_for_people() -> None:
@@ -141,7 +140,7 @@ def print_json(data: Any) -> None:
     import json
 
     write_for_programs()
-    click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+    click.echo(escaped(json.dumps(data, ensure_ascii=False, indent=2)))
 
 
 def raise_limits(given: tuple[str, ...]) -> None:

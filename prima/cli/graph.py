@@ -71,9 +71,7 @@ def write(made: str, output: str) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    try:
-        Path(output).write_text(made, encoding="utf-8", newline="\n")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is no file's name"
-        raise UsageError(f"{output}: cannot be written: {reason}.") from None
+    from prima.writing import write_whole
+
+    write_whole(output, made)
     tell(f"written: {output}")

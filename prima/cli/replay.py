@@ -7,7 +7,7 @@ import sys
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, run_into, tell, write_for_programs
+from prima.cli.common import check_output, tell, write_for_programs
 
 
 @click.command()
@@ -21,6 +21,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     prima replay mediated.jsonl documents/scenarios/follow-during-navigation.xml
     """
     from prima import api
+    from prima.writing import write_whole
 
     if output not in (None, "-"):
         check_output(output, "replay", transcript, scenario)
@@ -30,7 +31,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
         write_for_programs()
         sys.stdout.write(again.dumps())
     elif output is not None:
-        run_into(output, lambda write: (write(again.dumps()), again)[1])
+        write_whole(output, again.dumps())
     same = again.dumps() == original.dumps()
     tell("the same, byte for byte" if same else "the replay differs")
     if not same:

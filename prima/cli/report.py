@@ -114,14 +114,11 @@ def write_page(page: str, output: str | None) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    from pathlib import Path
+    from prima.writing import write_whole
 
     if output is None:
         write_for_programs()
         click.echo(page, nl=False)
         return
-    try:
-        Path(output).write_text(page, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
+    write_whole(output, page)
     tell(f"{output}: {len(page.encode()) // 1024 + 1} kB; open it in a browser")

@@ -124,7 +124,8 @@ def talk(
             tell(str(problem))
     folder = os.path.dirname(scenario or "")
     sink = _write if form == "json" else None
-    game = Game(loaded, folder, policy, scripted, api.fetcher(list(hosts)), sink)
+    web = api.fetcher(list(hosts), len(loaded.cast.documents))
+    game = Game(loaded, folder, policy, scripted, web, sink)
     terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
     real = real_time or (terminal and not step)
     screen = Screen(game, why, form == "json", terminal)

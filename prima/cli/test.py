@@ -217,17 +217,15 @@ def _write(
     results: list[Result], coverage: Coverage, junit_file: str | None, coverage_xml: str | None
 ) -> None:
     from prima.testing.junit import cobertura, junit
+    from prima.writing import whole
 
     for path, data in (
         (junit_file, junit(results) if junit_file else b""),
         (coverage_xml, cobertura(coverage) if coverage_xml else b""),
     ):
         if path:
-            try:
-                with open(path, "wb") as stream:
-                    stream.write(data)
-            except OSError as error:
-                raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+            with whole(path) as stream:
+                stream.write(data)
 
 
 # Expected tables -------------------------------------------------------------------

@@ -12,6 +12,7 @@ from typing import IO, Any
 
 from prima.export.timeline import COLUMNS, Interval, Timeline, clean, unused
 from prima.messages import Json, Record
+from prima.visible import escaped
 
 ENCODER = json.JSONEncoder(ensure_ascii=False)
 MS = 1_000_000
@@ -122,4 +123,4 @@ def _plain(value: Json) -> str:
 
 
 def _dumps(value: Any) -> bytes:
-    return ENCODER.encode(value).encode("utf-8", "replace")
+    return escaped(ENCODER.encode(value)).encode("utf-8", "replace")

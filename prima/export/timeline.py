@@ -18,6 +18,7 @@ from prima.messages import Json, Record
 from prima.sim import voice
 from prima.transcript.table import describe
 from prima.values import LONGEST_MS
+from prima.visible import visible
 
 TAG = re.compile(r"[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*")
 """A language tag (BCP 47), as far as its form goes."""
@@ -34,8 +35,7 @@ LONGEST_NAME = 100
 MOST_PARTS = 8
 """Parts of a unit that its text names."""
 
-CONTROL = re.compile(r"[\x00-\x20\x7f-\x9f\u2028\u2029]+")
-NO_CHARACTER = re.compile(r"[\ud800-\udfff\ufffe\uffff]")
+BLANKS = re.compile(r"[\t-\r\x1c-\x20\x85\u2028\u2029]+")
 
 COLUMNS = (
     "application",
@@ -193,11 +193,11 @@ def unused(name: str, names: set[str]) -> str:
 
 
 def clean(text: object, longest: int = LONGEST_TEXT) -> str:
-    """One line of text that every format can hold: no control characters, not too long."""
+    """One line of text that every format can hold, not too long."""
     line = str(text)
     if len(line) > longest:
         line = line[:longest] + "..."
-    return NO_CHARACTER.sub("\ufffd", CONTROL.sub(" ", line)).strip()
+    return visible(BLANKS.sub(" ", line)).strip()
 
 
 def _value(value: Json) -> str:

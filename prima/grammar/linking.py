@@ -26,6 +26,8 @@ MOST_BYTES = 20_000_000
 """How many documents one grammar may be made of, and how large they may be together."""
 
 Fetch = Callable[[str], bytes]
+Refusal = Callable[[str, str], str]
+"""Tells why one grammar may not refer to another, by their URIs; nothing if it may."""
 Read = Callable[["Library", str, bytes, str], Document]
 """Reads the bytes of a URI, of a media type if it is told, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
@@ -35,11 +37,12 @@ FAILURES = (OSError, LookupError, ValueError, PrimaError)
 class Library:
     """The documents that one grammar is made of, each read once."""
 
-    def __init__(self, fetch: Fetch | None, read: Read) -> None:
+    def __init__(self, fetch: Fetch | None, read: Read, refusal: Refusal | None = None) -> None:
         self.problems = Problems()
         self.documents: dict[str, Document | None] = {}
         self._fetch = fetch
         self._read = read
+        self._refusal = refusal
         self._bytes = 0
         self._unlinked: list[Document] = []
         self._linked: list[Document] = []
@@ -133,6 +136,9 @@ class Library:
             self.problems.extend(error.problems)
             return None
         name = unquote(name)
+        if self._refusal is not None and (why := self._refusal(document.uri, where)):
+            self.problems.note(reference.where, "no-such-file", f'"{where[:200]}": {why}.')
+            return None
         if where == document.uri:
             found: Document | None = document
         else:

@@ -16,7 +16,7 @@ from prima.grammar.errors import (
     refuse,
 )
 from prima.grammar.grammar import Grammar
-from prima.grammar.linking import Fetch, Library, joined
+from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
@@ -37,6 +37,7 @@ def load(
     lang: str = "en",
     mode: Mode | None = None,
     fetch: Fetch | None = None,
+    refusal: Refusal | None = None,
     type: str = "",
     rule: str = "",
     languages: Languages | None = None,
@@ -51,6 +52,7 @@ def load(
         lang: the language of an element or a built-in type that does not tell its own.
         mode: the mode of an element or a built-in type that does not tell its own.
         fetch: gives the bytes of a grammar that is referred to; without it there are none.
+        refusal: tells why one grammar may not refer to another, by their URIs; nothing if it may.
         type: the media type, where it is known.
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
@@ -64,7 +66,7 @@ def load(
         UnsupportedBuiltIn: there is no such built-in type.
         GrammarError: the grammar is no legal one.
     """
-    library = Library(fetch, partial(_document, lang, lenient))
+    library = Library(fetch, partial(_document, lang, lenient), refusal)
     if isinstance(source, str) and _NAMED.fullmatch(source.strip()):
         return _named(source.strip(), mode, lang)
     if isinstance(source, Node):

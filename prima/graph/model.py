@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from prima.errors import UsageError
+from prima.visible import visible
 
 LONGEST = 300
 """Letters of one text in a picture."""
 MOST_EDGES = 4000
 MOST_LABELS = 12
 """Reasons to go the same way that are told."""
-JOINERS = "\u200c\u200d"
-"""Invisible characters that scripts need."""
 
 INWARD = ("go", "stay", "call", "guess", "back", "child")
 """Kinds of edges that lead to a node; the others lead out of the picture."""
@@ -129,14 +127,8 @@ class Graph:
 
 
 def clean(text: object) -> str:
-    """One line of text that every format can hold: no control characters, not without end."""
-    line = " ".join(str(text)[: 4 * LONGEST].split())
-    return short("".join(filter(_harmless, line)), LONGEST)
-
-
-def _harmless(letter: str) -> bool:
-    kind = unicodedata.category(letter)
-    return letter in JOINERS or (kind not in ("Cc", "Cf", "Cs", "Cn", "Zl", "Zp"))
+    """One line of text that every format can hold, not without end."""
+    return short(visible(" ".join(str(text)[: 4 * LONGEST].split())), LONGEST)
 
 
 def short(text: str, letters: int) -> str:

@@ -205,6 +205,8 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         raised: list[str] = []
         for watch in watches:
             self._guard(self._look, watch, raised)
+            if self.over:  # what the watch came to has ended it
+                return []
         return raised
 
     def _look(self, watch: Watch, raised: list[str]) -> None:

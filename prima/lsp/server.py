@@ -11,9 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cattrs import Converter
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcException
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol, default_converter
 
 from prima import __version__
 from prima.errors import Problem
@@ -61,12 +63,46 @@ Answer = TypeVar("Answer")
 logger = logging.getLogger("prima.lsp")
 
 
+def _converter() -> Converter:
+    """What reads messages; unlike pygls's own it takes nothing for a text or number that is none."""
+    made: Converter = default_converter()  # type: ignore[no-untyped-call]
+    for kind in (str, int, bool):
+        made.register_structure_hook(kind, functools.partial(_exactly, kind))
+    return made
+
+
+def _exactly(kind: type, value: Any, _: object) -> Any:
+    if type(value) is not kind:
+        raise ValueError(f"{kind.__name__} is wanted")
+    return value
+
+
+class Protocol(LanguageServerProtocol):
+    """Answers requests whose parameters are none of the protocol's; pygls leaves them unanswered."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """A message as it is read; what is wrong with a request goes back to whoever asks."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "id" in data and "method" in data:
+                asked = data["id"] if isinstance(data["id"], str | int) else None
+                message = f"These are no parameters of {str(data['method'])[:80]}."
+                told = lsp.ResponseError(JsonRpcInvalidParams.CODE, message)
+                self._send_response(asked, None, told)  # type: ignore[arg-type]
+            raise error
+
+
 class Server(LanguageServer):
     """What is known between the requests of an editor."""
 
     def __init__(self) -> None:
         super().__init__(
-            "prima", __version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full
+            "prima",
+            __version__,
+            text_document_sync_kind=lsp.TextDocumentSyncKind.Full,
+            protocol_cls=Protocol,
+            converter_factory=_converter,
         )
         self.desk = Desk()
         self.told: dict[Path, dict[Path, list[Problem]]] = {}

@@ -20,7 +20,8 @@ from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
 from prima.transcript.rules import RULES
-from prima.transcript.table import Row, printable
+from prima.transcript.table import Row
+from prima.visible import visible
 
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"
@@ -68,7 +69,7 @@ def page(views: Sequence[View]) -> str:
 
 def text(what: str) -> str:
     """Text that cannot be taken for markup."""
-    return escape(printable(what))
+    return escape(visible(what))
 
 
 def json_text(data: Json | dict[str, Any]) -> str:
@@ -362,11 +363,11 @@ def _data(
 def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
     lanes = view.lanes
     return {
-        "title": printable(view.title),
+        "title": visible(view.title),
         "seconds": lanes.seconds,
-        "apps": [printable(app[:LONGEST_NAME]) for app in lanes.apps],
+        "apps": [visible(app[:LONGEST_NAME]) for app in lanes.apps],
         "colours": [shades[app] for app in lanes.apps],
-        "devices": [printable(device)[:200] for device in lanes.devices],
+        "devices": [visible(device)[:200] for device in lanes.devices],
         "rows": [_row_data(view, row) for row in view.rows],
         "whys": view.whys,
         "names": view.names,
@@ -381,7 +382,7 @@ def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
 
 def _row_data(view: View, row: Row) -> list[Any]:
     """Time, who, application, what, whether an event; of what is said its language and place."""
-    made = [row.time, row.actor, printable(row.app[:LONGEST_NAME]), row.what, int(row.event)]
+    made = [row.time, row.actor, visible(row.app[:LONGEST_NAME]), row.what, int(row.event)]
     words, lang = view.spoken.get(row.number, ("", ""))
     place = row.what.find(words) if words else -1
     return [*made, lang, _units(row.what[:place]), _units(words)] if place >= 0 else made
@@ -396,6 +397,6 @@ def _bar(bar: Bar, lanes: Lanes) -> list[Any]:
     """Begin, end, name, application, text, row, devices, cuts."""
     app = lanes.apps.index(bar.app) if bar.app in lanes.apps else -1
     devices = [lanes.devices.index(one) for one in bar.devices if one in lanes.devices]
-    words = printable(bar.text)
+    words = visible(bar.text)
     words = words if len(words) <= 300 else words[:300] + "…"
-    return [bar.begin, bar.end, printable(bar.name)[:200], app, words, bar.row, devices, bar.cuts]
+    return [bar.begin, bar.end, visible(bar.name)[:200], app, words, bar.row, devices, bar.cuts]

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from prima.messages import Record
 from prima.report.lanes import Bar, make_lanes
-from prima.transcript.table import Row, printable
+from prima.transcript.table import Row
+from prima.visible import visible
 
 STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
 """Seconds from one mark of the axis to the next."""
@@ -103,7 +104,7 @@ def _of(app: str, bars: Iterable[Bar], axis: Axis) -> list[Bar]:
 def _bar(bar: Bar, axis: Axis) -> str:
     """A bar as long as it lasts, with as much of its text as there is room for."""
     width = max(axis.at(bar.end) - axis.at(bar.begin), 2)
-    text = printable(bar.text or bar.name).strip('"')
+    text = visible(bar.text or bar.name).strip('"')
     shown = f"{text[: width - 2]:<{width - 2}}"
     return f"[{shown}]".replace(" ", TAKEN)
 
@@ -114,7 +115,7 @@ def _events(rows: Iterable[Row], axis: Axis) -> list[str]:
     for row in rows:
         if row.actor != "R" and axis.begin <= row.time <= axis.end:
             at = axis.at(row.time)
-            text = f"v {printable(row.what)}"
+            text = f"v {visible(row.what)}"
             room = axis.columns - at
             near = len(text) > room
             lane.put(max(at - len(text) + 1, 0) if near else at, _before(text) if near else text)

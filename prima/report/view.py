@@ -12,8 +12,9 @@ from prima.messages import Json, Record
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import Walk, walk_of
 from prima.transcript.criteria import observe
-from prima.transcript.table import LONGEST_SHOWN, Row, describe, printable
+from prima.transcript.table import LONGEST_SHOWN, Row, describe
 from prima.transcript.why import Reasons
+from prima.visible import visible
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -95,12 +96,12 @@ def _view(transcript: Transcript, rows: list[Row], loaded: Loaded | None, walk: 
 
 def shown(text: str) -> str:
     """Text for people: no control characters, and not without end."""
-    text = printable(text)
+    text = visible(text)
     return text if len(text) <= LONGEST_SHOWN else text[:LONGEST_SHOWN] + "..."
 
 
 def _short(value: Any) -> str:
-    text = printable("" if value is None else str(value))
+    text = visible("" if value is None else str(value))
     return text if len(text) <= LONGEST_NAME else text[:LONGEST_NAME] + "..."
 
 

@@ -13,8 +13,16 @@ from prima.values import shown
 
 SCHEME = "service:"
 """How the URI of a scenario's service begins."""
-Web = Callable[[str, str, Data], Fetched]
-"""Fetches a URI by a method with values, at once; the answer's application and serial are open."""
+NO_ANSWER = "the host does not answer"
+SILENCE = 10_000
+"""Simulated milliseconds after which an application is told that a host does not answer."""
+Answering = Callable[[], Fetched | None]
+"""Waits for the answer to a fetch, in real time; None if the host does not answer in time."""
+
+
+Web = Callable[[str, str, str, Data], Answering]
+"""Begins to fetch for an application a URI by a method with values; the answer's application
+and serial are open."""
 
 
 class Services:
@@ -26,6 +34,8 @@ class Services:
         self._web = web
         self._asked: dict[tuple[str, str], int] = {}
         self._pending: list[tuple[int, int, Occurred | Fetched]] = []
+        self._begun: list[tuple[int, Order, Answering]] = []
+        """What hosts have been asked, since when, and what waits for it."""
         self._serial = 0
 
     def order(self, now: int, order: Order) -> None:
@@ -34,7 +44,7 @@ class Services:
         name = order.data["to"]
         service = self._of(name, order.app) if fetches else self._named(name, order.app)
         if service is None and fetches:
-            self._later(now, 1, self._outside(order))
+            self._outside(now, order)
             return
         if service is None:
             reply = Reply(1, error=self._no_such(name))
@@ -68,17 +78,27 @@ class Services:
             return f'the service "{name}" is another application\'s'
         return f'there is no service "{name}"'
 
-    def _outside(self, order: Order) -> Fetched:
+    def _outside(self, now: int, order: Order) -> None:
         """What no service of the scenario answers: a host does, if it may be asked."""
-        uri = order.data["to"]
+        uri, data = order.data["to"], order.data
+        if self._web is not None and not uri.startswith(SCHEME):
+            asking = self._web(order.app, uri, data["method"], data["params"])
+            self._begun.append((now, order, asking))
+            return
+        problem = not_allowed(uri)
         if uri.startswith(SCHEME):
-            answer = Fetched("", 0, uri, problem=self._no_such(uri.removeprefix(SCHEME)))
-        elif self._web is None:
-            answer = Fetched("", 0, uri, problem=not_allowed(uri))
-        else:
-            answer = self._web(uri, order.data["method"], order.data["params"])
-        answer.app, answer.serial = order.app, _serial(order)
-        return answer
+            problem = self._no_such(uri.removeprefix(SCHEME))
+        self._later(now, 1, Fetched(order.app, _serial(order), uri, problem=problem))
+
+    def _wait(self, now: int) -> None:
+        """Wait, in real time, for what hosts were asked before this instant."""
+        while self._begun and self._begun[0][0] < now:
+            asked, order, asking = self._begun.pop(0)
+            found, after = asking(), 1
+            if found is None:
+                found, after = Fetched("", 0, order.data["to"], problem=NO_ANSWER), SILENCE
+            found.app, found.serial = order.app, _serial(order)
+            self._later(asked, after, found)
 
     def _later(self, now: int, after: int, value: Occurred | Fetched) -> None:
         self._serial += 1
@@ -87,14 +107,20 @@ class Services:
     @property
     def owed(self) -> set[str]:
         """The applications that an answer is under way to."""
-        return {value.app or "" for _, _, value in self._pending}
+        begun = {order.app for _, order, _ in self._begun}
+        return begun | {value.app or "" for _, _, value in self._pending}
 
     def due(self) -> int | None:
         """When the next answer arrives, if any is under way."""
-        return self._pending[0][0] if self._pending else None
+        pending = self._pending[0][0] if self._pending else None
+        if not self._begun:
+            return pending
+        begun = self._begun[0][0] + 1
+        return begun if pending is None else min(begun, pending)
 
     def collect(self, now: int) -> list[Inbound]:
         """The answers that arrive at ``now``."""
+        self._wait(now)
         arrived: list[Inbound] = []
         while self._pending and self._pending[0][0] <= now:
             arrived.append(heappop(self._pending)[2])

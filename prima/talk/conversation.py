@@ -12,9 +12,11 @@ from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
-from prima.transcript.table import Row, describe, printable
+from prima.transcript.table import Row, describe
 from prima.transcript.why import Reasons
 from prima.values import read_value
+from prima.visible import visible
+from prima.writing import write_whole
 
 SHOWN = 6
 """Answers to a question that are shown."""
@@ -261,13 +263,7 @@ class Conversation:
             UsageError: it cannot be written there.
         """
         self.check_target(path)
-        new = Path(f"{path}.new")
-        try:
-            new.write_text(self.game.saved(path), encoding="utf-8")
-            os.replace(new, path)
-        except (OSError, ValueError) as error:
-            new.unlink(missing_ok=True)
-            raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
+        write_whole(path, self.game.saved(path))
 
 
 def _why_not(error: OSError | ValueError) -> str:
@@ -285,7 +281,7 @@ def _beginning(path: Path) -> bytes:
 def _unheard(text: str, asking: str) -> str:
     """That nobody has listened, and when somebody will."""
     later = f" {asking} is still asking: it listens when it has spoken." if asking else ""
-    return f'Nobody listens: "{printable(text)}" is lost.{later}'
+    return f'Nobody listens: "{visible(text)}" is lost.{later}'
 
 
 def _nothing(name: str, rest: str) -> None:

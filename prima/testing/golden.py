@@ -9,6 +9,7 @@ from prima.errors import DocumentError, UsageError
 from prima.loading import read_file
 from prima.transcript.diff import Difference, compare, format_difference
 from prima.transcript.table import Row, format_rows, read_table, width
+from prima.writing import write_whole
 
 LONGEST_DIFFERENCE = 200
 """Lines of a difference that are shown."""
@@ -87,7 +88,4 @@ def write_golden(path: Path, table: str) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    try:
-        path.write_text(table, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+    write_whole(path, table)

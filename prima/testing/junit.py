@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from itertools import groupby
 from pathlib import PurePath
@@ -11,9 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from prima.testing.coverage import Coverage, Covered
 from prima.testing.running import Result
 from prima.testing.telling import counts, format_result
-
-ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML 1.0 has no way to write."""
+from prima.visible import visible
 
 
 def junit(results: Iterable[Result]) -> bytes:
@@ -23,7 +20,7 @@ def junit(results: Iterable[Result]) -> bytes:
     _totals(root, held)
     for folder, group in groupby(held, key=_folder):
         cases = list(group)
-        suite = SubElement(root, "testsuite", name=folder)
+        suite = SubElement(root, "testsuite", name=visible(folder))
         _totals(suite, cases)
         for one in cases:
             _case(suite, one)
@@ -48,9 +45,9 @@ def _case(suite: Element, result: Result) -> None:
     case = SubElement(
         suite,
         "testcase",
-        classname=".".join(path.parent.parts) or ".",
-        name=path.name,
-        file=path.as_posix(),
+        classname=visible(".".join(path.parent.parts)) or ".",
+        name=visible(path.name),
+        file=visible(path.as_posix()),
         time=f"{result.seconds:.3f}",
     )
     if result.status == "passed":
@@ -63,9 +60,9 @@ def _case(suite: Element, result: Result) -> None:
         case,
         "failure" if result.status == "failed" else "error",
         type=result.status,
-        message=ILLEGAL.sub("\ufffd", first),
+        message=visible(first),
     )
-    told.text = ILLEGAL.sub("\ufffd", format_result(result))
+    told.text = visible(format_result(result), "\n")
 
 
 def cobertura(coverage: Coverage) -> bytes:
@@ -84,7 +81,7 @@ def cobertura(coverage: Coverage) -> bytes:
     package = SubElement(SubElement(root, "packages"), "package", {"name": ".", **_rates(every)})
     classes = SubElement(package, "classes")
     for name, held in lines.items():
-        shown = ILLEGAL.sub("\ufffd", PurePath(name).as_posix())
+        shown = visible(PurePath(name).as_posix())
         told = {"name": shown, "filename": shown, **_rates(list(held.values()))}
         one = SubElement(classes, "class", told)
         SubElement(one, "methods")

@@ -10,7 +10,7 @@ from prima.loading import read_file
 from prima.markup.reader import decode
 from prima.testing.checking import Failure
 from prima.testing.running import Result
-from prima.transcript.table import printable
+from prima.visible import visible
 
 WORDS = {"passed": "passed", "failed": "FAILED", "error": "ERROR", "invalid": "INVALID"}
 
@@ -35,7 +35,7 @@ class Sources:
 def format_failure(failure: Failure, sources: Sources) -> str:
     """A failure: its place and words, its source line with a caret, and rows of the run."""
     place = failure.place
-    parts = [f"{place}: {printable(failure.message)}"]
+    parts = [f"{place}: {visible(failure.message)}"]
     line = sources.line(place.file, place.line)
     if line.strip():
         shown, under = excerpt(line, place.column)

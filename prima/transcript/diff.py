@@ -11,7 +11,8 @@ from typing import Literal
 
 from prima.deferred import dataclass, field
 from prima.transcript.measures import Summary
-from prima.transcript.table import Row, printable
+from prima.transcript.table import Row
+from prima.visible import escaped, visible
 
 DELAY = 0.5
 """Seconds by which a behaviour must come later, beyond what came before it, to count."""
@@ -199,10 +200,8 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
     for change in difference.changes:
         row = change.after or change.before
         assert row is not None
-        text = (
-            f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {printable(row.what)}"
-        )
-        text += f"  ({told})" if (told := remark(change)) else ""
+        text = f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {row.what}"
+        text = visible(text + (f"  ({told})" if (told := remark(change)) else ""))
         if colour and change.kind != "same":
             text = f"\x1b[{codes[change.kind]}m{text}\x1b[0m"
         lines.append(text)
@@ -218,7 +217,7 @@ def remark(change: Change) -> str:
             return f"moved: was row {before.number}, at {before.time:.2f} s"
         case "changed":
             assert before is not None
-            return f"was: {printable(before.what)}"
+            return f"was: {before.what}"
         case "delayed":
             return f"{'later' if change.delay > 0 else 'earlier'} by {abs(change.delay):.2f} s"
         case "split":
@@ -236,7 +235,7 @@ def difference_json(difference: Difference) -> Iterator[str]:
         "before": asdict(difference.before) if difference.before else None,
         "after": asdict(difference.after) if difference.after else None,
     }
-    yield json.dumps(figures, ensure_ascii=False, indent=2).removesuffix("\n}")
+    yield escaped(json.dumps(figures, ensure_ascii=False, indent=2)).removesuffix("\n}")
     yield ',\n  "changes": ['
     before = "\n    "
     for change in difference.changes:
@@ -260,4 +259,4 @@ def _row_json(row: Row | None) -> str:
     if row is None:
         return "null"
     held = {name: getattr(row, name) for name in _ROW}
-    return f"{{\n        {_encode(held)[1:-1]}\n      }}"
+    return f"{{\n        {escaped(_encode(held)[1:-1])}\n      }}"

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from prima.errors import UsageError
 from prima.messages import Json, Record
+from prima.visible import escaped
 
 ORDER = [
     "time",
@@ -94,7 +95,7 @@ what records something has always the same fields."""
 
 def line(record: Record) -> str:
     """A record of a run as a line of JSON; its time goes from ms to seconds."""
-    return _encode(_shown(record)) + "\n"
+    return escaped(_encode(_shown(record))) + "\n"
 
 
 def finished(record: Record) -> Record:

@@ -10,6 +10,7 @@ from prima.commands import TABLE_4_2
 from prima.deferred import dataclass
 from prima.errors import counted
 from prima.messages import Record
+from prima.visible import visible
 
 LONGEST_SHOWN = 5000
 """Letters of a row that are printed."""
@@ -439,13 +440,6 @@ def _pad(text: str, columns: int) -> str:
     return text + " " * max(columns - width(text), 0)
 
 
-def printable(text: str) -> str:
-    """Text without control characters, which a terminal would obey."""
-    if text.isprintable():
-        return text
-    return "".join(" " if unicodedata.category(letter) == "Cc" else letter for letter in text)
-
-
 class Layout(NamedTuple):
     """How wide the table's columns are, in columns of a terminal."""
 
@@ -493,7 +487,7 @@ def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Layo
         more = numbers + times - made.numbers - made.times
         room = max(made.behavior - more, NARROWEST)
         made = made._replace(numbers=numbers, times=times, behavior=room)
-    longest = max([8, *(width(printable(row.what)) for row in rows)])
+    longest = max([8, *(width(visible(row.what)) for row in rows)])
     return made._replace(behavior=min(longest, made.behavior))
 
 
@@ -509,7 +503,7 @@ def format_row(row: Row, shape: Layout) -> list[str]:
     mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
     left = f"  {mark}  {row.number:>{shape.numbers}} {row.time:>{shape.times}.2f}"
     left += f"  {row.actor:<3}  {_pad(row.app, shape.apps)}  "
-    pieces = _wrap(printable(row.what), shape.behavior)
+    pieces = _wrap(visible(row.what), shape.behavior)
     event = "o" if row.event else " "
     tail = f"  {event}      {row.rule}" if shape.why else f"  {event}"
     first = (left + _pad(pieces[0], shape.behavior) + tail).rstrip()

@@ -27,6 +27,7 @@ __all__ = [
     "VoiceDocument",
     "broken",
     "join",
+    "of_web",
     "read_page",
 ]
 REMOTE = frozenset(["http", "https", "service"])
@@ -36,6 +37,11 @@ Fetch = Callable[[str], bytes]
 
 Glance = Callable[[str, int], tuple[bytes, int]]
 """Gives a file's first bytes, at most so many, and its size; raises :class:`FetchError`."""
+
+
+def of_web(place: str) -> bool:
+    """Whether a document's place is a URI: a host has sent it, or a service in its stead."""
+    return place.startswith(("http:", "https:"))
 
 
 class FetchError(Exception):

@@ -16,7 +16,7 @@ from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Fetched, Json
 from prima.values import milliseconds
-from prima.voicexml.document import FetchError, Page, broken, read_page
+from prima.voicexml.document import FetchError, Page, broken, of_web, read_page
 from prima.voicexml.state import Flow, Resume, Thrown
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ STEP_BYTES = 200
 """Bytes of a resource that count as one step."""
 FETCH_TIMEOUT = 10_000
 """How long an answer is waited for (ms) where ``fetchtimeout`` does not say."""
+HOSTS_ONLY = "what a host has sent names no file, only what hosts and services answer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +57,12 @@ def load_page(
     """
     asks = request is not None and bool(owner.document.outside(uri))
     page = None if asks else owner.pages.get(uri)
-    if page is None:
+    if page is not None:
+        _check_reach(page.root.source.file, uri, node)
+    else:
         data = yield from fetch(owner, uri, node, request)
         try:
-            page = read_page(uri, owner.document.seen(uri), data, owner.document.page.site)
+            page = _read(owner, uri, data)
             error = broken(page)
         except DocumentError as failure:
             error = failure
@@ -72,6 +75,14 @@ def load_page(
         message = f"{source(node)}: {uri} names an application root itself"
         raise Thrown("error.semantic", message, source(node))
     return page
+
+
+def _read(owner: Machine, uri: str, data: bytes) -> Page:
+    """A document; that of a host is no part of the folder, whatever URI the folder stands for."""
+    if uri in owner.hosted:
+        whole = owner.document.outside(uri)
+        return read_page(whole, whole, data)
+    return read_page(uri, owner.document.seen(uri), data, owner.document.page.site)
 
 
 def fetch(
@@ -92,6 +103,10 @@ def fetch(
         missing = "the folder has no such file; " if asked != whole else ""
         message = f"{source(node)}: {asked}: {missing}{answer.problem}"
         raise Thrown(name, message, source(node))
+    if answer.host:
+        owner.hosted.add(whole)
+    else:
+        owner.hosted.discard(whole)
     return _weighed(owner, answer.body.encode(answer.charset), node)
 
 
@@ -118,6 +133,17 @@ def _asked(
     return (yield from owner.owner.fetched())
 
 
+def _check_reach(where: str, uri: str, node: Node) -> None:
+    """See that what a host has sent names no file, to read it or to go there.
+
+    Raises:
+        Thrown: ``error.badfetch``.
+    """
+    if of_web(node.source.file) and not of_web(where):
+        message = f"{source(node)}: {uri}: {HOSTS_ONLY}"
+        raise Thrown("error.badfetch", message, source(node))
+
+
 def _setting(owner: Machine, node: Node, name: str) -> str:
     """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
     own = node.get(name)
@@ -125,6 +151,7 @@ def _setting(owner: Machine, node: Node, name: str) -> str:
 
 
 def _file(owner: Machine, uri: str, node: Node) -> bytes:
+    _check_reach(uri, uri, node)
     try:
         return owner.document.fetch(uri)
     except FetchError as error:
@@ -140,10 +167,7 @@ def held(owner: Machine, uri: str, node: Node) -> bytes:
     Raises:
         Thrown: ``error.badfetch``; :class:`Missing` while nobody has asked for it.
     """
-    whole = urldefrag(uri)[0]
-    site = owner.document.page.site
-    if site is not None:
-        whole = site.name(whole)  # which a grammar has named
+    whole = _held_as(owner, uri, node)
     if not owner.document.outside(whole):
         return _file(owner, whole, node)
     found = owner.resources.get(whole)
@@ -152,6 +176,19 @@ def held(owner: Machine, uri: str, node: Node) -> bytes:
     if isinstance(found, Thrown):
         raise found
     return found
+
+
+def _held_as(owner: Machine, uri: str, node: Node) -> str:
+    """What a resource that a grammar names is known by: its name where it is in the folder."""
+    whole, site = urldefrag(uri)[0], owner.document.page.site
+    return whole if site is None or of_web(node.source.file) else site.name(whole)
+
+
+def refusal(owner: Machine, by: str, uri: str, node: Node) -> str:
+    """Why one grammar may not refer to another, by their URIs; nothing if it may."""
+    if _held_as(owner, by, node) not in owner.hosted:
+        return ""
+    return "" if owner.document.outside(_held_as(owner, uri, node)) else HOSTS_ONLY
 
 
 def gathered(owner: Machine, use: Callable[[], object]) -> Flow:

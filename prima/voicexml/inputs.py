@@ -11,7 +11,7 @@ from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
-from prima.voicexml.fetching import held
+from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
 from prima.voicexml.state import Context, Heard, Thrown
 
@@ -235,6 +235,7 @@ class Inputs:
             page,
             uri,
             lambda name: held(self.owner, name, node),
+            lambda by, name: refusal(self.owner, by, name, node),
             self._failed,
             lambda: self._budget,
         )

@@ -54,6 +54,8 @@ class Machine:
         self.pages: dict[str, Page] = {owner.document.page.uri: owner.document.page}
         self.resources: dict[str, bytes | Thrown] = {}
         """What grammars are made of and no file is: its bytes, or why it cannot be had."""
+        self.hosted: set[str] = set()
+        """Names and URIs that a real host has answered, and no service."""
         self.queue: list[Queued] = []
         """Prompts and Commands that are played on reaching a wait (4.1.8)."""
         self.asking: Node | None = None

@@ -49,11 +49,19 @@ class Found:
 Matcher = Callable[[str, str, int], list[Found]]
 """Gives the ways in which a grammar takes what was said in a mode, at most so many."""
 Fetch = Callable[[str], bytes]
+Refusal = Callable[[str, str], str]
+"""Why a grammar may not refer to another, by their URIs; nothing if it may."""
 Tell = Callable[[Node, str], None]
 
 
 def matcher(
-    node: Node, page: Page, uri: str, fetch: Fetch, tell: Tell, budget: Callable[[], Budget]
+    node: Node,
+    page: Page,
+    uri: str,
+    fetch: Fetch,
+    refusal: Refusal,
+    tell: Tell,
+    budget: Callable[[], Budget],
 ) -> Matcher:
     """The grammar of an element, or of the URI that it names; ``budget`` is that of the utterance.
 
@@ -61,7 +69,7 @@ def matcher(
         Thrown: ``error.badfetch``, ``error.unsupported.format``,
             ``error.unsupported.language`` or ``error.unsupported.builtin``.
     """
-    grammar = _loaded(node, page, uri, fetch)
+    grammar = _loaded(node, page, uri, fetch, refusal)
 
     def match(said: str, mode: str, most: int) -> list[Found]:
         found: list[Found] = []
@@ -86,7 +94,7 @@ def ways(text: str, end: str) -> list[tuple[str, str]]:
     return found if set(typed) & set("*#") else [*found, (text, "voice")]
 
 
-def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
+def _loaded(node: Node, page: Page, uri: str, fetch: Fetch, refusal: Refusal) -> Grammar:
     failures: list[Thrown] = []
 
     def fetched(name: str) -> bytes:
@@ -118,6 +126,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch) -> Grammar:
             lang=lang,
             mode=mode,
             fetch=fetched,
+            refusal=refusal,
             type=kind,
             rule=rule,
             languages=lambda tag: LANGUAGE.fullmatch(tag) is not None,

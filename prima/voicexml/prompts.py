@@ -25,7 +25,7 @@ from prima.voicexml.cues import (
     milliseconds,
     rate_of,
 )
-from prima.voicexml.document import FetchError, Page
+from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -391,7 +391,7 @@ class Speaker:
                 speech.parts.append(f" {name} ")
                 speech.close(opened)
                 return
-        ms = self.recording(context.page, speech.base, name)
+        ms = self.recording(context.page, speech.base, name, node)
         speech.parts.append(" ")
         if node.text or any(one.tag not in SILENT for one in node.nodes):
             silent, speech.silent = speech.silent, speech.silent or ms is not None
@@ -405,11 +405,14 @@ class Speaker:
             speech.close(opened)
         speech.parts.append(" ")
 
-    def recording(self, page: Page, base: str, name: str) -> int | None:
+    def recording(self, page: Page, base: str, name: str, node: Node) -> int | None:
         """How long (ms) a recording of the application's folder plays, if it can be played.
 
-        ``name`` is relative to a prompt's own ``base``, and that to the page's.
+        ``name`` is relative to a prompt's own ``base``, and that to the page's. What a host
+        has sent plays no file.
         """
+        if of_web(node.source.file):
+            return None
         try:
             uri = urldefrag(page.join(page.join(page.base(), base), name))[0]
             if uri not in self._known:

@@ -1,0 +1,47 @@
+"""Text of strangers as people and other tools may have it: it says something, and does nothing.
+
+Documents, transcripts, names of files and answers of hosts hold what their authors like. Whatever
+of it goes to a terminal, a page, a picture or another tool's file goes through here before.
+"""
+
+from __future__ import annotations
+
+import re
+
+HARMFUL = re.compile(
+    "[\x00-\x1f\x7f-\x9f"  # control characters: a terminal obeys them
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u206f"  # marks of direction: they turn what is around
+    "\u2028\u2029"  # ends of lines
+    "\u180e\ufeff\ufff9-\ufffb\U000e0001-\U000e007f"  # others that nobody sees
+    "\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]"  # no characters at all
+)
+"""What is not shown. Joiners, spaces of every kind and soft hyphens are: scripts need them."""
+MARK = "\ufffd"
+"""What is shown for it."""
+
+
+def visible(text: str, keep: str = "") -> str:
+    """Text without what a terminal would obey, or what turns or hides other text.
+
+    White space that is no space becomes one, but what is to be kept, as ``"\\n"``.
+    """
+    if text.isprintable():
+        return text
+    return HARMFUL.sub(lambda found: found[0] if found[0] in keep else _shown(found[0]), text)
+
+
+def _shown(letter: str) -> str:
+    return " " if letter.isspace() else MARK
+
+
+def escaped(text: str) -> str:
+    """JSON in which such characters are escaped: it means the same, and does nothing as it is."""
+    return HARMFUL.sub(_escape, text) if "\x7f" in text or not text.isascii() else text
+
+
+def _escape(found: re.Match[str]) -> str:
+    letter = found[0]
+    if letter == "\n" or "\ud800" <= letter <= "\udfff":  # which is no UTF-8, and told as that
+        return letter
+    units = letter.encode("utf-16-be").hex()
+    return "".join(f"\\u{units[start : start + 4]}" for start in range(0, len(units), 4))
