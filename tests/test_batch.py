@@ -397,7 +397,7 @@ def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.Mon
     assert [row.exit for row in rows] == [3, 3, 3, 0]
     assert [row.messages for row in rows[:3]] == [
         ["its process was ended by the signal SIGKILL; was there no memory left?"],
-        ["a document's script does not come back; the run is ended."],
+        ["its process ended with code 3."],
         ["its process ended with code 11."],
     ]
 
