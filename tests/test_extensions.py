@@ -137,6 +137,34 @@ def test_x1_the_way_back_waits_while_another_talks_with_the_user() -> None:
     assert stage.select() == ["fa#2"]
 
 
+def test_x1_whatever_waits_in_the_stream_waits_for_the_way_back() -> None:
+    # The head was to move once the robot had turned to the user (X4), when the way back came in.
+    stage = Stage("prima+x1+x4")
+    stage.request("ea", move())
+    stage.select()
+    branches = [Step(say("First.")), Step(command("move-head", pan=10))]
+    stage.at(500).end(
+        "ea#1.1",
+        x=4.0,
+        y=1.0,
+        heading=90.0,
+        then=lambda: stage.request("ea", steps=branches, connect=True),
+    )
+    assert stage.select() == ["ea#4"]
+    stage.request("fa", command("turn", angle=10), cause=EVENT)
+    stage.at(1000).end("ea#4", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["fa#1"]
+    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#5"]
+    assert inserted(stage)[-2:] == [("X1", "set-position"), ("X1", "face-human")]
+    stage.at(2000).end("ea#5", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#6.1"], "nothing of the stream goes before the way back"
+    stage.at(2500).end("ea#6.1", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#7"]
+    stage.at(3000).end("ea#7", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#2", "ea#3"]
+
+
 # X2: interrupt and restart an AB --------------------------------------------------------
 
 
@@ -343,6 +371,21 @@ def test_x3_a_held_conversation_keeps_the_channel() -> None:
     assert stage.select() == ["ea#1.1"]
 
 
+def test_x3_in_a_window_what_is_wanted_now_continues_what_it_cancels() -> None:
+    # O2: no event has come for which the first stream is held.
+    stage = Stage("prima+x3")
+    stage.request("ea", say("Connecting."), hold=5000)
+    stage.request("ea", command("turn", angle=10), cause=EVENT)
+    stage.request("ea", command("move-head", pan=10), cause=LATER)
+    assert stage.select() == ["ea#3", "ea#2", "ea#1"]
+    stage.at(100).end("ea#1")
+    stage.select()
+    urgent = replace(command("turn", angle=5), now=True)
+    stage.at(200).end("ea#3", then=lambda: stage.request("ea", urgent))
+    assert stage.select() == ["ea#4"]
+    assert stage.phases("start")[-1]["tree"] == "ea:2"
+
+
 # X4: connect the channel ------------------------------------------------------------------
 
 
@@ -386,6 +429,20 @@ def test_x4_with_x2_the_first_word_waits_for_the_turn_and_the_story_for_both() -
     stage.request("fa", ask("Yes?"), cause=EVENT, connect=True)
     assert stage.select() == ["fa#2"]
     assert stage.running == {"fa#2"}
+
+
+def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> None:
+    stage = Stage("prima+x4")
+    stage.request("fa", command("turn", angle=5))
+    stage.select()
+    branches = [Step(move()), Step(command("turn", angle=10))]
+    stage.request("fa", steps=branches, cause=EVENT, connect=True)
+    assert stage.select() == []
+    # The second branch has the higher priority, so that the robot turns for it first.
+    assert [r["before"] for r in stage.phases("request") if r.get("inserted")] == ["fa#3", "fa#2"]
+    stage.at(500).end("fa#1")
+    assert stage.select() == ["fa#5"]
+    assert stage.rule("fa#5") == "S2f", "the first branch was requested first"
 
 
 # X5: compose motions ------------------------------------------------------------------------
@@ -536,3 +593,4 @@ def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:
     stage.at(700).end("xa#1", x=5.0, y=0.0, heading=0.0)
     assert stage.select() == ["ea#1.2"]
     assert [r["behavior"] for r in stage.phases("request") if r.get("inserted")] == ["fa#5"]
+    assert stage.floor == ["fa:1", "ea:1"], "the way back waits for the wheels that ea takes (F3)"

@@ -80,8 +80,12 @@ class Stream:
         """Whether an AB of the stream runs."""
         return any(ab.state is RUNNING for ab in self.members.values())
 
+    def present(self) -> list[Behavior]:
+        """What runs and waits; what is linked competes for nothing."""
+        return [ab for ab in self.members.values() if not ab.dormant]
+
     def contending(self) -> list[Behavior]:
-        """What runs and waits, as F2 and K1 see it; what is linked competes for nothing."""
+        """The same as F2 and K1 see it: of what was put in, what it was put in for (X1, X4)."""
         return [one for ab in self.members.values() if not ab.dormant for one in ab.meant()]
 
     def latest(self) -> Behavior | None:

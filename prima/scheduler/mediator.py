@@ -237,7 +237,8 @@ class Mediator(Failures):
     ) -> Stream:
         """O2: cancel this application's trees that want a device of the new Command.
 
-        Gives the stream that goes on: the one that is held (X3), or one of those cancelled.
+        Gives the stream that goes on: one of those cancelled, or one that is held (X3). In a
+        window no event has come that such a stream waits for.
         """
         devices = self._maker.table[command.type].occupied(command.text)
         if unit is not None:
@@ -248,7 +249,8 @@ class Mediator(Failures):
             for ab in self.memory.of_app(app)
             if ab.devices & devices and ab.unit is None
         }
-        if streams and self._held(app) is None:
+        waited_for = reaction is not None or app.window is None
+        if streams and not (waited_for and self._held(app)):
             stream = going_on(list(streams.values()))
         else:
             stream = self._stream(app, reaction)

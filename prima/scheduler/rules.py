@@ -85,7 +85,7 @@ def outranks(priority: int, stream: Stream, memory: Memory) -> bool:
     contending = stream.contending()
     ways = [ab for ab in stream.members.values() if ab.inserted and not ab.dormant]
     if any(k1(ab, memory) is not None for ab in ways):
-        contending = [ab for ab in stream.members.values() if not ab.dormant]
+        contending = stream.present()
     return bool(contending) and all(priority > other.priority for other in contending)
 
 
@@ -104,12 +104,14 @@ def f3(ab: Behavior, reacts: bool, memory: Memory) -> bool:
     """Whether what starts while another application holds the floor takes it.
 
     A reaction does. What starts by its priority alone does if it needs a device of what
-    runs or waits of the floor's stream; else it runs beside it.
+    runs or waits of the floor's stream, or of what something was put in for (X1, X4); else
+    it runs beside it.
     """
     holder = memory.holder
     if holder is None or holder.app is ab.app:
         return False
-    return reacts or any(ab.devices & other.devices for other in holder.contending())
+    own = (*holder.contending(), *holder.present())
+    return reacts or any(ab.devices & other.devices for other in own)
 
 
 def f6(ab: Behavior, memory: Memory) -> Refusal | None:

@@ -78,6 +78,8 @@ class Selector:
 
         All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
         """
+        if self._preparing:
+            self._join_ways_back()
         ranked = self._ranked(self.memory.waiting, now)
         held: Held = {}
         before = len(self.started)
@@ -215,8 +217,7 @@ class Selector:
         """X1, X4: put in what has to come first; true if something was put in."""
         if ab.inserted:
             return False
-        on_its_way = any(one.inserted == "X1" for one in ab.stream.members.values())
-        if ab.stream.suspended and self.policy.has("x1") and not on_its_way:
+        if ab.stream.suspended and self.policy.has("x1") and way_back(ab.stream) is None:
             own = ab.type.effects if ab.type is not None else frozenset()
             commands = ab.stream.effects.missing(own, self.body)
             if self._insert(ab, commands, "X1", now):
@@ -234,7 +235,7 @@ class Selector:
         for command in able:
             command.source = ab.command.source if ab.command else ""
             made = self._maker.behavior(ab.app, ab.stream, command, now, ab.document_state)
-            made.inserted, made.requested = rule, ab.requested
+            made.inserted, made.requested, made.serial = rule, ab.requested, ab.serial
             if rule == "X4":  # the first word follows at once, so its devices are taken along
                 made.use(made.devices | ab.devices)
             if before is None:
@@ -247,14 +248,23 @@ class Selector:
             before = made
         if before is None:
             return False
-        behind = [ab]
-        if rule == "X1":  # other branches of the stream wait for the same way back
-            behind += [one for one in ab.stream.contending() if one.name in self.memory.waiting]
-        for one in dict.fromkeys(behind):
-            if not one.inserted:
-                link(before, one)
-                self.memory.unwait(one)
+        self._put_behind(before, ab)
         return True
+
+    def _put_behind(self, before: Behavior, ab: Behavior) -> None:
+        link(before, ab)
+        self.memory.unwait(ab)
+
+    def _join_ways_back(self) -> None:
+        """X1: whatever waits in a stream waits for the way back that is put in, if one is.
+
+        What is wanted ``now`` does not: it waits for nothing of its own application (O2).
+        """
+        for ab in list(self.memory.waiting.values()):
+            way = None if ab.inserted else way_back(ab.stream)
+            urgent = ab.command is not None and ab.command.now
+            if way is not None and not urgent:
+                self._put_behind(way, ab)
 
     def _hold(self, ab: Behavior, refusal: Refusal) -> None:
         rule, by = refusal
@@ -452,6 +462,12 @@ class Selector:
                 self.chronicle.start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
+
+
+def way_back(stream: Stream) -> Behavior | None:
+    """X1: the last part of the way back that was put in for a stream, while it is there."""
+    members = reversed(stream.members.values())
+    return next((one for one in members if one.inserted == "X1"), None)
 
 
 def yields(ab: Behavior, reaction: Behavior) -> bool:

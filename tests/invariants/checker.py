@@ -178,6 +178,7 @@ class Checker(Endings):
             parents={one for one in names if one in self.abs and self.abs[one].phase != GONE},
             requested=self.now,
             place=self.place,
+            urgent=record.get("order") == "now",
             restartable=bool(record.get("restartable")),
             motion=record.get("motion") or "" if unit is None else "",
             connect=bool(record.get("connect")),

@@ -46,10 +46,12 @@ class Extensions(Floor):
             self._restores(ab, record)
         else:
             self._connects(ab, before, record)
-        before.put_behind = True
         before.parents.add(ab.name)
         before.phase = LINKED
         self.waiting.pop(before.name, None)
+        if rule == "X1":
+            for other in [one for one in self.waiting.values() if one.tree is ab.tree]:
+                self.join_ways_back(other)
 
     def _restores(self, ab: AB, record: Record) -> None:
         """X1: only what a suspended stream relies on is restored."""
@@ -229,10 +231,6 @@ class Extensions(Floor):
         wanted = "x4" in self.extensions and ab.connect and not ab.starts
         if wanted and ab.name not in self.faced | self.seen and not self.in_view:
             self.report(11, "X4", f"{ab.shown} starts, but the robot has not turned to the user")
-
-    def restoring(self, ab: AB) -> bool:
-        """X1: its stream is on its way back; what else is of it may wait for that."""
-        return not ab.inserted and any(other.inserted == "X1" for other in ab.tree.members.values())
 
     def close_trees(self) -> None:
         """C1, F3: when everything of the instant is taken in, empty trees end."""

@@ -38,7 +38,7 @@ class Floor(Channel):
         if any(one.inserted and self.refused_by_channel(one) for one in holder.members.values()):
             # A way back that K1 keeps counts as itself, so that the two do not wait for each other.
             contending = [one for one in holder.members.values() if one.contends]
-        high = ab.tree.meant(ab).high
+        high = any(one.high for one in ab.tree.meant(ab))
         if contending and all(high and not other.high for other in contending):
             return None
         return None if self.carries_floor(ab) else holder

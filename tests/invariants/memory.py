@@ -135,6 +135,15 @@ class Memory:
         self.running.pop(ab.name, None)
         ab.phase, ab.said = WAITING, None
         self.waiting[ab.name] = ab
+        self.join_ways_back(ab)
+
+    def join_ways_back(self, ab: AB) -> None:
+        """X1: what waits in a stream waits for its way back, but what is wanted now (O2)."""
+        ways = ab.tree.ways_back()
+        if ways and not (ab.inserted or ab.urgent or ab.unit):
+            ab.parents |= {way.name for way in ways}
+            ab.phase = LINKED
+            self.waiting.pop(ab.name)
 
     def remove(self, ab: AB, ended: bool = True) -> None:
         """An AB leaves working memory; what waited for its end alone may start (S2c)."""

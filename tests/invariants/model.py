@@ -38,6 +38,8 @@ class AB:
     requested: float
     place: int
     """The index of its request among the records."""
+    urgent: bool = False
+    """Whether it is wanted now, and never linked (O2)."""
     restartable: bool = False
     motion: str = ""
     connect: bool = False
@@ -45,8 +47,6 @@ class AB:
     inserted: str = ""
     put_before: str = ""
     """What it was put in before."""
-    put_behind: bool = False
-    """Whether something was put in before it (X1, X4)."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0
@@ -138,11 +138,18 @@ class Tree:
 
     def contending(self) -> list[AB]:
         """What runs and waits: linked ABs hold nothing back, but for what something was put in for."""
-        return [self.meant(ab) for ab in self.members.values() if ab.contends]
+        return [one for ab in self.members.values() if ab.contends for one in self.meant(ab)]
 
-    def meant(self, ab: AB) -> AB:
+    def meant(self, ab: AB) -> list[AB]:
         """What an AB that was put in was put in for (X1, X4), while that is there; else itself."""
-        return self.members.get(ab.put_before, ab)
+        if not ab.inserted:
+            return [ab]
+        behind = [one for one in self.members.values() if ab.name in one.parents]
+        return [meant for one in behind for meant in self.meant(one)] or [ab]
+
+    def ways_back(self) -> list[AB]:
+        """X1: what is put in before all that waits in the stream."""
+        return [ab for ab in self.members.values() if ab.inserted == "X1"]
 
     def seeks(self) -> bool:
         """K1: whether it searches for the user, or tracks them."""

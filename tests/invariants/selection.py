@@ -48,11 +48,6 @@ class Selection(Patience):
         """S2: whether the first goes before the second."""
         return self.key(ab) < self.key(other)
 
-    def rank_is_open(self, ab: AB, other: AB) -> bool:
-        """X1, X4: whether S2c, e or f would decide of what was put in, or waited for that."""
-        put_in = any(one.inserted or one.put_behind for one in (ab, other))
-        return put_in and self.rule_between(ab, other) in ("S2c", "S2e", "S2f")
-
     def competing(self, ab: AB) -> list[AB]:
         """All others that wait, outside units, and not because of it (X2); by S2."""
         aside = [one for one, by, _ in self.gave_way if by is ab]
@@ -66,7 +61,7 @@ class Selection(Patience):
     def free_to_go(self, ab: AB) -> bool:
         """Whether F2, F6 and K1 are certain to let a waiting AB start."""
         kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
-        return kept is None and not self.restoring(ab)
+        return kept is None
 
     def held_back(self, ab: AB, winner: AB | None = None, surely: bool = True) -> bool:
         """S3: whether a reaction that outranks it wants one of its devices, and may start.
@@ -117,8 +112,7 @@ class Selection(Patience):
         if ab.leaves:
             self.channel_kept(ab, shown)
         for other in self.competing(ab):
-            before = self.outranks(other, ab) and not self.rank_is_open(ab, other)
-            if before and self.free_to_go(other):
+            if self.outranks(other, ab) and self.free_to_go(other):
                 self._passed_over(other, ab, shown)
 
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
@@ -155,9 +149,6 @@ class Selection(Patience):
             self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
-        named = [self.abs[base(name)] for name in losers if base(name) in self.abs]
-        if any(loser.inserted for loser in named):
-            return  # whether what X1 or X4 has put in competes for itself is left open
         rivals = [other for other in rivals if other.shown in losers | needed] or [
             other
             for other in self.competing(ab)
@@ -173,8 +164,6 @@ class Selection(Patience):
             return
         expected = self.rule_between(ab, rivals[0])
         alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
-        if self.rank_is_open(ab, rivals[0]):
-            return
         if rule != expected and not {rule, expected} <= set(alike):
             text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
             self.report(13, "S2", text)
@@ -195,7 +184,7 @@ class Selection(Patience):
 
     def _waits_for_a_reason(self, ab: AB) -> None:
         self.late(ab)
-        if len(self.waiting) <= MANY and not self.restoring(ab):
+        if len(self.waiting) <= MANY:
             self._reason_told(ab)
 
     def late(self, ab: AB) -> None:
@@ -227,7 +216,7 @@ class Selection(Patience):
             "F6": self.refused_by_topic(ab),
             "K1": self.refused_by_channel(ab),
         }
-        return kept.get(rule) is not None or rule not in kept or self.restoring(ab)
+        return kept.get(rule) is not None or rule not in kept
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
         """Whether a reason to wait is true."""

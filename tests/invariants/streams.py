@@ -114,8 +114,8 @@ class Streams(Extensions):
 
     def _reaction_placed(self, ab: AB, new: bool) -> None:
         """O1: a reaction is the root of a new tree, or of what it continues (O3, X3)."""
-        if ab.parents:
-            self.report(15, "O1", f"the reaction {ab.name} waits for {sorted(ab.parents)}")
+        if self._follows(ab):
+            self.report(15, "O1", f"the reaction {ab.name} waits for {self._follows(ab)}")
         alike = any(
             other is not ab and other.reacted_to == ab.cause and other.requested == self.now
             for other in ab.tree.members.values()
@@ -142,8 +142,12 @@ class Streams(Extensions):
                 )
         elif latest.tree is not ab.tree:
             self.report(15, "O1", f"{ab.name} is of {ab.tree.name}; {latest.name} came before it")
-        elif latest.requested < self.now and not ab.parents and not self._begins_par(ab):
+        elif latest.requested < self.now and not self._follows(ab) and not self._begins_par(ab):
             self.report(15, "O1", f"{ab.name} does not wait for {latest.name}")
+
+    def _follows(self, ab: AB) -> list[str]:
+        """What it was asked for behind: a way back is no such thing, all of a stream joins it (X1)."""
+        return [name for name in self.ordered(ab.parents) if not self.abs[name].inserted]
 
     def _begins_par(self, ab: AB) -> bool:
         """Whether it may be a branch beside one that was asked for in this instant."""
