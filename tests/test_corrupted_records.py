@@ -165,6 +165,27 @@ MISSED = play(
     form("<face-human/>" + SAY.format("Story.") * 40),
     silent=100,
 )
+LEFT = play(
+    form(
+        SAY.format("Long.") + SAY.format("More."),
+        on("touch", '<goto next="#f2"/>'),
+    )
+    + '<form id="f2"><block><speak>New.</speak></block></form>',
+    IDLE,
+    events=(at(10),),
+)
+"""A touch leaves a state in which one sentence is said and another waits (O3)."""
+LEFT_LOOPING = play(
+    form("<tracking-human/>", on("touch", '<goto next="#f2"/>')) + '<form id="f2"/>',
+    IDLE,
+    events=(at(20),),
+)
+LEFT_ASKING = play(
+    ASKS.replace("</form>", on("touch", '<goto next="#f2"/>') + "</form>") + '<form id="f2"/>',
+    IDLE,
+    events=(at(10),),
+    silent=100,
+)
 LATER = '<form id="f1"><on event="{}" reactive="false"><speak>Hm.</speak></on></form>'
 EARLIER = play(
     form(SAY.format("One")),
@@ -178,6 +199,18 @@ BESIDE = play(
     events=(at(10), at(20, "corner")),
 )
 """Who speaks beside a move that has the floor takes nothing from it (F3)."""
+
+
+def listens_on(records: Records) -> Records:
+    """A question whose state was left listens; cut off there."""
+    return records[: indexes(records, phase="cancel", rule="O3")[0]]
+
+
+def heard_of(records: Records) -> Records:
+    """A window opens for the end of what was said when its state was left."""
+    index = indexes(records, phase="end", behavior="fa#1")[0]
+    window = {**records[index], "phase": "window", "outcome": "open"}
+    return [*records[: index + 1], window, *records[index + 1 :]]
 
 
 def takes_the_floor(records: Records) -> Records:
@@ -238,6 +271,16 @@ FALSEHOODS = (
     ),
     Falsehood("needless", BESIDE, takes_the_floor, "13 (F3)"),
     Falsehood("gone", BROKEN, after_its_end, "3 (E2)"),
+    # Leaving a state.
+    Falsehood("not-left", LEFT, drop(0, phase="leave"), "3 (O3)"),
+    Falsehood("left-twice", LEFT, double({}, phase="leave"), "3 (O3)"),
+    Falsehood("waits-on", LEFT, drop(0, phase="cancel", rule="O3"), "3 (O3)"),
+    Falsehood("asks-on", LEFT, change(-1, FIRST, state=1), "3 (O3)"),
+    Falsehood("heard-of", LEFT, heard_of, "15 (O3)"),
+    Falsehood("elsewhere", LEFT, change(-1, FIRST, tree="fa:9", parent=None), "15 (O3)"),
+    Falsehood("loops-on", LEFT_LOOPING, change(-1, {"phase": "end"}, outcome="again"), "3 (O3)"),
+    Falsehood("stops-looping", LEFT_LOOPING, drop(0, phase="leave"), "3 (U2)"),
+    Falsehood("listens-on", LEFT_ASKING, listens_on, "3 (O3)"),
     # Who starts.
     Falsehood("S2a", play(MOVES, form('<turn angle="5"/>')), other_first("S2a"), "5 (S2a)"),
     Falsehood("S2b", play(TWO, SPEAKS, events=(at(10),)), other_first("S2b"), "6 (S3)"),

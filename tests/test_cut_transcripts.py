@@ -62,7 +62,7 @@ def test_a_run_that_did_not_end_is_shown_and_told(folder: Path, words: list[str]
     cut(folder)
     done = prima(folder, words)
     assert done.returncode == (1 if words[0] == "diff" else 0), done.stderr
-    assert done.stderr.count("the transcript ends at 36.000 s, before its run did.") == 1
+    assert done.stderr.count("the transcript ends at 35.000 s, before its run did.") == 1
     assert done.stdout or (folder / "made").stat().st_size
 
 

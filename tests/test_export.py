@@ -600,7 +600,7 @@ def test_a_transcript_that_was_cut_off_is_written_as_far_as_it_goes(tmp_path: Pa
     for length in range(20_000, 20_006):  # within a letter of several bytes, too
         (tmp_path / "cut.jsonl").write_bytes(whole[:length])
         done = run("cut.jsonl", "-o", "cut.csv", folder=tmp_path)
-        assert done.returncode == 2 and "cut.jsonl:102: the record is cut off" in done.stderr
+        assert done.returncode == 2 and "cut.jsonl:103: the record is cut off" in done.stderr
         assert "木戸出".encode() in (tmp_path / "cut.csv").read_bytes()
 
 

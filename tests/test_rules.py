@@ -312,6 +312,33 @@ def test_o3_a_question_that_listens_ends_at_once() -> None:
     assert asking.running == set()
 
 
+def test_o3_nobody_hears_of_the_end_or_failure_of_what_was_left() -> None:
+    for what in (say(), Group([Step(say())])):
+        for fails in (False, True):
+            stage = Stage()
+            stage.request("ea", what)
+            stage.select()
+            stage.at(100).leave("ea")
+            last = max(stage.running)  # of a unit, the Command in it
+            if fails:
+                stage.at(200).mediator.failed(last, "speaker", "it fails")
+            else:
+                stage.at(200).end(last)
+            stage.select()
+            assert stage.told("ea") == []
+            assert stage.phases("window") == []
+
+
+def test_o3_leaving_is_recorded() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    stage.at(100).leave("ea")
+    stage.select()
+    [left] = stage.phases("leave")
+    assert (left["time"], left["app"], left["state"], left["rule"]) == (100, "ea", 1, "O3")
+
+
 def test_o3_what_is_requested_in_the_same_instant_continues_the_stream() -> None:
     stage = Stage()
     stage.request("ea", move())

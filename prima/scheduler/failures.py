@@ -36,7 +36,6 @@ class Failures(Endings):
         )
         if ab.feedback and "locomotion" in ab.devices:
             self._rolling = ab
-        told = ab.silent or ab.app.gone
         # Inside a group the unit is the AB that fails (U4); a spanning unit stays its author's.
         while ab.unit is not None and not ab.unit.spans:
             unit = ab.unit
@@ -47,12 +46,12 @@ class Failures(Endings):
             self._remove(ab)
             ab = unit
             self.chronicle.behavior("fail", ab, rule="E1", event=event, message=reason)
-        stream, run, unit_of = ab.stream, ab.run, ab.unit
+        stream, run, unit_of, silent = ab.stream, ab.run, ab.unit, ab.silent
         self._remove(ab)
         if ab.inserted:
             return  # what it was put in for goes on without it
         self._delete_rest(stream.members if unit_of is None else unit_of.inner, run, "E1")
-        if run is not None and not told:
+        if run is not None and not (silent or ab.app.gone):
             run.left = 0
             notice = Notice("failed", run.number, ab.command, event=event, message=reason)
             self.told.append(Told(ab.app.name, stream, [notice]))

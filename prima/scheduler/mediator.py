@@ -141,6 +141,7 @@ class Mediator(Failures):
         """O3: the state's Commands that have not started are deleted, its loops end."""
         self.changed = True
         app = self.memory.apps[name]
+        self.chronicle.add("leave", "mediator", app=name, rule="O3", state=asked.state)
         self._drop_hints(app, asked.state)
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:

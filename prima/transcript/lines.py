@@ -78,6 +78,7 @@ NEEDED = {
     "sensed": ("data",),
     "starve": ("behavior",),
     "collision": ("behavior", "by"),
+    "leave": ("app", "state"),
     "stream-end": ("tree",),
     "run": ("data",),
 }

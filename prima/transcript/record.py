@@ -23,6 +23,7 @@ PHASES = [
     "resume",
     "floor",
     "window",
+    "leave",
     "stream-end",
     "stop",
     "collision",
@@ -63,7 +64,7 @@ class Record(BaseModel):
     )
     phase: Literal[
         "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
-        "hold", "suspend", "resume", "floor", "window", "stream-end", "stop", "collision",
+        "hold", "suspend", "resume", "floor", "window", "leave", "stream-end", "stop", "collision",
         "starve", "emergency", "listening",
         "held", "interrupt", "halted", "substitute", "event", "fetched", "transferred", "sensed", "note", "send", "log", "error",
         "over",
@@ -95,7 +96,7 @@ class Record(BaseModel):
     leaves: bool | None = Field(None, description="Whether it leaves the user (K1).")
     engages: bool | None = Field(None, description="Whether it engages the user (K1).")
     order: Literal["now"] | None = Field(None, description="Set for a Command wanted now (O2).")
-    state: int | None = Field(None, description="The activation of a document's state that asks.")
+    state: int | None = Field(None, description="The activation of a document's state that asks, or is left (O3).")
     inserted: str | None = Field(
         None, description="The rule by which the mediator put it in itself (X1, X4)."
     )

@@ -29,7 +29,9 @@ MOST_KEPT = 3
 SILENT = frozenset({"stop-moving", "iu"})
 """Commands that have no row of their own, as in the thesis."""
 
-UNSEEN = frozenset({"decision", "floor", "window", "stream-end", "suspend", "resume", "listening"})
+UNSEEN = frozenset(
+    {"decision", "floor", "window", "leave", "stream-end", "suspend", "resume", "listening"}
+)
 """Phases of many records, which have no rows."""
 ASKED = ("command", "text", "args", "extra", "inserted", "source")
 """What a row tells of the request of its behavior."""

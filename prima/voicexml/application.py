@@ -69,6 +69,8 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         self._runs = count(1)
         self._run = 0
         self._state = 0
+        self._left = 0
+        """The state that was left last: each is left once (O3)."""
         self._cause: int | None = None
         self._marked: str | None = None
         self._sends = count(1)
@@ -135,7 +137,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             return
         self._cause = event.serial if event.reactive else None
         self._tell(event)
-        self.actions.append(LeaveState(self._state))
+        self._leave()
         self._drive(Resume(event=event, outside=True))
         self._cause = None
 
@@ -177,7 +179,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         if self._run and self._patient:
             return
         if self._run:
-            self.actions.append(LeaveState(self._state))
+            self._leave()
         self._drive(Resume())
         self._catch_up()
 
@@ -239,7 +241,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
                 return False
             self.heard.mark = None  # the last one played, which the device tells
             outcome = heard.filled(answer)
-        self.actions.append(LeaveState(self._state))
+        self._leave()
         self._drive(Resume(outcome))
         self._catch_up()
         return True
@@ -391,11 +393,17 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         except RecursionError:
             self._quit("error.semantic: its elements are nested too deep", failed=True)
 
+    def _leave(self) -> None:
+        """O3: what is asked for and waited for is given up."""
+        if self._left != self._state:
+            self._left = self._state
+            self.actions.append(LeaveState(self._state))
+
     def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
         if self.over:
             return
         self.over = True
-        self.actions.append(LeaveState(self._state))
+        self._leave()
         self.actions.append(Quit(reason, failed, place))
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.invariants.endings import Endings
+from tests.invariants.leaving import Leaving
 from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
 from tests.invariants.table import contradictions
 
 
-class Checker(Endings):
+class Checker(Leaving):
     """Goes through the records of one run, in order."""
 
     def run(self) -> list[str]:
@@ -19,6 +19,7 @@ class Checker(Endings):
             "unload": self._unload,
             "request": self._request,
             "window": self.note_window,
+            "leave": self.note_leave,
             "listening": self._listening,
             "stream-end": self.note_stream_end,
             "emergency": self.note_emergency,
@@ -141,8 +142,7 @@ class Checker(Endings):
         """O3, E2, X6: nothing of a state that was left, or of an application that has ended."""
         name, app = record["behavior"], record["app"]
         if (app, record.get("state")) in self.left and record.get("unit") not in self.nested:
-            other = self.left[app, record.get("state")]
-            self.report(3, "O3", f"{other} was given up, but {name} is of the same state")
+            self.report(3, "O3", f"{name} is requested, but its state was left")
         if app in self.gone_apps and not record.get("unit"):
             self.report(3, "E2", f"{name} is requested, but {app} has ended")
         if record["command"] in self.lacking:
@@ -294,6 +294,7 @@ class Checker(Endings):
         for cut in self.cuts:
             self.justified(cut)
         self.channel_kept_inside()
+        self.left_rightly()
         if self.prima:
             self._told_rightly()
         for tree in self.resumed:

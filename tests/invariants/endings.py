@@ -32,15 +32,18 @@ class Endings(Selection):
             if record["outcome"] == "again":
                 self.wait(ab)
                 ab.followed_at = self.now
+                if self.has_left(ab):
+                    self.report(3, "O3", f"{ab.shown} goes on, but its state was left")
                 return
-            if not ab.silent and ab.app not in self.gone_apps:
-                # Given up before its goal: only O3 is left as a reason, so its state is over.
-                self._say_left(ab)
+            if not (self.has_left(ab) or ab.silent or ab.app in self.gone_apps):
+                self.report(3, "U2", f"{ab.shown} ends before its goal, but its state goes on")
+        self._hears_of(ab)
         self.remove(ab)
 
-    def _say_left(self, ab: AB) -> None:
-        """O3 has no record of its own; no later request may then be of that state."""
-        self.left.setdefault((ab.app, ab.state), ab.shown)
+    def _hears_of(self, ab: AB) -> None:
+        """C3, O3, E2: an end opens a window, but not of what was given up before."""
+        if not (self.has_left(ab) or ab.app in self.gone_apps):
+            self.heard[ab.tree.name] += 1
 
     def note_fail(self, record: Record) -> None:
         if not record.get("behavior"):
@@ -50,6 +53,7 @@ class Endings(Selection):
         ab = self.running_one(record, "fails") if ab is not None else None
         if ab is None:
             return
+        self._hears_of(ab)
         if record["rule"] == "U5":
             for inner in self.running.values():
                 inner.silent = inner.silent or inner is ab or inner.inside(ab)
@@ -111,8 +115,7 @@ class Endings(Selection):
                 if cut.was == RUNNING and not ab.listening and not whole:
                     self.report(2, "O3", f"{shown}: it does not listen")
                 if cut.rule == "O3":
-                    self._say_left(ab)
-                    if self.last_state[ab.app, ab.state] > cut.place:
+                    if not self._given_up(cut):
                         self.report(number, "O3", f"{shown}, but its state goes on")
                 elif ab.app not in self.unloaded:
                     self.report(number, "E2", f"{shown}, but {ab.app} goes on")
@@ -133,3 +136,10 @@ class Endings(Selection):
                     self.report(number, "E5", f"{shown} without an emergency")
             case rule:
                 self.report(number, str(rule), f"{shown} by a rule that cancels nothing")
+
+    def _given_up(self, cut: Cut) -> bool:
+        """O3: its state is left in this instant; of what ran, it or its application was left before."""
+        ab = cut.ab
+        if cut.was == RUNNING:
+            return self.has_left(ab) or ab.app in self.gone_apps
+        return (ab.app, ab.state) in self.left_now

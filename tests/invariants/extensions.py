@@ -103,6 +103,8 @@ class Extensions(Floor):
         by = self.abs.get(base(record["by"]))
         if "x2" not in self.extensions or not ab.restartable or ab.unit is not None:
             self.report(2, "X2", f"{ab.shown} is interrupted, which is not marked so")
+        if self.has_left(ab) or ab.app in self.gone_apps:
+            self.report(2, "X2", f"{ab.shown} is interrupted, but nobody wants it to start again")
         if by is None or by.phase != WAITING or by.cause is None or not by.devices & ab.devices:
             self.report(2, "X2", f"{ab.shown} is interrupted for {record['by']}, no reaction to it")
         elif ab.started_at == self.now and (not by.high or by.cause <= (ab.reacted or 0)):
@@ -138,7 +140,9 @@ class Extensions(Floor):
 
     def wants_hold(self, tree: Tree, ab: AB, record: Record) -> None:
         """X3: the latest request says how long; while one is held, requests join it."""
-        tree.hold, tree.hold_state = record.get("hold"), ab.state
+        hold = record.get("hold")
+        if hold != tree.hold or not self._says_nothing_of_holds(ab):
+            tree.hold, tree.hold_state = hold, ab.state
         tree.requested = self.place
         if ab.parents or ab.unit is not None or ab.inserted:
             return
@@ -147,6 +151,15 @@ class Extensions(Floor):
         held = [other for other in self.trees.values() if other.app == ab.app and other.until]
         if held and not any(tree is other for other in held) and not self.joined_now(tree):
             self.report(10, "X3", f"{ab.name} does not join {held[0].name}, which is held for it")
+
+    def _says_nothing_of_holds(self, ab: AB) -> bool:
+        """Whether its request leaves it as it is how long its stream is held.
+
+        That is so of what the mediator puts in, of what is in a unit given beforehand, and of
+        a unit that spans questions: what is asked for inside says it.
+        """
+        spans = ab.command == "iu" and ab.name not in self.groups
+        return bool(ab.inserted) or spans or (ab.unit is not None and ab.unit.name in self.groups)
 
     def joined_now(self, tree: Tree) -> bool:
         return tree.joined >= 0 and self.records[tree.joined]["time"] == self.now
@@ -165,8 +178,7 @@ class Extensions(Floor):
         elif outcome == "over" and abs(tree.until - self.now / self.second) > A_MOMENT:
             self.report(10, "X3", f"{name} was to be held until {tree.until:g}")
         elif outcome == "left":
-            self.left.setdefault((tree.app, tree.hold_state), name)
-            tree.left_at = self.now
+            self.let_go.append((tree, tree.hold_state))
         tree.until = tree.hold = None
         if outcome == "joined":
             tree.joined = self.place
@@ -197,9 +209,8 @@ class Extensions(Floor):
                 self.report(10, "X3", f"{tree.name} is joined by nothing")
 
     def _ends_rightly(self, tree: Tree) -> None:
-        """X3: a stream ends only when nobody wants it held; a state left unseen may be why."""
-        state_goes_on = self.last_state.get((tree.app, tree.hold_state), -1) >= self.place
-        if tree.hold is not None and state_goes_on and tree.app not in self.gone_apps:
+        """X3: a stream ends only when nobody wants it held."""
+        if tree.hold is not None and "x3" in self.extensions and tree.app not in self.gone_apps:
             self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold:g} s")
 
     def note_substitute(self, record: Record) -> None:
@@ -212,7 +223,7 @@ class Extensions(Floor):
         """X2: whether an AB is certain to be interrupted for a reaction.
 
         It may not be where the reaction ranks below it (S2a, S2b), or where its state
-        may have been left, so that it must not start again.
+        was left, so that it must not start again (O3).
         """
         ab = ab.outermost
         heard = not ab.silent and ab.app not in self.gone_apps
@@ -223,7 +234,7 @@ class Extensions(Floor):
             and reaction.cause is not None
             and reaction.cause > (ab.reacted or 0)
             and heard
-            and self.last_state[ab.app, ab.state] >= self.place
+            and not self.has_left(ab)
         )
 
     def channel_connected(self, ab: AB) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from tests.invariants.model import (
@@ -10,6 +11,7 @@ from tests.invariants.model import (
     EXTENSIONS,
     GONE,
     LINKED,
+    RUNNING,
     WAITING,
     Cut,
     Record,
@@ -54,8 +56,8 @@ class Memory:
         """When the user was last seen, heard or felt (K1)."""
         self.now: float = 0
         self.place = 0
-        self.left: dict[tuple[str, int | None], str] = {}
-        """States that a cancellation says were left, and by which AB it was said."""
+        self.left: set[tuple[str, int | None]] = set()
+        """Applications, and states of theirs that they have left (O3)."""
         self.serials: dict[int, float] = {}
         """The numbers of events, and when those happened."""
         self.numbered = any(one.get("serial") is not None for one in self.records)
@@ -76,10 +78,11 @@ class Memory:
     def _read_ahead(self) -> None:
         """Note where each name occurs last, which only later records show."""
         self.last: dict[str, int] = {}
-        self.last_state: dict[tuple[str, int | None], int] = {}
         self.unit_ends: dict[str, float] = {}
         self.begins: dict[tuple[float, str], int] = {}
         """When streams begin to be held, and the index of the record that says so."""
+        self.groups: set[str] = set()
+        """Units whose Commands are given beforehand (U4): others span questions (U5)."""
         self.nested: set[str] = set()
         """Units inside units: what is in them is requested when they start, and by nobody."""
         for place, record in enumerate(self.records):
@@ -89,12 +92,11 @@ class Memory:
                 self.begins[record["time"], record["tree"]] = place
             if record.get("behavior") and record["phase"] != "halted":
                 self.last[base(record["behavior"])] = place
-            if record["phase"] != "request":
-                continue
-            if record["command"] == "iu" and record.get("unit"):
+            if record["phase"] == "start" and record["rule"] == "U4":
+                self.groups.add(record["unit"])
+            unit = record["phase"] == "request" and record["command"] == "iu"
+            if unit and record.get("unit"):
                 self.nested.add(record["behavior"])
-            if record.get("unit") not in self.nested:
-                self.last_state[record["app"], record.get("state")] = place
 
     def _new_instant(self) -> None:
         self.cuts: list[Cut] = []
@@ -125,6 +127,13 @@ class Memory:
         self.told_ends: set[str] = set()
         """Streams that ended in this instant, and those that a record says did (C1)."""
         self.resumed: list[Tree] = []
+        self.left_now: set[tuple[str, int | None]] = set()
+        self.continuing: dict[str, Tree] = {}
+        """The stream that an application goes on with, as it has left a state (O3)."""
+        self.let_go: list[tuple[Tree, int | None]] = []
+        """Streams held no longer as a state was left, and which (X3)."""
+        self.heard: Counter[str] = Counter()
+        """How many ends of each stream its application hears of, and has no window for yet (C3)."""
 
     def report(self, number: int, rule: str, text: str) -> None:
         """Note a violation of an invariant, with the rule behind it."""
@@ -159,10 +168,19 @@ class Memory:
                 other.followed_at = self.now if ended else -1
                 self.wait(other)
 
+    def has_left(self, ab: AB) -> bool:
+        """O3: whether the state that has asked for it was left."""
+        return (ab.app, ab.state) in self.left
+
+    def in_group(self, ab: AB) -> bool:
+        """Whether it is part of a unit that runs, and finishes whole (U4)."""
+        unit = ab.unit
+        return unit is not None and unit.name in self.groups and unit.phase == RUNNING
+
     def running_one(self, record: Record, what: str) -> AB | None:
         """The running AB that a record is about; a violation if it does not run."""
         ab = self.abs.get(base(record["behavior"]))
-        if ab is None or ab.phase != "running" or ab.shown != record["behavior"]:
+        if ab is None or ab.phase != RUNNING or ab.shown != record["behavior"]:
             phase = ab.phase if ab is not None else "unknown"
             self.report(3, "U1", f"{record['behavior']} {what}, but it is {phase}")
             return None

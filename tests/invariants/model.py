@@ -117,12 +117,11 @@ class Tree:
     hold: float | None = None
     """How long (s) its latest request wants it held afterwards (X3)."""
     hold_state: int | None = None
+    """The state that wants that."""
     until: float | None = None
     """Until when (s) it is held."""
     joined: int = -1
     """The index of the record by which a request joined it, being held."""
-    left_at: float = -1
-    """When the state was left for which it was held."""
     requested: int = -1
     """The index of the latest request."""
     suspended: bool = False
@@ -135,6 +134,11 @@ class Tree:
     def open(self) -> bool:
         """C1: something of it is in working memory, or a window is open; or it is held (X3)."""
         return bool(self.members) or self.windows > 0 or self.until is not None
+
+    @property
+    def runs(self) -> bool:
+        """Whether an AB of it runs."""
+        return any(ab.phase == RUNNING for ab in self.members.values())
 
     def contending(self) -> list[AB]:
         """What runs and waits: linked ABs hold nothing back, but for what something was put in for."""

@@ -16,6 +16,9 @@ class Streams(Extensions):
             self.report(3, "C1", f"a window of {record['tree']} opens, which has ended")
             tree = self.trees[record["tree"]] = Tree(record["tree"], record["app"])
         if record["outcome"] == "open":
+            self.heard[tree.name] -= 1
+            if self.heard[tree.name] < 0:
+                self.report(15, "O3", f"a window of {tree.name} opens, but no end is heard")
             tree.windows += 1
             self.windows.append(tree)
             return
@@ -120,15 +123,18 @@ class Streams(Extensions):
             other is not ab and other.reacted_to == ab.cause and other.requested == self.now
             for other in ab.tree.members.values()
         )
-        if not (new or alike or self._continues(ab)):
+        if not (alike or self._goes_on_rightly(ab, new)):
             self.report(15, "O1", f"the reaction {ab.name} begins no tree of its own")
 
-    def _continues(self, ab: AB) -> bool:
-        """O3, X3: whether a state was left whose stream this may go on with, or one was held."""
-        cut = any(one.ab.tree is ab.tree or one.rule == "O3" for one in self.cuts)
-        left = any(other.state != ab.state for other in ab.tree.members.values() if other is not ab)
-        held = self.joined_now(ab.tree) or ab.tree.left_at == self.now
-        return cut or left or held
+    def _goes_on_rightly(self, ab: AB, new: bool) -> bool:
+        """O3, X3: the stream of a root that follows nothing.
+
+        That is one that was held, else that of a state left in this instant, else a new one.
+        """
+        if self.joined_now(ab.tree):
+            return True
+        on = self.continuing.get(ab.app)
+        return new if on is None else on is ab.tree
 
     def _follows_rightly(self, ab: AB, new: bool) -> None:
         """O1: it follows the latest Command of its application that is still there."""
@@ -136,10 +142,9 @@ class Streams(Extensions):
         if latest is not None and latest.command == "iu" and latest.phase != GONE:
             return  # the latest Command may be one inside, which has ended
         if latest is None or latest.phase == GONE:
-            if not (new or self._continues(ab)):
-                self.report(
-                    15, "O1", f"{ab.name} continues {ab.tree.name}, which it does not follow"
-                )
+            if not self._goes_on_rightly(ab, new):
+                text = f"{ab.name} is of {ab.tree.name}, which it does not follow"
+                self.report(15, "O3" if ab.app in self.continuing else "O1", text)
         elif latest.tree is not ab.tree:
             self.report(15, "O1", f"{ab.name} is of {ab.tree.name}; {latest.name} came before it")
         elif latest.requested < self.now and not self._follows(ab) and not self._begins_par(ab):
@@ -159,14 +164,9 @@ class Streams(Extensions):
     def left_waiting(self) -> None:
         """E2, at the end of an instant: nothing of an application that has ended waits."""
         for ab in self.abs_there():
-            if ab.app in self.gone_apps and ab.phase in (WAITING, LINKED) and not self._in_run(ab):
+            if ab.app in self.gone_apps and ab.phase in (WAITING, LINKED) and not self.in_group(ab):
                 self.report(3, "E2", f"{ab.shown} is {ab.phase}, but {ab.app} has ended")
 
     def abs_there(self) -> list[AB]:
         """All of working memory."""
         return [ab for tree in self.trees.values() for ab in tree.members.values()]
-
-    @staticmethod
-    def _in_run(ab: AB) -> bool:
-        """Whether a unit around it runs: that finishes whole (U4, E2)."""
-        return ab.unit is not None and ab.unit.phase == RUNNING

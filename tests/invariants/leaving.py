@@ -1,0 +1,56 @@
+"""Leaving a state (O3): what becomes of what it has asked for, and what goes on afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tests.invariants.endings import Endings
+from tests.invariants.model import AB, RUNNING, Record, Tree
+
+
+class Leaving(Endings):
+    """O3, from the ``leave`` records. When a state is left is the application's own decision."""
+
+    def note_leave(self, record: Record) -> None:
+        """A state is left: nothing new is asked for by it, and nothing of it starts."""
+        app, state = record["app"], record["state"]
+        if (app, state) in self.left:
+            self.report(3, "O3", f"state {state} of {app} is left twice")
+        self.left.add((app, state))
+        self.left_now.add((app, state))
+        for tree in self.trees.values():
+            if tree.app == app and tree.hold is not None and tree.hold_state == state:
+                self._hold_no_more(tree)
+        mine = [ab for ab in self.abs_there() if ab.app == app and ab.state == state]
+        if mine:
+            self.continuing[app] = going_on(mine)
+
+    def _hold_no_more(self, tree: Tree) -> None:
+        """X3: a state that is left has nothing held; what was held may be gone on with."""
+        if tree.until is None:
+            tree.hold = None
+        else:
+            self.continuing[tree.app] = tree
+
+    def left_rightly(self) -> None:
+        """O3 at the end of an instant: what is still there of states that were left only runs."""
+        for ab in self.abs_there():
+            if not self.has_left(ab) or self.in_group(ab):
+                continue
+            if ab.phase != RUNNING:
+                self.report(3, "O3", f"{ab.shown} is {ab.phase}, but its state was left")
+            elif ab.listening:
+                self.report(3, "O3", f"{ab.shown} listens, but its state was left")
+        for tree, state in self.let_go:
+            known = (tree.app, state) in self.left_now or tree.app in self.unloaded
+            if not (known or self.released):
+                self.report(10, "X3", f"{tree.name} is held no longer, but its state goes on")
+        for tree in self.trees.values():
+            if tree.until is not None and (tree.app, tree.hold_state) in self.left_now:
+                self.report(10, "X3", f"{tree.name} is held on, but its state was left")
+
+
+def going_on(left: Iterable[AB]) -> Tree:
+    """O3: of several streams, the one that runs or of which an AB started last, else the latest."""
+    asked = sorted(left, key=lambda ab: int(ab.name.rpartition("#")[2]), reverse=True)
+    return max((ab.tree for ab in asked), key=lambda tree: (tree.runs, tree.started))
