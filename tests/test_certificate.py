@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -23,7 +24,7 @@ from prima.certificate import (
 )
 from prima.loading import load_scenario, read_application, read_file
 from prima.messages import Record
-from prima.prices import Price, outline, prices
+from prima.prices import Price, commands, outline, prices
 from prima.sim.scenario import read_robot
 from prima.sim.voice import duration
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -596,6 +597,37 @@ def test_certificates_that_are_too_good_are_found_out(seed: int) -> None:
             found.delays.clear()
             broken += bool(faults(found, api.rehearse(scenario).records, PROFILE.voices))
     assert broken
+
+
+def broken_by(change: Callable[[Certificate], None]) -> int:
+    """How many of some pairs exceed their certificates once those are changed."""
+    broken = 0
+    for seed in range(0, 40, 4):
+        with TemporaryDirectory() as folder:
+            fa, ea, scenario = pair(seed).write(Path(folder))
+            (found,) = certificates([str(fa)], [str(ea)])
+            change(found)
+            broken += bool(faults(found, api.rehearse(scenario).records, PROFILE.voices))
+    return broken
+
+
+def as_it_is(_found: Certificate) -> None:
+    """Change nothing."""
+
+
+def without_more_for_each_event(found: Certificate) -> None:
+    for delay in found.delays:
+        delay.each = 0
+
+
+def test_the_slowest_runs_need_all_that_their_certificates_allow(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither what further events add to a wait can go, nor the time in which turns slow down."""
+    assert not broken_by(as_it_is)
+    assert broken_by(without_more_for_each_event)
+    monkeypatch.setattr(commands, "SETTLING_MS", 0)
+    assert broken_by(as_it_is)
 
 
 @pytest.mark.parametrize("path", SITUATIONS, ids=lambda path: path.stem)
