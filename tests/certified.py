@@ -27,6 +27,7 @@ class Spell:
     leaves: bool
     text: str
     parents: list[str]
+    tree: str
     started: float | None = None
     loops: list[tuple[float, float]] = field(default_factory=list)
     over: float | None = None
@@ -77,6 +78,7 @@ class Watched:
                 bool(record.get("leaves")),
                 record.get("text") or "",
                 [name.partition(".")[0] for name in parents],
+                record["tree"],
             ),
         )
 
@@ -180,10 +182,19 @@ def _bound(
         for spell in run.of(certificate.ea)
         if spell.cause in run.events and since <= spell.asked <= until
     }
-    if delay.each is None and causes:
+    further = len(causes) + (_unfinished(certificate, run, since) if delay.whole else 0)
+    if delay.each is None and further:
         return float("inf")
     count, speaks = run.spoken(since, until, rates) if delay.listens else (0, 0.0)
-    return (delay.lasts * (1 + count) + (delay.each or 0) * len(causes)) / 1000 + speaks
+    return (delay.lasts * (1 + count) + (delay.each or 0) * further) / 1000 + speaks
+
+
+def _unfinished(certificate: Certificate, run: Watched, since: float) -> int:
+    """How many reactions the EA has begun before and not ended, by their streams."""
+    own = run.of(certificate.ea)
+    reactions = {spell.tree for spell in own if spell.cause is not None and spell.asked < since}
+    left = {spell.tree for spell in own if spell.asked < since <= (spell.over or run.ends)}
+    return len(reactions & left)
 
 
 def _starved(certificate: Certificate, run: Watched, rates: dict[str, float]) -> list[str]:

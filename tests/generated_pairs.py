@@ -274,15 +274,17 @@ def _slowest(seed: int, random: Random) -> Pair:
     angle, words = random.choice((-170, 45, 90, 180)), random.choice(WORDS)
     acts = [text.format(angle=angle, words=words) for text in theirs]
     handlers = "".join(
-        f'<on event="{name}">{random.choice(acts)}</on>' for name in ("touch", "message")
+        f'<on event="{name}">{"".join(random.choices(acts, k=random.randint(1, 2)))}</on>'
+        for name in ("touch", "message")
     )
+    event, doing = random.choice((("bell", BELL), ("touch", TOUCH)))
     whens = []
     for begun in range(2000, 60000, 15000):
-        doings = [(begun, TOUCH), (begun + random.randint(1, 30), BELL)]
-        for _ in range(random.randint(0, 3)):
+        doings = [(begun, MESSAGE), (begun + random.randint(1, 30), doing)]
+        for _ in range(random.choice((0, 2, 6))):
             doings.append((begun + random.randint(50, 1200), random.choice((TOUCH, MESSAGE))))
         whens += [f'<when at="{at}ms">{doing}</when>' for at, doing in doings]
-    fa = f'{HEAD.format("fa", "mine")}<form id="f"><on event="bell">{mine}</on></form></prima>'
+    fa = f'{HEAD.format("fa", "mine")}<form id="f"><on event="{event}">{mine}</on></form></prima>'
     ea = f'{HEAD.format("ea", "theirs")}<form id="f">{handlers}</form></prima>'
     return Pair(seed, fa, ea, VOICE, _staged(whens, PLACES[0]))
 

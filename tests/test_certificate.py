@@ -472,6 +472,8 @@ def test_a_reaction_to_the_same_event_is_waited_for_to_its_end(tmp_path: Path) -
     assert len(delay.after) == 1 and delay.known
     assert delay.lasts == lasting("That was me.") + lasting("Oh!") + lasting("That was me.")
     assert "about the same event at" in format_certificate(certified(tmp_path, body))
+    more = "s more for each other event that theirs reacts to meanwhile, or has not done with"
+    assert more in format_certificate(certified(tmp_path, body))
 
 
 def test_a_reaction_to_the_same_event_may_have_no_end(tmp_path: Path) -> None:

@@ -31,6 +31,9 @@ class Delay:
     each: int | None = 0
     """How much longer (ms) for each other event that the other reacts to meanwhile; None where
     that has no bound."""
+    whole: bool = False
+    """Whether it waits for all that the other does in one go: then it is longer, too, for each
+    event whose reaction the other has begun before and not ended."""
     unknown: list[Gap] = field(default_factory=list)
     endless: list[Gap] = field(default_factory=list)
 
@@ -122,6 +125,7 @@ def _doings(theirs: Outline) -> Iterable[State]:
 
 def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline, same: list[Reaction]) -> None:
     """All that is done in one go, and all that further events bring."""
+    delay.whole = True
     delay.lasts += whole.lasts
     delay.unknown += whole.unknown
     delay.endless += whole.endless

@@ -70,15 +70,20 @@ def _delay(delay: Delay, one: Certificate) -> list[str]:
     if delay.listens:
         first += ", and while the user speaks"
     found = [first]
-    if delay.each is None:
-        found.append(
-            f"    longer, without a bound, for each event that {one.ea} reacts to meanwhile"
-        )
-    elif delay.each:
-        more = delay.each / 1000
-        found.append(f"    {more:.1f} s more for each event that {one.ea} reacts to meanwhile")
+    if delay.each is None or delay.each:
+        found.append(f"    {_more(delay)} for each {_further(one.ea, delay)}")
     found += _reasons(delay.endless, "without an end", 4)
     return found + _reasons(delay.unknown, "not known", 4)
+
+
+def _more(delay: Delay) -> str:
+    return "longer, without a bound," if delay.each is None else f"{delay.each / 1000:.1f} s more"
+
+
+def _further(ea: str, delay: Delay) -> str:
+    """The events that make a wait longer."""
+    found = f"event that {ea} reacts to meanwhile"
+    return f"other {found}, or has not done with" if delay.whole else found
 
 
 def _bound(delay: Delay) -> str:

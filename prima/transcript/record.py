@@ -96,7 +96,9 @@ class Record(BaseModel):
     leaves: bool | None = Field(None, description="Whether it leaves the user (K1).")
     engages: bool | None = Field(None, description="Whether it engages the user (K1).")
     order: Literal["now"] | None = Field(None, description="Set for a Command wanted now (O2).")
-    state: int | None = Field(None, description="The activation of a document's state that asks, or is left (O3).")
+    state: int | None = Field(
+        None, description="The activation of a document's state that asks, or is left (O3)."
+    )
     inserted: str | None = Field(
         None, description="The rule by which the mediator put it in itself (X1, X4)."
     )
