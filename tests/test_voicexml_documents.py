@@ -2048,6 +2048,8 @@ def test_what_is_said_during_a_prompt_before_a_question_answers_it(said: str, lo
         ("O3", "Two."),
         ("O3", "Which?"),
     }
+    left = call.phases("leave")
+    assert [one["state"] for one in left] == [1, 2], "by the answer, and by the dialog's end"
     assert call.ended == "exit"
 
 
