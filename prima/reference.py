@@ -257,7 +257,7 @@ def limits() -> str:
         ),
         (
             "Commands and messages of an application in a run",
-            f"{bounds.MAX_ACTIONS:,}",
+            f"{bounds.MAX_ACTIONS:,}, and {bounds.ACTIONS_A_SECOND} a second",
             "the application ends",
         ),
         (

@@ -24,8 +24,9 @@ MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
 """Characters that an application may say, log, send and pass on in one instant, and in a run."""
 MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000
 """Pieces of content that it may go through in a run, and for each second of the run besides."""
-MAX_ACTIONS = 60_000
-"""Commands, messages and other actions that an application may ask for in a run."""
+MAX_ACTIONS, ACTIONS_A_SECOND = 20_000, 20
+"""Commands, messages and other actions that an application may ask for in a run, and for each second
+of the run besides."""
 
 BRIEF_MS, MOST_BRIEF = 50, 1_000
 """How long a wait must last (ms), or how many may be shorter in a row."""
@@ -118,9 +119,9 @@ class Bounds(Generic[Evaluator]):
             GoOut: it was too much.
         """
         self.asked += 1
-        if self.asked > MAX_ACTIONS and not self.over:
+        if self.asked > MAX_ACTIONS + self.now * ACTIONS_A_SECOND // 1000 and not self.over:
             place = source(self._latest) if self._latest is not None else ""
-            reason = f"it asked for more than {MAX_ACTIONS:,} Commands and messages in this run"
+            reason = f"it asked for {self.asked:,} Commands and messages in this run"
             raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def count_wait(self, began: int, node: Node) -> None:
