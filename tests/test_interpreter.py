@@ -1041,13 +1041,16 @@ def test_a_link_of_its_own_ends_the_question_that_listens() -> None:
     assert bench.saying() == ["q-and-a"], "it listens again; a reprompt would ask again"
 
 
-def test_a_link_of_another_application_lets_the_question_listen_on() -> None:
+def test_a_link_of_the_robots_own_application_lets_the_question_listen_on() -> None:
     bench = Bench(
-        '<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field></form>',
+        document(
+            '<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field></form>',
+            "ea",
+        ),
         document(
             """<form id="a"><link event="lamp"><grammar><item>light on</item></grammar></link>
             <on event="lamp"><move-head pan="10"/></on></form>""",
-            "ea",
+            "fa",
             "other",
         ),
     )

@@ -100,7 +100,8 @@ class Selector:
 
     def _ranked(self, found: dict[str, Behavior], now: int) -> list[Ranked]:
         policy, memory = self.policy, self.memory
-        return sorted((policy.rank(ab, memory, now), ab) for ab in found.values())
+        ranked = ((policy.rank(ab, memory, now), ab) for ab in found.values())
+        return sorted(ranked, key=lambda one: one[0])
 
     def _wait_for_devices(self, ab: Behavior, held: Held) -> Refusal | None:
         """S1, S3: what keeps a device from the AB, which holds its own back while it waits."""
