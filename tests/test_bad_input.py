@@ -1174,7 +1174,7 @@ def test_what_was_written_before_the_end_stays_readable(
     prima: Prima, tmp_path: Path, name: str
 ) -> None:
     body = form('<block><tracking-human/></block><on event="x"><exit/></on>')
-    path = stage(tmp_path, app(body), attributes='until="86400s"')
+    path = stage(tmp_path, app(body, kind="ea"), attributes='until="86400s"')
     made = subprocess.Popen(
         [sys.executable, "-m", "prima", "run", str(path), "-o", "t"],
         cwd=tmp_path, stderr=subprocess.PIPE, text=True,

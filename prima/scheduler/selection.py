@@ -49,9 +49,10 @@ class Policy:
         )
 
     def decided(self, winner: Rank, loser: Rank) -> str:
-        """The rule by which one rank goes before another; they differ in the serial number at least."""
+        """The rule by which one rank goes before another: the last one where nothing differs."""
         differ = (ours != its for ours, its in zip(winner, loser, strict=True))
-        return next(rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
+        found = (rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
+        return next(found, self.rules[-1])
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, F6, K1)."""

@@ -41,7 +41,7 @@ class Selection(Patience):
     def rule_between(self, ab: AB, other: AB) -> str:
         """The part of S2 in which two differ first."""
         pairs = zip(self.key(ab), self.key(other), strict=True)
-        index = next(index for index, (one, two) in enumerate(pairs) if one != two)
+        index = next((index for index, (one, two) in enumerate(pairs) if one != two), len(RULES))
         return RULES[index] if index < len(RULES) else "S2e"
 
     def outranks(self, ab: AB, other: AB) -> bool:
