@@ -22,6 +22,7 @@ from prima.errors import (
     Problem,
     UsageError,
     did_you_mean,
+    few_guesses,
     one_of,
     parted,
 )
@@ -263,7 +264,8 @@ class Validation:
         Raises:
             UsageError: the file cannot be read.
         """
-        found = self._ignores.left(_validate_one(str(path)))
+        with few_guesses():
+            found = self._ignores.left(_validate_one(str(path)))
         self._ignores.check(str(path))
         return sorted(set(found))
 
@@ -591,6 +593,7 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
         seen[name] = option
 
 
+@few_guesses()
 def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.hearing import check_hearing

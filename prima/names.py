@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
+from functools import cached_property, lru_cache
+from itertools import islice
 from types import MappingProxyType
 from typing import Final
 
 from prima.deferred import dataclass, pattern
+from prima.errors import MANY_WORDS
 
 STRANGE: Final = "\u01c0"
 """A letter in all names that we put into the code of documents beside their own: few have one."""
@@ -141,6 +143,35 @@ PAIRS = {"(": ")", "[": "]", "{": "}"}
 NO_METHOD = frozenset(["if", "for", "while", "switch", "with", "catch", "function"])
 
 
+class Scope(set[str]):
+    """The names of the variables of one scope."""
+
+    @cached_property
+    def written(self) -> list[str]:
+        """Those that code can hold and that are not our own, as many as are guessed among.
+
+        Asked for once all names are there.
+        """
+        meant = (one for one in self if IDENTIFIER.fullmatch(one) and not one.startswith("$"))
+        return list(islice(meant, MANY_WORDS + 1))
+
+
+class Known:
+    """The variables that some code may see: looked up in their scopes, which are never joined."""
+
+    __slots__ = ("_scopes",)
+
+    def __init__(self, *scopes: Scope) -> None:
+        self._scopes = scopes
+
+    def __contains__(self, name: object) -> bool:
+        return any(name in scope for scope in self._scopes)
+
+    def written(self) -> Iterator[str]:
+        """Variables that an author may have meant."""
+        return (name for scope in self._scopes for name in scope.written)
+
+
 @dataclass(slots=True)
 class Token:
     """A piece of code: its text, where it begins, and whether a line begins before it."""
@@ -218,6 +249,13 @@ def handled_names(code: str) -> dict[str, int]:
     reader = Reader(code)
     own = reader.declared() | reader.parameters()
     return {name: at for name, at in reader.used().items() if name in HANDLED and name not in own}
+
+
+def is_only_asked(code: str, start: int) -> bool:
+    """Whether a name in code is asked for its type alone, which it may be without being declared."""
+    while start and code[start - 1].isspace():
+        start -= 1
+    return code.startswith("typeof", max(start - 6, 0), start)
 
 
 def declared_names(code: str) -> set[str]:
