@@ -756,7 +756,7 @@ class Checker:
 
         bare = STRINGS.sub("", code)
         wide = [
-            one for one in bare if one != half(one) and half(one).isascii() and half(one).strip()
+            one for one in bare if not one.isascii() and half(one).isascii() and half(one).strip()
         ]
         if wide:
             return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
