@@ -11,7 +11,7 @@ does wrong is an assertion.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from itertools import islice
@@ -27,7 +27,12 @@ MANY_LETTERS, MANY_WORDS = 60, 300
 MOST_COMPARED = 30_000
 """Pairs of words that are compared for the guesses at one document."""
 
+MOST_TOLD = 1_000
+"""Problems that are told of; of the others only how many there are."""
+
 Severity = Literal["error", "warning", "note"]
+SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
+"""The worst first."""
 
 
 class Place(NamedTuple):
@@ -67,7 +72,7 @@ class DocumentError(PrimaError):
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = sorted(problems)
-        super().__init__("\n".join(str(problem) for problem in self.problems))
+        super().__init__("\n".join(map(str, listed(self.problems))))
 
 
 class UsageError(PrimaError):
@@ -141,6 +146,24 @@ def few(problems: list[Problem], most: int) -> list[Problem]:
         if told[alike] <= most:
             kept.append(problem)
     return kept
+
+
+def listed(problems: Sequence[Problem], most: int = MOST_TOLD) -> list[Problem]:
+    """So many of the problems, errors before all others, and one that says how many there are more.
+
+    They keep their order.
+    """
+    if len(problems) <= most:
+        return list(problems)
+    worst = sorted(range(len(problems)), key=lambda at: SEVERITIES.index(problems[at].severity))
+    left = [problems[at] for at in sorted(worst[most:])]
+    counts = Counter(one.severity for one in left)
+    kinds = [counted(counts[kind], kind) for kind in SEVERITIES if counts[kind]]
+    message = f"And {counted(len(left), 'more problem')}: {', '.join(kinds)}."
+    remedy = f"Mend those before, or raise the limit: --limit problems={len(problems)}."
+    severity = problems[worst[most]].severity
+    more = Problem(left[0].place, severity, "more-problems", message, remedy)
+    return [*(problems[at] for at in sorted(worst[:most])), more]
 
 
 def parted(text: str) -> tuple[str, str]:

@@ -23,6 +23,7 @@ from prima.errors import (
     UsageError,
     did_you_mean,
     few_guesses,
+    listed,
     one_of,
     parted,
 )
@@ -233,14 +234,15 @@ class Loaded:
 def validate(paths: Iterable[str | Path]) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
-    Those that authors ignore, in a document or in ``prima.toml``, are left out.
+    Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
+    last says only how many there are more (:func:`prima.errors.listed`).
 
     Raises:
         UsageError: a file cannot be read.
     """
     validation = Validation()
     problems = [problem for path in paths for problem in validation.problems(path)]
-    return sorted(once([*problems, *validation.ignored()]))
+    return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:

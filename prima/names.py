@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from functools import cached_property, lru_cache
 from itertools import islice
 from types import MappingProxyType
@@ -222,24 +222,31 @@ def _ends_operand(before: list[Token]) -> bool:
 
 
 LONG_CODE = 500
-"""Characters of code beyond which what is found in it is not kept."""
+"""Characters of code beyond which what is found in it is not kept, but of the last."""
 
 
 def free_names(code: str) -> Mapping[str, int]:
     """Names that code uses without declaring them, as far as can be seen, and where first."""
-    return _free_names(code) if len(code) > LONG_CODE else _kept_names(code)
+    return _last_names(code)[1] if len(code) > LONG_CODE else _kept_names(code)
 
 
 @lru_cache(maxsize=10_000)
 def _kept_names(code: str) -> Mapping[str, int]:
-    return MappingProxyType(_free_names(code))
+    return _names(code)[1]
 
 
-def _free_names(code: str) -> dict[str, int]:
+@lru_cache(maxsize=1)
+def _last_names(code: str) -> tuple[frozenset[str], Mapping[str, int]]:
+    return _names(code)
+
+
+def _names(code: str) -> tuple[frozenset[str], Mapping[str, int]]:
+    """The names that code declares, and those that it uses without."""
     reader = Reader(code)
-    used = reader.used()
-    own = reader.declared() | reader.parameters() | GLOBALS
-    return {name: start for name, start in used.items() if name not in own}
+    used, declared = reader.used(), reader.declared()
+    own = declared | reader.parameters() | GLOBALS
+    free = {name: start for name, start in used.items() if name not in own}
+    return frozenset(declared), MappingProxyType(free)
 
 
 def handled_names(code: str) -> dict[str, int]:
@@ -258,9 +265,11 @@ def is_only_asked(code: str, start: int) -> bool:
     return code.startswith("typeof", max(start - 6, 0), start)
 
 
-def declared_names(code: str) -> set[str]:
+def declared_names(code: str) -> Set[str]:
     """Names that a script declares at its top level (and perhaps deeper)."""
-    return Reader(code).declared() if DECLARES.search(code) else set()
+    if DECLARES.search(code) is None:
+        return frozenset()
+    return _last_names(code)[0] if len(code) > LONG_CODE else Reader(code).declared()
 
 
 def assigned_names(code: str) -> set[str]:

@@ -23,6 +23,7 @@ from prima.cli.common import (
     raise_limits,
     suggesting,
     tell,
+    tell_problems,
     why_option,
     write_for_programs,
 )
@@ -118,9 +119,7 @@ def talk(
         loaded = api.load_scenario(scenario)
     else:
         loaded = api.stage(fas, eas, (), world, robot, maps)
-    for problem in loaded.problems:
-        if problem.severity != "note":
-            tell(str(problem))
+    tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
     sink = _write if form == "json" else None
     game = Game(loaded, folder, policy, scripted, api.fetcher(list(hosts)), sink)
