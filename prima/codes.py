@@ -128,6 +128,8 @@ CODES: dict[str, str] = {
     "unused-ignore": "A comment or an [[ignore]] of prima.toml ignores a warning that is not there (any"
     " more), or that is an error: errors are never ignored. Of warnings that a document gets from a"
     " scenario alone this is not told, and of an entry only when all files that it names are checked.",
+    "more-problems": "So much is wrong that only a part of it is told, errors first, and how many"
+    " problems there are more. --limit problems=NUMBER raises how many are told.",
     "unsupported-command": "The robot's profile lacks the Command or one of its devices. At run"
     " time the application gets error.unsupported.COMMAND, which it may handle. It is told once of each"
     " Command of a document, with the number of places.",

@@ -45,7 +45,7 @@ def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
 def excerpt(line: str, column: int) -> tuple[str, str]:
     """A source line, cut around a column, and what marks the token there under it."""
     start = min(max(column - 1, 0), len(line))
-    token = TOKEN.match(line, start)
+    token = TOKEN.match(line, start, start + WIDEST)
     length = len(token[0]) if token else 1
     if line[start : start + 1] in "\"'" and line[:start].rstrip()[-1:] != "=":
         length = 1  # the quote that ends a value: what is wrong is that it ends there

@@ -11,7 +11,10 @@ does wrong is an assertion.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from itertools import islice
 from typing import Literal, NamedTuple
 
 TOO_MUCH = (
@@ -21,8 +24,15 @@ TOO_MUCH = (
 """Why a run ends that goes past its limits, and what an author can do."""
 MANY_LETTERS, MANY_WORDS = 60, 300
 """Beyond these no guess is made at what was meant: it would take too long."""
+MOST_COMPARED = 30_000
+"""Pairs of words that are compared for the guesses at one document."""
+
+MOST_TOLD = 1_000
+"""Problems that are told of; of the others only how many there are."""
 
 Severity = Literal["error", "warning", "note"]
+SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
+"""The worst first."""
 
 
 class Place(NamedTuple):
@@ -62,7 +72,7 @@ class DocumentError(PrimaError):
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = sorted(problems)
-        super().__init__("\n".join(str(problem) for problem in self.problems))
+        super().__init__("\n".join(map(str, listed(self.problems))))
 
 
 class UsageError(PrimaError):
@@ -73,16 +83,51 @@ class RunError(PrimaError):
     """A run was ended by an error or a limit; what it had recorded is kept."""
 
 
+@contextmanager
+def few_guesses() -> Iterator[None]:
+    """Let only so many guesses be made meanwhile, however much is wrong with a document."""
+    token = _guesses.set(_Guesses())
+    try:
+        yield
+    finally:
+        _guesses.reset(token)
+
+
+class _Guesses:
+    """How many comparisons are left for the guesses at one document."""
+
+    def __init__(self) -> None:
+        self.left = MOST_COMPARED
+
+
+_guesses: ContextVar[_Guesses | None] = ContextVar("guesses", default=None)
+
+
+def guessable(word: str, known: Iterable[str]) -> list[str]:
+    """The words among which it may be looked for what was meant by another, in order.
+
+    None if there are too many, or if too much has been guessed at a document (:func:`few_guesses`).
+    """
+    guesses = _guesses.get()
+    if len(word) > MANY_LETTERS or (guesses is not None and guesses.left < 0):
+        return []
+    words = list(islice(known, MANY_WORDS + 1))
+    if len(words) > MANY_WORDS:
+        return []
+    if guesses is not None:
+        guesses.left -= len(words)
+    return sorted(words)
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
-    from difflib import get_close_matches  # costs a third of a start, and is rarely needed
-
-    words = sorted(known)
-    if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
-        return ""
+    words = guessable(word, known)
     alike = [one for one in words if one.casefold() == word.casefold()]
-    nearest = alike or get_close_matches(word, words, n=1, cutoff=0.6)
-    return f'Did you mean "{nearest[0]}"?' if nearest else ""
+    if words and not alike:
+        from difflib import get_close_matches  # costs a third of a start, and is rarely needed
+
+        alike = get_close_matches(word, words, n=1, cutoff=0.6)
+    return f'Did you mean "{alike[0]}"?' if alike else ""
 
 
 def few(problems: list[Problem], most: int) -> list[Problem]:
@@ -101,6 +146,24 @@ def few(problems: list[Problem], most: int) -> list[Problem]:
         if told[alike] <= most:
             kept.append(problem)
     return kept
+
+
+def listed(problems: Sequence[Problem], most: int = MOST_TOLD) -> list[Problem]:
+    """So many of the problems, errors before all others, and one that says how many there are more.
+
+    They keep their order.
+    """
+    if len(problems) <= most:
+        return list(problems)
+    worst = sorted(range(len(problems)), key=lambda at: SEVERITIES.index(problems[at].severity))
+    left = [problems[at] for at in sorted(worst[most:])]
+    counts = Counter(one.severity for one in left)
+    kinds = [counted(counts[kind], kind) for kind in SEVERITIES if counts[kind]]
+    message = f"And {counted(len(left), 'more problem')}: {', '.join(kinds)}."
+    remedy = f"Mend those before, or raise the limit: --limit problems={len(problems)}."
+    severity = problems[worst[most]].severity
+    more = Problem(left[0].place, severity, "more-problems", message, remedy)
+    return [*(problems[at] for at in sorted(worst[:most])), more]
 
 
 def parted(text: str) -> tuple[str, str]:

@@ -9,6 +9,7 @@ that it names. Errors are never ignored: what is wrong with them does not run.
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from fnmatch import fnmatchcase
 from os.path import dirname, isabs, isfile, join, realpath, relpath
@@ -51,15 +52,54 @@ class Ignore:
     """What it counts for in its document, from and up to."""
     files: tuple[str, ...] = ("*",)
     used: bool = False
+    around: Ignore | None = None
+    """The next of its code that counts for all that it counts for."""
 
-    def takes(self, problem: Problem) -> bool:
-        """Whether it is about such a problem, in a file that it counts for."""
+    def use(self) -> None:
+        """It has been needed, and those around it as well."""
+        one: Ignore | None = self
+        while one is not None and not one.used:
+            one.used, one = True, one.around
+
+
+class Inside:
+    """The ignores in one document: of two of a code, one is in the other or they do not meet."""
+
+    def __init__(self, ignores: Iterable[Ignore]) -> None:
+        self.all = list(ignores)
+        by_code: dict[str, list[Ignore]] = {}
+        for one in self.all:
+            if one.span[0] < one.span[1]:
+                by_code.setdefault(one.code, []).append(one)
+        self._turns = {code: list(_turns(found)) for code, found in by_code.items()}
+        """By codes, the places from which on another one counts, or none."""
+
+    def taking(self, problem: Problem) -> Ignore | None:
+        """The innermost one that is about a problem."""
+        turns = self._turns.get(problem.code)
+        if turns is None:
+            return None
         at = (problem.place.line, problem.place.column)
-        return (
-            problem.code == self.code
-            and problem.severity != "error"
-            and self.span[0] <= at < self.span[1]
-        )
+        index = bisect_right(turns, at, key=lambda turn: turn[0])
+        return turns[index - 1][1] if index else None
+
+
+def _turns(ignores: list[Ignore]) -> Iterator[tuple[Position, Ignore | None]]:
+    """Where another ignore of a code begins to count, or the one around it counts again."""
+    open_: list[Ignore] = []
+    for one in sorted(ignores, key=lambda one: (one.span[0], _backwards(one.span[1]))):
+        while open_ and open_[-1].span[1] <= one.span[0]:
+            yield open_.pop().span[1], open_[-1] if open_ else None
+        one.around = open_[-1] if open_ else None
+        open_.append(one)
+        yield one.span[0], one
+    while open_:
+        yield open_.pop().span[1], open_[-1] if open_ else None
+
+
+def _backwards(position: Position) -> Position:
+    """What sorts later positions before earlier ones."""
+    return -position[0], -position[1]
 
 
 @dataclass(slots=True)
@@ -81,7 +121,8 @@ class Ignores:
 
     def __init__(self, read: Callable[[str], bytes]) -> None:
         self._read = read
-        self._documents: dict[str, tuple[list[Ignore], list[Problem]]] = {}
+        self._documents: dict[str, tuple[Inside, list[Problem]]] = {}
+        self._paths: dict[str, str] = {}
         self._settings: dict[str, Settings | None] = {}
         self._checked: dict[str, str] = {}
         """The documents that have been checked, by the names by which they are told."""
@@ -93,7 +134,7 @@ class Ignores:
         found = list(problems)
         for problem in found:
             if problem.severity == "error":
-                self._errors.setdefault(absolute(problem.place.file), set()).add(problem.code)
+                self._errors.setdefault(self._path(problem.place.file), set()).add(problem.code)
         return [problem for problem in found if not self._ignored(problem)]
 
     def check(self, file: str) -> None:
@@ -108,7 +149,7 @@ class Ignores:
             ignores, problems = self._of_document(path, file)
             found += problems
             errors = self._errors.get(path)
-            idle = [one for one in ignores if self._is_idle(one)]
+            idle = [one for one in ignores.all if self._is_idle(one)]
             found += [_unused(one) for one in idle if errors is None or one.code in errors]
             if (own := self._of_folder(dirname(path))) is not None:
                 settings[own.path] = own
@@ -144,23 +185,35 @@ class Ignores:
         )
 
     def _ignored(self, problem: Problem) -> bool:
+        if problem.severity == "error":
+            return False
         file = problem.place.file
-        path = absolute(file)
+        path = self._path(file)
         settings = self._of_folder(dirname(path))
-        inside = self._of_document(path, file)[0]
-        found = [one for one in inside if one.takes(problem)]
+        inside = self._of_document(path, file)[0].taking(problem)
+        found = [inside] if inside else []
         if settings is not None:
-            found += [one for one in settings.for_file(path) if one.takes(problem)]
+            found += [one for one in settings.for_file(path) if one.code == problem.code]
         for one in found:
-            one.used = True
+            one.use()
         return bool(found)
 
-    def _of_document(self, path: str, file: str) -> tuple[list[Ignore], list[Problem]]:
+    def _path(self, file: str) -> str:
+        """A file's path, which many problems have."""
+        if file not in self._paths:
+            self._paths[file] = absolute(file)
+        return self._paths[file]
+
+    def _of_document(self, path: str, file: str) -> tuple[Inside, list[Problem]]:
         if path not in self._documents:
             try:
-                self._documents[path] = in_document(file, self._read(file))
+                ignores, problems = in_document(file, self._read(file))
+                self._documents[path] = Inside(ignores), problems
             except (DocumentError, UsageError):
-                self._documents[path] = [], []  # what cannot be read is told by who reads it
+                self._documents[path] = (
+                    Inside(()),
+                    [],
+                )  # what cannot be read is told by who reads it
         return self._documents[path]
 
     def _of_folder(self, folder: str) -> Settings | None:

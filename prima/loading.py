@@ -22,6 +22,8 @@ from prima.errors import (
     Problem,
     UsageError,
     did_you_mean,
+    few_guesses,
+    listed,
     one_of,
     parted,
 )
@@ -238,14 +240,15 @@ class Loaded:
 def validate(paths: Iterable[str | Path]) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
-    Those that authors ignore, in a document or in ``prima.toml``, are left out.
+    Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
+    last says only how many there are more (:func:`prima.errors.listed`).
 
     Raises:
         UsageError: a file cannot be read.
     """
     validation = Validation()
     problems = [problem for path in paths for problem in validation.problems(path)]
-    return sorted(once([*problems, *validation.ignored()]))
+    return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
@@ -269,7 +272,8 @@ class Validation:
         Raises:
             UsageError: the file cannot be read.
         """
-        found = self._ignores.left(_validate_one(str(path)))
+        with few_guesses():
+            found = self._ignores.left(_validate_one(str(path)))
         self._ignores.check(str(path))
         return sorted(set(found))
 
@@ -598,6 +602,7 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
         seen[name] = option
 
 
+@few_guesses()
 def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.hearing import check_hearing

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Iterator, Mapping, Set
+from functools import cached_property, lru_cache
+from itertools import islice
 from types import MappingProxyType
 from typing import Final
 
 from prima.deferred import dataclass, pattern
+from prima.errors import MANY_WORDS
 
 STRANGE: Final = "\u01c0"
 """A letter in all names that we put into the code of documents beside their own: few have one."""
@@ -141,6 +143,35 @@ PAIRS = {"(": ")", "[": "]", "{": "}"}
 NO_METHOD = frozenset(["if", "for", "while", "switch", "with", "catch", "function"])
 
 
+class Scope(set[str]):
+    """The names of the variables of one scope."""
+
+    @cached_property
+    def written(self) -> list[str]:
+        """Those that code can hold and that are not our own, as many as are guessed among.
+
+        Asked for once all names are there.
+        """
+        meant = (one for one in self if IDENTIFIER.fullmatch(one) and not one.startswith("$"))
+        return list(islice(meant, MANY_WORDS + 1))
+
+
+class Known:
+    """The variables that some code may see: looked up in their scopes, which are never joined."""
+
+    __slots__ = ("_scopes",)
+
+    def __init__(self, *scopes: Scope) -> None:
+        self._scopes = scopes
+
+    def __contains__(self, name: object) -> bool:
+        return any(name in scope for scope in self._scopes)
+
+    def written(self) -> Iterator[str]:
+        """Variables that an author may have meant."""
+        return (name for scope in self._scopes for name in scope.written)
+
+
 @dataclass(slots=True)
 class Token:
     """A piece of code: its text, where it begins, and whether a line begins before it."""
@@ -191,24 +222,31 @@ def _ends_operand(before: list[Token]) -> bool:
 
 
 LONG_CODE = 500
-"""Characters of code beyond which what is found in it is not kept."""
+"""Characters of code beyond which what is found in it is not kept, but of the last."""
 
 
 def free_names(code: str) -> Mapping[str, int]:
     """Names that code uses without declaring them, as far as can be seen, and where first."""
-    return _free_names(code) if len(code) > LONG_CODE else _kept_names(code)
+    return _last_names(code)[1] if len(code) > LONG_CODE else _kept_names(code)
 
 
 @lru_cache(maxsize=10_000)
 def _kept_names(code: str) -> Mapping[str, int]:
-    return MappingProxyType(_free_names(code))
+    return _names(code)[1]
 
 
-def _free_names(code: str) -> dict[str, int]:
+@lru_cache(maxsize=1)
+def _last_names(code: str) -> tuple[frozenset[str], Mapping[str, int]]:
+    return _names(code)
+
+
+def _names(code: str) -> tuple[frozenset[str], Mapping[str, int]]:
+    """The names that code declares, and those that it uses without."""
     reader = Reader(code)
-    used = reader.used()
-    own = reader.declared() | reader.parameters() | GLOBALS
-    return {name: start for name, start in used.items() if name not in own}
+    used, declared = reader.used(), reader.declared()
+    own = declared | reader.parameters() | GLOBALS
+    free = {name: start for name, start in used.items() if name not in own}
+    return frozenset(declared), MappingProxyType(free)
 
 
 def handled_names(code: str) -> dict[str, int]:
@@ -220,9 +258,18 @@ def handled_names(code: str) -> dict[str, int]:
     return {name: at for name, at in reader.used().items() if name in HANDLED and name not in own}
 
 
-def declared_names(code: str) -> set[str]:
+def is_only_asked(code: str, start: int) -> bool:
+    """Whether a name in code is asked for its type alone, which it may be without being declared."""
+    while start and code[start - 1].isspace():
+        start -= 1
+    return code.startswith("typeof", max(start - 6, 0), start)
+
+
+def declared_names(code: str) -> Set[str]:
     """Names that a script declares at its top level (and perhaps deeper)."""
-    return Reader(code).declared() if DECLARES.search(code) else set()
+    if DECLARES.search(code) is None:
+        return frozenset()
+    return _last_names(code)[0] if len(code) > LONG_CODE else Reader(code).declared()
 
 
 def assigned_names(code: str) -> set[str]:

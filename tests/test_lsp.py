@@ -278,6 +278,14 @@ def test_good_documents_have_no_errors(editor: Editor, name: str) -> None:
     editor.close(name)
 
 
+def test_a_list_of_problems_stops_in_the_editor_too(editor: Editor) -> None:
+    bad = "".join(f'  <place id="p{index}" x="zero" y="0"/>\n' for index in range(1_234))
+    text = f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{bad}</world>\n'
+    found = editor.open("worlds/many.xml", text)
+    editor.close("worlds/many.xml")
+    assert len(found) == 1_001 and "And 234 more problems" in found[-1].message
+
+
 def test_columns_count_utf16_units(editor: Editor) -> None:
     text = BEGIN + '<form id="a"><block><speak>😀😀</speak><goto next="#b"/></block></form></prima>'
     (found,) = [one for one in editor.open("fa/x.xml", text) if one.code == "no-such-form"]

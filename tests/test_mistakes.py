@@ -76,7 +76,8 @@ def test_what_mistakes_name_beside_them_is_right() -> None:
 @pytest.mark.parametrize("code", CODES)
 def test_the_wrong_example_of_a_code_has_that_problem_alone(code: str) -> None:
     wrong, right = examples(code)
-    assert [problem.code for problem in wrong.problems] == [code]
+    *others, last = [problem.code for problem in wrong.problems]
+    assert last == code and (not others or code == "more-problems")
     assert right.problems == []
     place = wrong.problems[0].place
     assert _lines(wrong, place.file)[place.line - 1].strip()

@@ -17,7 +17,7 @@ import pytest
 
 from prima import api, loading
 from prima.diagnostics import excerpt, render, sarif
-from prima.errors import DocumentError, Place, Problem
+from prima.errors import DocumentError, Place, Problem, listed
 from prima.interpreter.reader import read_document
 
 ROOT = Path(__file__).parent.parent
@@ -35,6 +35,45 @@ def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:
         [sys.executable, "-m", "prima", *map(str, args)],
         capture_output=True, text=True, timeout=60, cwd=cwd, check=False,
     )  # fmt: skip
+
+
+def wrong(places: int) -> str:
+    """A world with a warning, and an error in each of so many places."""
+    wall = '  <way from="a" to="b"/><wall x1="0.5" y1="-1" x2="0.5" y2="1"/>\n'
+    good = '  <place id="a" x="0" y="0"/><place id="b" x="1" y="0"/>\n'
+    bad = "".join(f'  <place id="p{index}" x="zero" y="0"/>\n' for index in range(places))
+    return f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{good}{wall}{bad}</world>\n'
+
+
+def test_a_list_of_problems_stops_and_says_how_many_there_are_more(tmp_path: Path) -> None:
+    path = tmp_path / "world.xml"
+    path.write_text(wrong(1_234), encoding="utf-8")
+    told = loading.validate([path])
+    assert len(told) == 1_001 and {one.code for one in told[:-1]} == {"bad-value"}
+    assert told[-1].code == "more-problems" and told[-1].place.line == 1_004
+    assert told[-1].message == "And 234 more problems: 234 errors."
+    short = prima("validate", "--format", "short", path.name, cwd=tmp_path)
+    assert "And 234 more problems: 234 errors." in short.stdout.splitlines()[-1]
+    assert "errors: 1234, warnings: 0" in short.stderr and short.returncode == 1
+    data = json.loads(prima("validate", "--format", "json", path.name, cwd=tmp_path).stdout)
+    assert len(data) == 1_001 and [one.get("more") for one in data[-2:]] == [None, 234]
+    everything = prima(
+        "validate", "--format", "short", "--limit", "problems=1234", path.name, cwd=tmp_path
+    )
+    assert len(everything.stdout.splitlines()) == 1_234
+
+
+def test_errors_are_told_before_warnings_where_not_all_are_told() -> None:
+    problems = [
+        Problem(Place("a.xml", line), "error" if line % 2 else "warning", "empty", "Empty.")
+        for line in range(1, 11)
+    ]
+    told = listed(problems, 6)
+    assert [one.place.line for one in told[:-1]] == [1, 2, 3, 5, 7, 9]
+    assert told[-1].severity == "warning" and told[-1].place.line == 4
+    assert told[-1].message == "And 4 more problems: 4 warnings."
+    assert listed(problems, 10) == problems
+    assert str(DocumentError(problems * 200)).count("\n") == 1_000
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from prima.errors import Place
 from prima.interpreter.selection import takes
 from prima.prices import Gap, Outline, Price, Reaction, worst
-from prima.prices.bounds import Busy, Loop, busy_after, busy_at_all, closure, loops
-from prima.prices.model import State, devices_of
+from prima.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
+from prima.prices.model import Loop, State, devices_of
 
 
 @dataclass(slots=True)
@@ -106,15 +106,15 @@ def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy |
     """What of the other is waited for as a whole (F2, K1, K2); None where nothing is."""
     if any(one.leaves for one in firsts) and any(not one.leaves for one in theirs.parts):
         return busy_at_all(theirs)
-    told = [busy_after(theirs, one) for one in same]
-    told = [one for one in told if one.lasts]
+    told = [one for one in busy_after_each(theirs, same) if one.lasts]
     if not told:
         return None
     later = [gap for state in _doings(theirs) for gap in state.unknown]
+    different = {id(one): one for one in told}.values()
     return Busy(
         sum(one.lasts for one in told),
-        [gap for one in told for gap in one.endless],
-        [*(gap for one in told for gap in one.unknown), *later],
+        [gap for one in different for gap in one.endless],
+        [*(gap for one in different for gap in one.unknown), *later],
     )
 
 
@@ -130,7 +130,7 @@ def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline, same: list[Reactio
     delay.unknown += whole.unknown
     delay.endless += whole.endless
     delay.listens = delay.listens or any(part.listens for part in theirs.parts)
-    others = [busy_after(theirs, one) for one in theirs.reactions]
+    others = busy_after_each(theirs, theirs.reactions)
     delay.each = max((one.lasts for one in others), default=0)
     if any(one.endless or one.unknown for one in others):
         delay.each = None
@@ -148,7 +148,9 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     """What of ``theirs`` may keep Commands of ``own`` that are no reactions waiting for ever."""
     drives = any(part.leaves for part in own.parts)
     floors = _floors(theirs) if not drives else set(theirs.states)
-    found = [_by_loops(part, own, theirs, drives) for part in theirs.parts]
+    floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
+    floor |= {part for one in theirs.reactions for part in one.does.parts}
+    found = [_by_loops(part, own, part in floor, drives) for part in theirs.parts]
     found += [_by_cycle(loop, own, floors, drives) for loop in loops(theirs)]
     found += [
         Starving(gap.place, gap.reason, "", tuple(sorted(own.devices)), drives, True)
@@ -167,24 +169,18 @@ def _floors(theirs: Outline) -> set[str]:
     return {state.name for state in closure(theirs, starts)}
 
 
-def _by_loops(part: Price, own: Outline, theirs: Outline, drives: bool) -> Starving | None:
+def _by_loops(part: Price, own: Outline, floored: bool, drives: bool) -> Starving | None:
     """A Command that works in loops: the next one goes before others' equal Commands (E4)."""
     if not part.loops:
         return None
     equal = [one for one in own.parts if one.leaves or not part.leaves]
     held = part.devices & devices_of(equal)
     engages = part.engages and drives
-    reacts = any(part in one.does.parts for one in theirs.reactions)
-    floor = not part.leaves and (drives or reacts or _in_states(part, theirs))
+    floor = not part.leaves and (drives or floored)
     if not held and not engages and not floor:
         return None
     what = f"{part.what} goes on until its goal is reached"
     return Starving(part.place, what, "E4", tuple(sorted(held)), engages, floor)
-
-
-def _in_states(part: Price, theirs: Outline) -> bool:
-    names = _floors(theirs)
-    return any(part in state.parts for state in theirs.states.values() if state.name in names)
 
 
 def _by_cycle(loop: Loop, own: Outline, floors: set[str], drives: bool) -> Starving | None:

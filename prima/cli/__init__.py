@@ -15,7 +15,7 @@ import click
 
 from prima import __version__
 from prima.cli.common import SourceLines, escape_for_people, tell
-from prima.errors import DocumentError, RunError, UsageError, did_you_mean
+from prima.errors import DocumentError, RunError, UsageError, did_you_mean, listed
 
 COMMANDS = {
     "demo": "Run two applications on one robot; see the report.",
@@ -101,11 +101,12 @@ def main() -> None:
         code = 0  # click's way of saying that nobody reads any more
     except DocumentError as error:
         from prima.diagnostics import render
+        from prima.markup.limits import LIMITS
 
         lines = SourceLines()
-        for problem in error.problems:
-            if problem.severity != "note":
-                tell(render(problem, lines))
+        told = [problem for problem in error.problems if problem.severity != "note"]
+        for problem in listed(told, LIMITS.problems):
+            tell(render(problem, lines))
         code = 1
     except UsageError as error:
         tell(f"prima: {error}")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from prima.api import Transcript
+    from prima.errors import Problem
 
 POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
 POLICY_NAMES = ("prima", "fifo", "fair", "fixed", "none")
@@ -61,7 +62,7 @@ limit_option = click.option(
     "limits",
     metavar="NAME=NUMBER",
     multiple=True,
-    help="Raise a limit on documents: bytes, elements, attributes or depth.",
+    help="Raise a limit on documents: bytes, elements, attributes, depth or problems.",
 )
 map_option = click.option(
     "--map",
@@ -122,6 +123,15 @@ def tell(text: str) -> None:
         click.echo(clean(text), err=True)
 
 
+def tell_problems(problems: list[Problem]) -> None:
+    """What is odd in the documents of a run."""
+    from prima.errors import listed
+    from prima.markup.limits import LIMITS
+
+    for problem in listed([one for one in problems if one.severity != "note"], LIMITS.problems):
+        tell(str(problem))
+
+
 def tell_cut(*transcripts: Transcript) -> None:
     """Say of transcripts that they end before their runs did; what is there has been shown.
 
@@ -151,7 +161,7 @@ def raise_limits(given: tuple[str, ...]) -> None:
     """
     from prima.markup.limits import HIGHEST, LIMITS
 
-    names = ("bytes", "elements", "attributes", "depth")
+    names = ("bytes", "elements", "attributes", "depth", "problems")
     for text in given:
         name, _, number = text.partition("=")
         if name not in names:

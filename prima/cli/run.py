@@ -23,6 +23,7 @@ from prima.cli.common import (
     run_into,
     suggesting,
     tell,
+    tell_problems,
     why_option,
     write_for_programs,
 )
@@ -234,9 +235,7 @@ def _run_one(
             raise UsageError(f"{output}: cannot be written: Is a directory. {hint}")
         folder = os.path.dirname(scenario or "")
         check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
-    for problem in loaded.problems:
-        if problem.severity != "note":
-            tell(str(problem))
+    tell_problems(loaded.problems)
     if output is not None:
         transcript = run_into(
             output,

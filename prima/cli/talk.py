@@ -23,6 +23,7 @@ from prima.cli.common import (
     raise_limits,
     suggesting,
     tell,
+    tell_problems,
     why_option,
     write_for_programs,
 )
@@ -119,9 +120,7 @@ def talk(
         loaded = api.load_scenario(scenario)
     else:
         loaded = api.stage(fas, eas, (), world, robot, maps)
-    for problem in loaded.problems:
-        if problem.severity != "note":
-            tell(str(problem))
+    tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
     sink = _write if form == "json" else None
     web = api.fetcher(list(hosts), len(loaded.cast.documents))

@@ -19,8 +19,9 @@ from prima.cli.common import (
     raise_limits,
     tell,
 )
-from prima.errors import Problem, UsageError, one_of
+from prima.errors import Problem, UsageError, listed, one_of
 from prima.ignores import KINDS, SETTINGS
+from prima.markup.limits import LIMITS
 
 WATCH_SECONDS = 0.3
 MANY = 50
@@ -148,11 +149,15 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
         yield from found
 
 
-def _show(problems: list[Problem], form: str) -> None:
+def _show(every: list[Problem], form: str) -> None:
+    problems = listed(every, LIMITS.problems)
     if form == "json":
         from prima.diagnostics import problem_data
 
-        print_json([problem_data(one) for one in problems])
+        told = [problem_data(one) for one in problems]
+        if len(every) > LIMITS.problems:
+            told[-1]["more"] = len(every) - LIMITS.problems
+        print_json(told)
     elif form == "sarif":
         from prima import __version__
         from prima.codes import CODES

@@ -15,7 +15,11 @@ from prima.errors import DocumentError, Problem, UsageError, did_you_mean
 from prima.markup.limits import LIMITS
 
 FOLDER = Path(__file__).parent
-LOWERED = {"too-large": ("elements", 4), "too-deep": ("depth", 5)}
+LOWERED = {
+    "too-large": ("elements", 4),
+    "too-deep": ("depth", 5),
+    "more-problems": ("problems", 1),
+}
 """Limits under which the examples of some codes are read, so that they can be short."""
 BY_HAND = {
     "language": "load(..., languages=...) does not take it",

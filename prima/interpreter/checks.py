@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 from prima.commands import TABLE_4_2, Argument, CommandType, check_argument, missing_argument
@@ -57,7 +58,15 @@ from prima.interpreter.units import (
     units_of,
 )
 from prima.markup.tree import Node
-from prima.names import HANDLED, IDENTIFIER, declared_names, free_names, handled_names
+from prima.names import (
+    HANDLED,
+    Known,
+    Scope,
+    declared_names,
+    free_names,
+    handled_names,
+    is_only_asked,
+)
 from prima.script.compiling import compiled
 from prima.script.evaluation import ScriptError
 from prima.values import nearest, read_value
@@ -78,7 +87,7 @@ LEAVING = (Goto, Return, Exit)
 SCOPED = ("document", "dialog", "application")
 """Scopes that the name of a variable may begin with."""
 NONE: frozenset[str] = frozenset()
-VARIABLES = HANDLED | {"session", "sensor"}
+VARIABLES = Scope(HANDLED | {"session", "sensor"})
 """What the language itself declares."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',
@@ -262,27 +271,6 @@ class Leads:
         """Whether it can be left otherwise, and whether so by an exit."""
 
 
-class Known:
-    """The variables that content of a form may see."""
-
-    __slots__ = ("given", "own", "shared")
-
-    def __init__(self, shared: Set[str], own: Set[str], given: Set[str]) -> None:
-        self.shared = shared
-        self.own = own
-        self.given = given
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.shared or name in self.own or name in self.given
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.shared | self.own | self.given)
-
-
-Names = set[str] | Known
-"""Variables that some content may see."""
-
-
 def _of_run(run: Run) -> Iterator[object]:
     for command in run_commands(run.steps):
         yield from command.args.values()
@@ -312,15 +300,15 @@ class Checker:
         self.document = document
         self.problems: list[Problem] = []
         self.acts = Acts(document)
-        self.shared = self._setup_names(document.setup)
+        self.shared = Scope(self._setup_names(document.setup))
         self.forms = [(form, all_items(form.items)) for form in document.forms.values()]
         """Forms with all their items."""
-        self._declared: dict[str | None, set[str]] = {}
+        self._declared: dict[str | None, Scope] = {}
         """Names by the form whose content declares them; None for the document."""
-        self._given: dict[str, set[str]] = {}
+        self._given: dict[str, Scope] = {}
         """Names that subdialogs give as params, by the form they call."""
         self._gather()
-        self._common = self.shared | self._declared.get(None, set())
+        self._common = Scope(self.shared | self._declared.get(None, NONE))
         self._leads = self._led()
 
     def note(
@@ -568,17 +556,17 @@ class Checker:
                     self.note(item.node, "duplicate-name", message, "Rename one.", "name")
                 seen.add(item.name)
             asking = [item for item in items if isinstance(item, Field | Subdialog)]
-            inputs = {item.name for item in asking}
+            inputs = Scope(item.name for item in asking)
             for filled in (*form.filled, *(one for item in asking for one in item.filled)):
                 self._namelist(filled, filled.names, inputs, "field")
 
     def _namelist(
-        self, holder: Filled | Clear, names: Sequence[str], known: set[str], what: str
+        self, holder: Filled | Clear, names: Sequence[str], known: Scope, what: str
     ) -> None:
         for name in names:
             if name not in known:
                 message = f'There is no {what} "{name}".'
-                remedy = did_you_mean(name, filter(IDENTIFIER.fullmatch, known))
+                remedy = did_you_mean(name, known.written)
                 self.note(holder.node, "no-such-item", message, remedy, "namelist")
 
     def _gather(self) -> None:
@@ -595,25 +583,25 @@ class Checker:
             for item in items:
                 self._own(form).update((item.name, f"{item.name}$"))
                 if isinstance(item, Subdialog):
-                    given = self._given.setdefault(item.form, set())
+                    given = self._given.setdefault(item.form, Scope())
                     given |= {name for name, _ in item.params}
 
-    def _own(self, form: Form | None) -> set[str]:
-        return self._declared.setdefault(form.id if form else None, set())
+    def _own(self, form: Form | None) -> Scope:
+        return self._declared.setdefault(form.id if form else None, Scope())
 
-    def known_in(self, form: Form) -> Names:
+    def known_in(self, form: Form) -> Known:
         """All variables that content of a form may see."""
-        own, given = self._declared.get(form.id, NONE), self._given.get(form.id, NONE)
-        return Known(self._common, own, given) if own or given else self._common
+        own, given = self._declared.get(form.id), self._given.get(form.id)
+        return Known(self._common, *filter(None, (own, given)))
 
     # Expressions --------------------------------------------------------------
 
     def _expressions(self) -> None:
         document = self.document
-        every = self.shared.union(*self._declared.values(), *self._given.values())
-        known: dict[str | None, Names] = {form.id: self.known_in(form) for form, _ in self.forms}
-        known[None] = every
-        self._outside(document, self.shared, every)
+        every = Scope(self.shared.union(*self._declared.values(), *self._given.values()))
+        known: dict[str | None, Known] = {form.id: self.known_in(form) for form, _ in self.forms}
+        known[None] = Known(every)
+        self._outside(document, Known(self.shared), known[None])
         for form, items in self.forms:
             self._outside(form, known[form.id], known[form.id])
             for item in items:
@@ -628,7 +616,7 @@ class Checker:
             self._script(script, known[stands.id if stands else None])
         self._variables(known)
 
-    def _outside(self, holder: Document | Form, known: Names, later: Names) -> None:
+    def _outside(self, holder: Document | Form, known: Known, later: Known) -> None:
         """Code of a document or form that is in no content; ``later`` is seen by its handlers."""
         for act in holder.setup:
             if isinstance(act, Script):
@@ -639,12 +627,12 @@ class Checker:
             self._expression(watch.when, known)
         self._conditions(holder.handlers, later)
 
-    def _conditions(self, conditional: Iterable[Handler | Prompt], known: Names) -> None:
+    def _conditions(self, conditional: Iterable[Handler | Prompt], known: Known) -> None:
         for one in conditional:
             if one.cond is not None:
                 self._expression(one.cond, known)
 
-    def _item(self, item: Item, known: Names) -> None:
+    def _item(self, item: Item, known: Known) -> None:
         """Code of a form item that is in no content."""
         self._conditions(item.handlers, known)
         held: list[object] = [item.expr, item.cond]
@@ -657,7 +645,7 @@ class Checker:
             if isinstance(one, Expression):
                 self._expression(one, known)
 
-    def _variables(self, known: Mapping[str | None, Names]) -> None:
+    def _variables(self, known: Mapping[str | None, Known]) -> None:
         """Variables that acts give a value, clear or return."""
         for form, assign in self.acts.of(Assign):
             names = known[form.id if form else None]
@@ -679,11 +667,11 @@ class Checker:
         self,
         place: Place,
         name: str,
-        known: Names,
+        known: Known,
         bare: bool = False,
         called: bool = False,
     ) -> None:
-        remedy = ABSENT.get(name) or did_you_mean(name, _names_to_write(known) - {name})
+        remedy = ABSENT.get(name) or did_you_mean(name, chain(VARIABLES, known.written()))
         if called:
             message = f'There is no function "{name}".'
             remedy = remedy or "Define it in a <script>."
@@ -694,7 +682,7 @@ class Checker:
             remedy = f"{remedy} For the text itself write '{name}'."
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
-    def _expression(self, expr: Expression, known: Names) -> None:
+    def _expression(self, expr: Expression, known: Known) -> None:
         plain = compiled(expr.code)
         if plain is not None or self._compiles(expr):
             names = free_names(expr.code) if plain is None else plain.names
@@ -704,7 +692,7 @@ class Checker:
                     called = CALL.match(expr.code, start + len(name)) is not None
                     self._undeclared(_place_in(expr, start), name, known, bare, called)
             for name, start in handled_names(expr.code).items():
-                asked = expr.code[:start].rstrip().endswith("typeof")
+                asked = is_only_asked(expr.code, start)
                 if not (asked or name in known or id(expr.node) in self._handling):
                     self._unhandled(_place_in(expr, start), name)
             self._assigns(expr)
@@ -734,14 +722,16 @@ class Checker:
             problem = Problem(place, "warning", "assigning-condition", message, "Write ==.")
             self.problems.append(problem)
 
-    def _script(self, act: Script, known: Names) -> None:
+    def _script(self, act: Script, known: Known) -> None:
         if self._compiles(act.code, script=True):
             for name, start in free_names(act.code.code).items():
                 if name not in known:
                     message = f'The script uses "{name}", which nothing declares.'
                     place = _place_in(act.code, start)
                     code = "undeclared-variable"
-                    remedy = ABSENT.get(name, "") or did_you_mean(name, _names_to_write(known))
+                    remedy = ABSENT.get(name, "") or did_you_mean(
+                        name, chain(VARIABLES, known.written())
+                    )
                     self.problems.append(Problem(place, "warning", code, message, remedy))
 
     def _compiles(self, expr: Expression, script: bool = False) -> bool:
@@ -766,7 +756,7 @@ class Checker:
 
         bare = STRINGS.sub("", code)
         wide = [
-            one for one in bare if one != half(one) and half(one).isascii() and half(one).strip()
+            one for one in bare if not one.isascii() and half(one).isascii() and half(one).strip()
         ]
         if wide:
             return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
@@ -961,15 +951,6 @@ class Checker:
 def _place_in(expr: Expression, characters: int) -> Place:
     """The place of a character of an expression or script."""
     return expr.node.source.inside(expr.node.index, expr.attribute, characters)
-
-
-def _names_to_write(known: Names) -> set[str]:
-    """Variables that an author may have meant: names that code can hold, and not our own."""
-    return {
-        word
-        for word in (*known, *VARIABLES)
-        if IDENTIFIER.fullmatch(word) and not word.startswith("$")
-    }
 
 
 def _devices(step: StepTemplate) -> frozenset[str]:

@@ -400,6 +400,8 @@ class Document:
     """Whether code that an engine evaluates may put variables into the scope of a form."""
     dialog_names: frozenset[str] | None = None
     """The names that scopes of forms may have; None until somebody has looked."""
+    written: int = 0
+    """Characters of the functions that have been written for its reactions."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
     def contents(self) -> list[Content]:

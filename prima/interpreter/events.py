@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from prima.commands import DEVICES
 from prima.deferred import dataclass
-from prima.errors import MANY_LETTERS, MANY_WORDS, Place, Problem
+from prima.errors import Place, Problem, guessable
 from prima.interpreter.elements import (
     Acts,
     CommandTemplate,
@@ -87,11 +87,11 @@ def beginnings(event: str) -> Iterator[str]:
 
 def near(word: str, known: Iterable[str]) -> str:
     """The known name of which a word is most likely a slip, or nothing."""
+    words = guessable(word, known)
+    if not words:
+        return ""
     from difflib import get_close_matches  # takes long to import, and few documents need it
 
-    words = sorted(known)
-    if len(word) > MANY_LETTERS or len(words) > MANY_WORDS:
-        return ""
     folded = word.casefold().replace("-", "").replace("_", "")
     plain = {one.replace("-", ""): one for one in words}
     swapped = [one for one in plain if sorted(one) == sorted(folded)]

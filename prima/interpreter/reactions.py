@@ -62,6 +62,9 @@ DEEPEST = 30
 WORD = pattern(r"[\w$]+")
 MOST_ACTS = 300
 """Pieces of content that are written out for one event."""
+MOST_LETTERS, MOST_WRITTEN = 20_000, 1_000_000
+"""Characters of the function for one event, and of all different ones of a document: compiled, each
+takes ten bytes and more."""
 
 
 class _Beyond(Exception):
@@ -72,7 +75,9 @@ def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction 
     """What an event does in a form where these handlers take it; None if ``dispatch`` does it."""
     handlers = [handler for handler, _ in candidates]
     acts = [act for handler in handlers for act in all_acts(handler.content)]
-    if document.counting or len(acts) > MOST_ACTS or any(one.waits for one in handlers):
+    if document.counting or document.written > MOST_WRITTEN or len(acts) > MOST_ACTS:
+        return None
+    if any(one.waits for one in handlers):
         return None
     if any(handler.count != 1 for handler in handlers):
         return None
@@ -83,11 +88,13 @@ def reaction_of(document: Document, form: Form, candidates: Taking) -> Reaction 
         writer.reaction(handlers)
     except _Beyond:
         return None
-    rare = (*writer.rare, tuple(writer.places))
-    return _function("\n".join(writer.lines)), (rare, *writer.given)
+    known = _function.cache_info().misses
+    function = _function("\n".join(writer.lines))
+    document.written += writer.letters * (_function.cache_info().misses - known)
+    return function, ((*writer.rare, tuple(writer.places)), *writer.given)
 
 
-@lru_cache(maxsize=1_000)
+@lru_cache(maxsize=500)
 def _function(code: str) -> React:
     """A function by its text."""
     held: dict[str, Any] = {}
@@ -113,6 +120,8 @@ class _Writer:
         self.all_scopes = f"(owner.application, document, {dialog}, {local})"
         """The scopes in a reaction, for those who need all of them: few do."""
         self.lines: list[str] = []
+        self.letters = 0
+        """How long they are together."""
         self.given: list[Any] = []
         """What the function is called with, behind what is seldom needed."""
         self.rare: list[Any] = []
@@ -145,6 +154,9 @@ class _Writer:
 
     def write(self, depth: int, line: str) -> None:
         """A line of the function."""
+        self.letters += len(line)
+        if self.letters > MOST_LETTERS:
+            raise _Beyond
         self.lines.append(" " * depth + line)
 
     def give(self, value: Any) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from prima.deferred import dataclass
-from prima.errors import Problem
+from prima.errors import Problem, few_guesses
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
@@ -53,7 +53,7 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     read = _kept.pop(file, None)
     if read is None or read.data != data or read.limits != limits:
         read = None  # the memory of the one before is free for this one
-        with _no_looking_for_garbage(len(data)):
+        with _no_looking_for_garbage(len(data)), few_guesses():
             read = _Read(data, limits, *_read(file, data))
     _keep(file, read)
     return read.document, list(read.problems)

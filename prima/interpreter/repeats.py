@@ -25,13 +25,17 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
-from prima.interpreter.selection import takes
+from prima.interpreter.events import beginnings
 from prima.markup.tree import Node
 
 OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error", "emergency")
 """What begins an event that comes of what the application itself does, or ends everything."""
 
 
+MOST_STEPS = 100_000
+"""Ways that are followed in one document: beyond, only a goto to the form itself is seen."""
+Leaving = tuple[str, list[Goto]]
+"""An event from outside, and the gotos by which its handler leaves."""
 REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
 
 
@@ -49,18 +53,69 @@ def told_twice(
             PRIMA's language has it to be.
         remedy: what to do about it.
     """
-    from_outside = foreign or _foreign(document)
+    ways = _Ways(document, foreign or _foreign(document))
     for form in document.forms.values():
         said = _said(form)
         if said is None:
             continue
-        for handler in _heard(document, form):
-            events = [one for one in handler.events if from_outside(one)]
-            if not events or _brings_news(handler):
-                continue
-            way = _way_back(document, form, handler.content)
+        for event, way in ways.back(form):
+            yield _problem(form, *said, event, way, remedy)
+
+
+class _Ways:
+    """Where handlers lead, and what that leads to; each is looked at once."""
+
+    def __init__(self, document: Document, from_outside: Callable[[str], bool]) -> None:
+        self._document = document
+        self._from_outside = from_outside
+        self._onward: dict[str, list[str]] = {}
+        self._reached: dict[str, set[str]] = {}
+        self._left = MOST_STEPS
+        self._shared: dict[str, list[tuple[str, Goto]]] = {}
+        """Where the document's own handlers lead back, by forms."""
+        for event, gotos in self._of(document.handlers):
+            ways = {name: way for way in reversed(gotos) for name in self._leads(way)}
+            for name, way in ways.items():
+                self._shared.setdefault(name, []).append((event, way))
+
+    def back(self, form: Form) -> Iterator[tuple[str, Goto]]:
+        """The events that may come while a form says something, and the gotos back to it."""
+        yield from self._shared.get(form.id, ())
+        own = [form.handlers, *(item.handlers for item in all_items(form.items))]
+        for event, gotos in (one for handlers in own for one in self._of(handlers)):
+            way = next((one for one in gotos if form.id in self._leads(one)), None)
             if way is not None:
-                yield _problem(form, *said, events[0], way, remedy)
+                yield event, way
+
+    def _of(self, handlers: Iterable[Handler]) -> Iterator[Leaving]:
+        for handler in handlers:
+            gotos = [act for act in _gotos(handler.content) if isinstance(act.form, str)]
+            event = next(filter(self._from_outside, handler.events), "") if gotos else ""
+            if event and not _brings_news(handler):
+                yield event, gotos
+
+    def _leads(self, way: Goto) -> set[str]:
+        """The forms to which a goto leads, at once or by way of others."""
+        name = str(way.form)
+        if self._left < 0:
+            return {name}
+        if name not in self._reached:
+            self._reached[name] = self._reach(name)
+        self._left -= len(self._reached[name])
+        return self._reached[name]
+
+    def _reach(self, name: str) -> set[str]:
+        """The forms that entering one leads to, without a question and without a wait for events."""
+        found: set[str] = set()
+        left = [name]
+        while left:
+            name = left.pop()
+            if name in self._document.forms and name not in found:
+                found.add(name)
+                if name not in self._onward:
+                    self._onward[name] = [*_onward(self._document.forms[name].items)]
+                left += self._onward[name]
+        return found
 
 
 def _brings_news(handler: Handler) -> bool:
@@ -103,18 +158,10 @@ def _said_by(item: Item) -> tuple[Node, bool] | None:
     return None
 
 
-def _heard(document: Document, form: Form) -> Iterator[Handler]:
-    """The handlers that may take an event while a form says something."""
-    yield from document.handlers
-    yield from form.handlers
-    for item in all_items(form.items):
-        yield from item.handlers
-
-
 def _foreign(document: Document) -> Callable[[str], bool]:
     """Tells which events may come from outside, and are no answer to the application."""
     chosen = _chosen(document)
-    return lambda event: not any(takes(name, event) for name in chosen)
+    return lambda event: chosen.isdisjoint(beginnings(event))
 
 
 def _chosen(document: Document) -> set[str]:
@@ -128,28 +175,8 @@ def _chosen(document: Document) -> set[str]:
     return found | {link.event for link in links if link.event}
 
 
-def _way_back(document: Document, form: Form, content: Sequence[Act]) -> Goto | None:
-    """The goto of a handler that leads back to a form, at once or by way of others."""
-    for act in _gotos(content):
-        if isinstance(act.form, str) and form.id in _reached(document, act.form):
-            return act
-    return None
-
-
 def _gotos(content: Sequence[Act]) -> list[Goto]:
     return [act for act in all_acts(content) if isinstance(act, Goto)]
-
-
-def _reached(document: Document, name: str) -> set[str]:
-    """The forms that entering one leads to, without a question and without a wait for events."""
-    found: set[str] = set()
-    left = [name]
-    while left:
-        name = left.pop()
-        if name in document.forms and name not in found:
-            found.add(name)
-            left += _onward(document.forms[name].items)
-    return found
 
 
 def _onward(items: Iterable[Item]) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from prima.deferred import dataclass
 from prima.errors import Problem, did_you_mean, one_of
@@ -37,6 +37,8 @@ class Surroundings:
     sensors: frozenset[str]
     voices: frozenset[str] = frozenset()
     """The languages that the robot speaks; none where its profile does not say."""
+    points: frozenset[str] = frozenset()
+    """Places and things."""
 
 
 def check_surroundings(document: Document, names: Surroundings) -> list[Problem]:
@@ -76,11 +78,7 @@ def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
 def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:
     """A warning if an argument of a Command, one of :data:`PLACED`, names what is not there."""
     what = PLACED[name]
-    known = {
-        "to": names.places,
-        "toward": names.places | names.things,
-        "name": names.gestures,
-    }[name]
+    known = {"to": names.places, "toward": names.points, "name": names.gestures}[name]
     if what == "gesture" and not known:
         return []  # the robot has no arm, which is told already
     if value.strip() in known:
@@ -91,12 +89,11 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
     return [Problem(place, "warning", "no-such-name", message, nearest(value, known))]
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: str, known: Collection[str]) -> str:
     """What was probably meant, or what there is."""
-    words = sorted(known)
-    if hint := did_you_mean(word, words):
+    if hint := did_you_mean(word, known):
         return hint
-    return f"There is {one_of(words).replace(' or ', ' and ')}." if 0 < len(words) <= FEW else ""
+    return f"There is {one_of(known).replace(' or ', ' and ')}." if 0 < len(known) <= FEW else ""
 
 
 def commands_of(document: Document) -> list[CommandTemplate]:

@@ -299,9 +299,8 @@ class _Completion:
         found: list[str] = []
         if holder.key == "subdialog":
             called = holder.get("src").strip()
-            for form in self.page.tags:
-                if form.key == "form" and called == f"#{form.get('id')}":
-                    found += [one.get("name") for one in form.children if one.key == "var"]
+            for form in self.page.forms.get(called[1:], ()) if called[:1] == "#" else ():
+                found += [one.get("name") for one in form.children if one.key == "var"]
         for one in self.desk.known(self.path, ("command",)) if holder.key == "command" else ():
             if one.mark.name == holder.get("type"):
                 arguments = one.mark.tag.children

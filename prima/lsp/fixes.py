@@ -78,9 +78,8 @@ def _found(page: Page, spot: Spot) -> Iterator[Fix]:
 
 
 def _tag(page: Page, offset: int) -> Tag | None:
-    return next(
-        (tag for tag in page.tags if tag.start <= offset < max(tag.end, tag.start + 1)), None
-    )
+    tag = page.begun(offset)
+    return tag if tag is not None and offset < max(tag.end, tag.start + 1) else None
 
 
 def _replaced(page: Page, spot: Spot, word: str) -> tuple[Change, ...]:

@@ -24,6 +24,8 @@ ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
 LETTERS = {"&lt;": "<", "&gt;": ">", "&amp;": "&", "&quot;": '"', "&apos;": "'"}
 WORD = re.compile(r"\S+")
 SCOPES = ("document", "dialog", "application")
+OF_DOCUMENT = re.compile(r"(?:document|application)\.\s*$")
+KNOWN = RESERVED | GLOBALS
 LONGEST_CODE = 100_000
 """Characters of code beyond which its names are not looked for."""
 
@@ -131,7 +133,7 @@ def _code(code: str, first: int, tag: Tag) -> Iterator[Mark]:
         if name in free or (start and code[start - 1] == "."):
             at = first + start
             scope = home
-            if code[:start].rstrip().endswith(("document.", "application.")):
+            if OF_DOCUMENT.search(code, max(start - 100, 0), start):
                 scope = -1
             yield Mark(("variable",), name, at, at + len(name), False, tag, scope)
 
@@ -145,7 +147,7 @@ def _names(code: str) -> Iterator[tuple[str, int]]:
             for inside in INSERTED.finditer(token.text):
                 for name, start in _names(inside[1]):
                     yield name, token.start + inside.start(1) + start
-        if not IDENTIFIER.fullmatch(token.text) or token.text in RESERVED | GLOBALS:
+        if not IDENTIFIER.fullmatch(token.text) or token.text in KNOWN:
             continue
         if texts[index - 1] in (".", "?."):
             if texts[index - 2] not in SCOPES:
@@ -178,12 +180,11 @@ def _given(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
     if caller is None or caller.key != "subdialog":
         return
     called = caller.get("src").strip()
-    for form in page.tags:
-        if form.key == "form" and called == f"#{form.get('id')}":
-            for start, end in _words(attr, 1):
-                defines = tag.vocabulary is DIALOGUE
-                name = page.text[start:end]
-                yield Mark(("variable",), name, start, end, defines, tag, form.start)
+    for form in page.forms.get(called[1:], ()) if called[:1] == "#" else ():
+        for start, end in _words(attr, 1):
+            defines = tag.vocabulary is DIALOGUE
+            name = page.text[start:end]
+            yield Mark(("variable",), name, start, end, defines, tag, form.start)
 
 
 def _scoped(found: list[Mark]) -> list[Mark]:

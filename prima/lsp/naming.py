@@ -133,22 +133,22 @@ def rename(
     except ValueError as error:
         raise Refused(f'"{new}" {error}') from None
     uses = desk.uses(path, mark)
-    if new != mark.name and any(_taken(desk, found, new) for found in uses if found.mark.defines):
+    if new != mark.name and _is_taken(desk, [one for one in uses if one.mark.defines], new):
         raise Refused(f'There is a {kind} "{new}" already.')
     edits = [Edit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 
 
-def _taken(desk: Desk, found: Found, new: str) -> bool:
-    """Whether something else has a name already where a definition stands."""
-    text = desk.text(found.path)
-    return text is not None and any(
-        one.defines
-        and one.name == new
-        and one.scope == found.mark.scope
-        and not set(one.kind).isdisjoint(found.mark.kind)
-        for one in text.marks
-    )
+def _is_taken(desk: Desk, given: list[Found], new: str) -> bool:
+    """Whether something else has a name already where one of some definitions stands."""
+    places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
+    for path in {one.path for one in given}:
+        text = desk.text(path)
+        for one in text.marks if text is not None else ():
+            taken = one.defines and one.name == new
+            if taken and any((path, one.scope, kind) in places for kind in one.kind):
+                return True
+    return False
 
 
 def _move(

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
+from collections import Counter
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from prima.lsp.text import Lines
 from prima.markup.limits import LIMITS
@@ -98,6 +101,25 @@ class Tag:
         return tag
 
 
+class _Open:
+    """Elements that are open, and how many there are of each name."""
+
+    def __init__(self) -> None:
+        self.tags: list[Tag] = []
+        self.names: Counter[str] = Counter()
+
+    def add(self, tag: Tag) -> None:
+        """An element begins."""
+        self.tags.append(tag)
+        self.names[tag.name] += 1
+
+    def pop(self) -> Tag:
+        """The innermost one ends."""
+        tag = self.tags.pop()
+        self.names[tag.name] -= 1
+        return tag
+
+
 class Page:
     """A text and its tags in document order."""
 
@@ -118,9 +140,28 @@ class Page:
         """The first element that is named."""
         return next((tag for tag in self.tags if tag.name), None)
 
+    @cached_property
+    def forms(self) -> dict[str, list[Tag]]:
+        """The forms, by their ids as written."""
+        found: dict[str, list[Tag]] = {}
+        for tag in self.tags:
+            if tag.key == "form":
+                found.setdefault(tag.get("id"), []).append(tag)
+        return found
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        """Where each tag begins."""
+        return [tag.start for tag in self.tags]
+
+    def begun(self, offset: int) -> Tag | None:
+        """The last element that begins at an offset or before it."""
+        index = bisect_right(self._starts, offset)
+        return self.tags[index - 1] if index else None
+
     def _scan(self) -> None:
         text, position = self.text, 0
-        open_: list[Tag] = []
+        open_ = _Open()
         while match := PIECE.search(text, position):
             position = match.end()
             if match["end"] is not None:
@@ -128,18 +169,18 @@ class Page:
                 self._close(open_, match)
             elif match["start"] is not None:
                 tag = Tag(match["start"], match.start(), match.end(), [], None)
-                tag.parent = open_[-1] if open_ else None
+                tag.parent = open_.tags[-1] if open_.tags else None
                 position = self._attributes(tag)
                 self.tags.append(tag)
                 if tag.parent:
                     tag.parent.children.append(tag)
                 if tag.name and not tag.empty:
-                    open_.append(tag)
+                    open_.add(tag)
                 if len(self.tags) >= self.most:
                     break
             elif not match[0].startswith("<![CDATA["):
                 self.asides.append(match.span())
-        for tag in open_:
+        for tag in open_.tags:
             tag.content = tag.until = len(text)
 
     def _attributes(self, tag: Tag) -> int:
@@ -174,10 +215,9 @@ class Page:
         return position
 
     @staticmethod
-    def _close(open_: list[Tag], match: re.Match[str]) -> None:
+    def _close(open_: _Open, match: re.Match[str]) -> None:
         """Close what an end tag closes, and what is open inside it."""
-        names = [tag.name for tag in open_]
-        if match["end"] not in names:
+        if not open_.names[match["end"]]:
             return
         while True:
             tag = open_.pop()
@@ -189,22 +229,17 @@ class Page:
 
     def tag_at(self, offset: int) -> Tag | None:
         """The element whose start tag holds an offset behind its ``<``."""
-        for tag in self.tags:
-            if tag.start < offset and (
-                offset < tag.end or (offset == tag.end and not tag.finished)
-            ):
-                return tag
-        return None
+        tag = self.begun(offset - 1)
+        if tag is None or not (offset < tag.end or (offset == tag.end and not tag.finished)):
+            return None
+        return tag
 
     def around(self, offset: int) -> Tag | None:
         """The innermost element whose content holds an offset."""
-        found = None
-        for tag in self.tags:
-            if tag.start > offset:
-                break
-            if tag.end <= offset <= tag.content and not tag.empty:
-                found = tag
-        return found
+        tag = self.begun(offset)
+        while tag is not None and (tag.empty or not tag.end <= offset <= tag.content):
+            tag = tag.parent
+        return tag
 
     def aside(self, offset: int) -> bool:
         """Whether an offset stands in a comment or an instruction."""

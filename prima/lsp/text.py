@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from itertools import accumulate
 
 LINE_END = re.compile(r"\r\n|\r|\n")
 UTF8, UTF16, UTF32 = "utf-8", "utf-16", "utf-32"
@@ -24,6 +25,10 @@ class Lines:
     def __init__(self, text: str) -> None:
         self.text = text
         self.starts = [0, *(match.end() for match in LINE_END.finditer(text))]
+        self._ascii = text.isascii()
+        self._wide: tuple[int, str, list[int], list[int]] = (-1, "", [], [])
+        """Of the line in which a column was looked for last: behind which letters columns are not
+        characters any more, and by how many units so far."""
 
     def _end(self, line: int) -> int:
         """Where a line ends, before its line end."""
@@ -53,8 +58,18 @@ class Lines:
         """The line and column of an offset."""
         offset = min(max(offset, 0), len(self.text))
         line = bisect_right(self.starts, offset) - 1
-        text = self.text[self.starts[line] : offset]
-        return line, len(text) if text.isascii() else sum(_width(x, encoding) for x in text)
+        column = offset - self.starts[line]
+        return line, column if self._ascii else column + self._more(line, column, encoding)
+
+    def _more(self, line: int, column: int, encoding: str) -> int:
+        """How many units more than characters there are before a column of a line."""
+        if self._wide[:2] != (line, encoding):
+            text = self.text[self.starts[line] : self._end(line)]
+            wide = [(at + 1, _width(one, encoding) - 1) for at, one in enumerate(text)
+                    if not one.isascii()]  # fmt: skip
+            self._wide = line, encoding, [at for at, _ in wide], [*accumulate(n for _, n in wide)]
+        index = bisect_right(self._wide[2], column)
+        return self._wide[3][index - 1] if index else 0
 
     def place(self, line: int, column: int) -> int:
         """The offset of a line and column that count characters from 1."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from prima.deferred import dataclass
+from prima.errors import MOST_TOLD
 
 
 @dataclass(slots=True)
@@ -15,9 +16,11 @@ class Limits:
     """Of one element."""
     depth: int = 100
     """Elements inside each other."""
+    problems: int = MOST_TOLD
+    """That are told of; of the others only how many there are. No document is refused for them."""
 
 
-HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200)
+HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200, 20_000_000)
 """As far as the limits can be raised: beyond, the machine itself gives in."""
 LIMITS = Limits()
 """The limits of this process."""

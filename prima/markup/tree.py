@@ -16,7 +16,9 @@ MARKUP = pattern(
 """A piece of markup of a well-formed document; a start tag has its group."""
 NAME = pattern(r"<[^\s/>]+")
 ATTRIBUTE = pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
-PIECE = pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|.", re.DOTALL)
+PIECE = pattern(
+    r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|(?P<plain>[^<&]+)|.", re.DOTALL
+)
 """A piece of text as written: it gives no character, several as they are, or one."""
 
 
@@ -30,6 +32,10 @@ class Source:
     """Where every element's start tag begins in the text, in order."""
     lines: list[int] | None = None
     """Where every line begins."""
+    _attributes: tuple[int, dict[str, tuple[int, int]]] = (-1, {})
+    """The element whose attributes were looked for last: where each begins, and its value."""
+    _written: _Written | None = None
+    """The text or value in which a character was looked for last: often there are more to tell of."""
 
     def tag(self, index: int) -> int:
         """Where the start tag of element number ``index`` begins in the text."""
@@ -44,32 +50,28 @@ class Source:
 
     def _find(self, index: int, attribute: str, value: bool) -> int:
         start = self.tag(index)
+        if not attribute:
+            return start
+        if self._attributes[0] != index:
+            self._attributes = index, dict(self._attributes_of(start))
+        name, text = self._attributes[1].get(attribute, (start, start))
+        return text if value else name
+
+    def _attributes_of(self, start: int) -> Iterator[tuple[str, tuple[int, int]]]:
+        """The attributes of a start tag: where each begins, and where its value does."""
         match = NAME.match(self.text, start)
-        while attribute and match:
-            match = ATTRIBUTE.match(self.text, match.end())
-            if match and match[1] == attribute:
-                return match.start(2) + 1 if value else match.start(1)
-        return start
+        while match and (match := ATTRIBUTE.match(self.text, match.end())):
+            yield match[1], (match.start(1), match.start(2) + 1)
 
     def inside(self, index: int, attribute: str, characters: int) -> Place:
         """Where a character of an attribute's value was written; without one, of the text."""
-        if attribute:
+        if self._written is None or self._written.of != (index, attribute):
             offset = self._find(index, attribute, value=True)
-        else:
-            match = MARKUP.match(self.text, self.tag(index))
-            offset = match.end() if match else self.tag(index)
-        while characters >= 0 and (piece := PIECE.match(self.text, offset)):
-            kept = piece["kept"]
-            gives = 0 if piece[0][:2] in ("<!", "<?") else 1
-            if kept is not None:
-                if characters < len(kept):
-                    return self.at(piece.start("kept") + characters)
-                gives = len(kept)
-            if characters < gives:
-                break
-            characters -= gives
-            offset = piece.end()
-        return self.at(offset)
+            if not attribute:
+                match = MARKUP.match(self.text, offset)
+                offset = match.end() if match else offset
+            self._written = _Written((index, attribute), self.text, offset)
+        return self.at(self._written.offset(max(characters, 0)))
 
     def at(self, offset: int) -> Place:
         """The place of a character of the text."""
@@ -79,6 +81,41 @@ class Source:
 
         line = bisect_right(self.lines, offset)
         return Place(self.file, line, offset - self.lines[line - 1] + 1)
+
+
+class _Written:
+    """A text as it is written, read as far as somebody asks for its characters."""
+
+    def __init__(self, of: tuple[int, str], text: str, offset: int) -> None:
+        self.of = of
+        self._text = text
+        self._given = [0]
+        """How many characters there are before each piece."""
+        self._offsets = [offset]
+        """Where each piece's first character stands; the last ones are of what is not read yet."""
+        self._end = offset
+
+    def offset(self, characters: int) -> int:
+        """Where a character stands in the document's text, or what follows the last one."""
+        while self._given[-1] <= characters and (piece := PIECE.match(self._text, self._end)):
+            self._take(piece)
+        from bisect import bisect_right  # most documents have nothing to be told of
+
+        at = bisect_right(self._given, characters) - 1
+        if at == len(self._given) - 1:
+            return self._end
+        gives = self._given[at + 1] - self._given[at]
+        return self._offsets[at] + (characters - self._given[at] if gives > 1 else 0)
+
+    def _take(self, piece: re.Match[str]) -> None:
+        """Read on by a piece."""
+        kind = piece.lastgroup
+        gives = len(piece[kind]) if kind else 0 if piece[0][:2] in ("<!", "<?") else 1
+        self._end = piece.end()
+        if gives:
+            self._offsets[-1] = piece.start(kind or 0)
+            self._given.append(self._given[-1] + gives)
+            self._offsets.append(self._end)
 
 
 class Inner(Source):

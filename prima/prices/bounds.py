@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 
 from prima.deferred import dataclass, field
 from prima.errors import Place
-from prima.prices.model import Gap, Outline, Price, Reaction, State, devices_of
+from prima.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
+
+MANY_STATES = 8
+"""Of states that follow one another, so many are named."""
+MOST_COMPARED = 1_000_000
+"""Reactions times states beyond which no reaction is followed alone."""
 
 
 @dataclass(slots=True)
@@ -20,36 +25,40 @@ class Busy:
     """Why its length is not known."""
 
 
-@dataclass(slots=True)
-class Loop:
-    """Something that may go on without an end and without a wait for an event."""
-
-    place: Place
-    what: str
-    devices: frozenset[str]
-    engages: bool
-    leaves: bool
-    """Whether all of it leaves the user: then it ranks below what does not (K2)."""
-    states: frozenset[str]
-
-
 def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
     """All states that some lead to without a wait, themselves included.
 
     What a subdialog leads to comes back to whoever may have called it.
     """
-    found = {name for name in starts if name in outline.states}
-    called = {
-        name: {one for callee in state.calls for one in (callee, *_reach(outline, callee))}
-        for name, state in outline.states.items()
-        if state.calls
-    }
-    while True:
-        more = {to for name in found for to in _reach(outline, name)}
-        more |= {name for name, inner in called.items() if inner & (found | more)}
-        if more <= found:
-            return [state for name, state in outline.states.items() if name in found]
-        found |= more
+    before, callers = _backwards(outline)
+    found: set[str] = set()
+    leading: set[str] = set()
+    """States that lead to one that has been found: who calls them is come back to."""
+    onward, backward = [*starts], list[str]()
+    while onward or backward:
+        if onward:
+            name = onward.pop()
+            if name in outline.states and name not in found:
+                found.add(name)
+                onward += _ways(outline, name)
+                backward.append(name)
+        elif (name := backward.pop()) not in leading:
+            leading.add(name)
+            backward += before.get(name, ())
+            onward += callers.get(name, ())
+    return [state for name, state in outline.states.items() if name in found]
+
+
+def _backwards(outline: Outline) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+    """By states, those that lead to them in one step, and those that call them."""
+    before: dict[str, list[str]] = {}
+    callers: dict[str, list[str]] = {}
+    for name, state in outline.states.items():
+        for to in _ways(outline, name):
+            before.setdefault(to, []).append(name)
+        for to in state.calls:
+            callers.setdefault(to, []).append(name)
+    return before, callers
 
 
 def _after(outline: Outline, reaction: Reaction) -> list[State]:
@@ -65,6 +74,16 @@ def busy_after(outline: Outline, reaction: Reaction) -> Busy:
     return _busy(outline, _after(outline, reaction))
 
 
+def busy_after_each(outline: Outline, reactions: Sequence[Reaction]) -> list[Busy]:
+    """How long an application is busy because of each of some events.
+
+    Of very many, what it takes at most whatever begins it, for each.
+    """
+    if len(reactions) * len(outline.states) > MOST_COMPARED:
+        return [busy_at_all(outline)] * len(reactions)
+    return [busy_after(outline, one) for one in reactions]
+
+
 def busy_at_all(outline: Outline) -> Busy:
     """How long an application is busy in one go at most, whatever begins it."""
     does = [reaction.does for reaction in outline.reactions]
@@ -75,7 +94,7 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
     found = Busy(unknown=list(outline.gaps))
     names = {state.name for state in states}
     for loop in loops(outline):
-        if loop.states & names:
+        if not loop.states.isdisjoint(names):
             found.endless.append(Gap(loop.place, loop.what))
     for state in states:
         parts = {(id(part.node), part.what): part for part in state.parts}.values()
@@ -92,6 +111,12 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
 
 def loops(outline: Outline) -> list[Loop]:
     """Cycles of states without a wait, and questions that are asked again without an end."""
+    if outline.loops is None:
+        outline.loops = _loops(outline)
+    return outline.loops
+
+
+def _loops(outline: Outline) -> list[Loop]:
     found = []
     for states in _cycles(outline):
         names = frozenset(state.name for state in states)
@@ -103,7 +128,8 @@ def loops(outline: Outline) -> list[Loop]:
             continue
         ways = [node for state in states for to, node in state.goes.items() if to in names]
         place = min(ways, key=lambda node: node.index).place if ways else first.node.place
-        listed = ", ".join(state.name for state in states)
+        more = ", ..." if len(states) > MANY_STATES else ""
+        listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
         follows = "follow one another" if len(states) > 1 else "follows itself"
         what = f"{listed} {follows} without a wait for an event"
         found.append(_loop(place, what, parts, names))
@@ -112,12 +138,13 @@ def loops(outline: Outline) -> list[Loop]:
 
 def _with_called(outline: Outline, states: list[State]) -> list[State]:
     """Some states, and those that their subdialogs lead to: they are done in every round."""
-    called = {
-        one
-        for state in states
-        for callee in state.calls
-        for one in (callee, *_reach(outline, callee))
-    }
+    called: set[str] = set()
+    left = [callee for state in states for callee in state.calls]
+    while left:
+        name = left.pop()
+        if name in outline.states and name not in called:
+            called.add(name)
+            left += _ways(outline, name)
     own = {state.name for state in states}
     return [*states, *(outline.states[one] for one in outline.states if one in called - own)]
 
@@ -130,29 +157,47 @@ def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) ->
 
 def _cycles(outline: Outline) -> list[list[State]]:
     """The states that lead back to themselves, by what leads round together."""
-    ways = {name: _reach(outline, name) for name in outline.states}
+    order = {name: at for at, name in enumerate(outline.states)}
+    rings = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
+    return [
+        [outline.states[one] for one in ring]
+        for ring in sorted(rings, key=lambda ring: order[ring[0]])
+        if len(ring) > 1 or ring[0] in _ways(outline, ring[0]) or outline.states[ring[0]].repeats
+    ]
+
+
+def _rings(outline: Outline) -> Iterator[list[str]]:
+    """The states in sets of those that lead to each other (Tarjan's strongly connected components)."""
+    number: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    kept: list[str] = []
     done: set[str] = set()
-    found = []
-    for name, state in outline.states.items():
-        if name in done:
-            continue
-        ring = [one for one in outline.states if name in ways[one] and one in ways[name]]
-        if name in ways[name]:
-            done |= set(ring)
-            found.append([outline.states[one] for one in ring])
-        elif state.repeats:
-            found.append([state])
-    return found
+    for start in outline.states:
+        way = [(start, iter(_ways(outline, start)))] if start not in number else []
+        while way:
+            name, left = way[-1]
+            if name not in number:
+                number[name] = lowest[name] = len(number)
+                kept.append(name)
+            to = next((one for one in left if one not in done), None)
+            if to is None:
+                way.pop()
+                if way:
+                    above = way[-1][0]
+                    lowest[above] = min(lowest[above], lowest[name])
+                if lowest[name] == number[name]:
+                    ring = [kept.pop()]
+                    while ring[-1] != name:
+                        ring.append(kept.pop())
+                    done.update(ring)
+                    yield ring
+            elif to in number:
+                lowest[name] = min(lowest[name], number[to])
+            else:
+                way.append((to, iter(_ways(outline, to))))
 
 
-def _reach(outline: Outline, name: str) -> set[str]:
-    """The states that one leads to in one step or more."""
-    found: set[str] = set()
-    left = [name] if name in outline.states else []
-    while left:
-        state = outline.states[left.pop()]
-        for to in (*state.goes, *state.calls):
-            if to in outline.states and to not in found:
-                found.add(to)
-                left.append(to)
-    return found
+def _ways(outline: Outline, name: str) -> list[str]:
+    """The states that one leads to in one step."""
+    state = outline.states[name]
+    return [to for to in (*state.goes, *state.calls) if to in outline.states]

@@ -97,6 +97,19 @@ class Reaction:
 
 
 @dataclass(slots=True)
+class Loop:
+    """Something that may go on without an end and without a wait for an event."""
+
+    place: Place
+    what: str
+    devices: frozenset[str]
+    engages: bool
+    leaves: bool
+    """Whether all of it leaves the user: then it ranks below what does not (K2)."""
+    states: frozenset[str]
+
+
+@dataclass(slots=True)
 class Outline:
     """All that is known of an application: its parts in document order, states and reactions."""
 
@@ -107,6 +120,8 @@ class Outline:
     """What is done about the application's own delayed events: no reactions."""
     holds: list[tuple[Place, int]]
     gaps: list[Gap]
+    loops: list[Loop] | None = None
+    """What may go on without an end, once somebody has looked."""
 
     @property
     def devices(self) -> set[str]:

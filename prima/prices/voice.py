@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
 from prima.commands import TABLE_4_2
 from prima.interpreter.selection import takes
@@ -49,6 +50,18 @@ def outline(document: VoiceDocument, profile: Profile) -> Outline:
     return _Reader(document, profile).outline()
 
 
+class _Held:
+    """What is directly in an element, found once."""
+
+    def __init__(self, node: Node) -> None:
+        self.handlers = node.all(*HANDLERS)
+        self.wide = node.all(*HANDLERS, "link")
+        self.settings = {one.get("name"): one.get("value") for one in node.all("property")}
+        self.units = {
+            id(item): unit for unit in node.nodes if unit.key == UNIT for item in unit.nodes
+        }
+
+
 class _Reader:
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
         self.pages = Pages(document)
@@ -62,6 +75,8 @@ class _Reader:
         self.caught: list[tuple[Node, State]] = []
         self.inside: set[int] = set()
         """What stands in units around form items, by the elements' identities."""
+        self.held: dict[int, _Held] = {}
+        """What has been looked for in elements, by their identities."""
         self.sketch = Sketch(document.page, None)
         for page in self.pages:
             self._say(page)
@@ -127,9 +142,8 @@ class _Reader:
         state = State(self._key(self.page, name), dialog)
         items = [dialog] if dialog.tag == "menu" else dialog.nodes
         root = self.pages.root(self.page)
-        around = [*self.page.root.nodes, *(root.root.nodes if root else ())]
-        wider = [node for node in around if node.tag in (*HANDLERS, "link")]
-        for node in [dialog, *wider]:
+        wider = [self._held(one).wide for one in (self.page.root, *([root.root] if root else ()))]
+        for node in chain([dialog], *wider):
             for inner in self._walk(node):
                 self._lead(state, inner)
                 state.parts += self.said.get(id(inner), ()) if id(inner) not in self.inside else ()
@@ -192,7 +206,7 @@ class _Reader:
 
     def _bounded(self, item: Node, dialog: Node) -> bool:
         """Whether a question is left sooner or later if the user never answers it."""
-        scope = [one for node in self._scopes(item, dialog) for one in node.all(*HANDLERS)]
+        scope = [one for node in self._scopes(item, dialog) for one in self._held(node).handlers]
         return all(
             any(
                 event in handler_names(one) and not one.get("cond") and leaves(one.content)
@@ -314,23 +328,34 @@ class _Reader:
         return [
             one
             for node in self._scopes(item, dialog)
-            for one in node.all(*HANDLERS)
+            for one in self._held(node).handlers
             if id(one) in self.said
         ]
 
     def _scopes(self, item: Node, dialog: Node) -> list[Node]:
         root = self.pages.root(self.page)
-        units = [one for one in dialog.nodes if one.key == UNIT and item in one.nodes]
-        found = [item, *units, dialog, self.page.root, *([root.root] if root else [])]
+        unit = self._held(dialog).units.get(id(item))
+        found = [
+            item,
+            *([unit] if unit else []),
+            dialog,
+            self.page.root,
+            *([root.root] if root else []),
+        ]
         return list({id(node): node for node in found}.values())
 
     def _setting(self, item: Node, dialog: Node, name: str) -> str:
         """A property's value, innermost first."""
         for node in self._scopes(item, dialog):
-            for one in reversed(node.all("property")):
-                if one.get("name") == name:
-                    return one.get("value")
+            if name in self._held(node).settings:
+                return self._held(node).settings[name]
         return ""
+
+    def _held(self, node: Node) -> _Held:
+        """What is directly in an element."""
+        if id(node) not in self.held:
+            self.held[id(node)] = _Held(node)
+        return self.held[id(node)]
 
     def _call(self, item: Node) -> Iterator[Price]:
         """A call to somebody else: as long as it lasts the robot listens for the user's end of it."""

@@ -8,9 +8,12 @@ from typing import Any
 
 import _quickjs as quickjs
 
+from prima.names import declared_names
 from prima.prelude import MEMORY_LIMIT, STACK_LIMIT, reason
 from prima.script.evaluation import ScriptError
 
+MOST_NAMES = 5_000
+"""Names that one script may declare: the engine compares each with all others."""
 TIME_LIMIT = 0.5
 """Seconds of processor time that one evaluation may take."""
 FAILURES = (
@@ -67,6 +70,8 @@ class Syntax:
         Raises:
             ScriptError: with the line and column inside the script.
         """
+        if len(declared := declared_names(code)) > MOST_NAMES:
+            raise ScriptError(f"it declares {len(declared):,} names, more than {MOST_NAMES:,}")
         self._compile(code, f"return [function () {{\n{code}\n}}]")
         self._compile(code, f"return (function () {{\n{code}\n}})")
 

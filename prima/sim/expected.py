@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection
 
 from prima.errors import Problem
 from prima.interpreter.elements import Document
@@ -21,23 +21,26 @@ def check_expectations(
     problems: list[Problem] = []
     applications = {document.id for document in documents}
     services = {service.name for service in scenario.services}
+    checks: list[tuple[str, Collection[str], str]] = [
+        ("by", applications, "application"),
+        ("ends", applications, "application"),
+        *((name, robot.commands, "Command") for name in COMMANDS),
+    ]
+    forms: dict[str, set[str] | None] = {}
     for one in scenario.expectations:
-        checks: list[tuple[str, Iterable[str], str]] = [
-            ("by", applications, "application"),
-            ("ends", applications, "application"),
-            *((name, robot.commands, "Command") for name in COMMANDS),
-        ]
-        if ":" not in one.words.get("sends", ""):
-            checks.append(("sends", services, "service"))
         for name, words, what in checks:
-            _known(one, name, set(words), f"There is no {what}", problems)
+            _known(one, name, words, f"There is no {what}", problems)
+        if ":" not in one.words.get("sends", ""):
+            _known(one, "sends", services, "There is no service", problems)
         if not one.by or one.by in applications:
-            _state(one, documents, problems)
+            if one.by not in forms:
+                forms[one.by] = _forms(one.by, documents)
+            _state(one, forms[one.by], problems)
     return problems
 
 
 def _known(
-    one: Expectation, name: str, words: set[str], wrong: str, problems: list[Problem]
+    one: Expectation, name: str, words: Collection[str], wrong: str, problems: list[Problem]
 ) -> None:
     word = one.node.attributes.get(name)
     if word is None or word in words:
@@ -47,13 +50,19 @@ def _known(
     problems.append(Problem(place, "error", "no-such-name", f'{wrong} "{word}".', remedy))
 
 
-def _state(one: Expectation, documents: list[AnyDocument], problems: list[Problem]) -> None:
-    """A form of the application, or of any; a VoiceXML application may have other documents."""
-    meant = [document for document in documents if one.by in ("", document.id)]
+def _forms(by: str, documents: list[AnyDocument]) -> set[str] | None:
+    """The forms of an application, or of all; a VoiceXML application may have other documents."""
     forms: set[str] = set()
-    for document in meant:
-        if not isinstance(document, Document):
-            return
-        forms |= set(document.forms)
-    wrong = f"{one.by} has no form" if one.by else "No application has a form"
-    _known(one, "state", forms, wrong, problems)
+    for document in documents:
+        if by in ("", document.id):
+            if not isinstance(document, Document):
+                return None
+            forms |= set(document.forms)
+    return forms
+
+
+def _state(one: Expectation, forms: set[str] | None, problems: list[Problem]) -> None:
+    """What an expectation says of a state has to be about a form that is there."""
+    if forms is not None:
+        wrong = f"{one.by} has no form" if one.by else "No application has a form"
+        _known(one, "state", forms, wrong, problems)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from prima.commands import TABLE_4_2
-from prima.errors import MANY_WORDS, Problem, did_you_mean, one_of
+from prima.errors import Problem, did_you_mean, one_of
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -40,7 +41,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     world, robot = cast.world, cast.robot
     names = Surroundings(
         *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
-        *(robot.touch, frozenset(robot.voices)),
+        *(robot.touch, frozenset(robot.voices), frozenset({*world.places, *world.things})),
     )
     documents = [document for document in cast.documents if isinstance(document, Document)]
     problems = [one for document in documents for one in check_surroundings(document, names)]
@@ -129,7 +130,7 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
             if words.strip() and not said.may_hold(words):
                 what = "asks" if asked else "says"
                 message = f'No application {what} anything with "{words}".'
-                remedy = did_you_mean(words, said.lines if len(said.lines) <= MANY_WORDS else ())
+                remedy = did_you_mean(words, said.lines)
                 if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
                 if not remedy and (tag == "never" or not said.certain):
@@ -162,9 +163,9 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
         for attribute in ("on", "event", "reason"):
             name = node.get(attribute)
             ending = ENDINGS if attribute == "reason" else frozenset()
-            if not name or name in begins | ending or name.startswith(OPEN):
+            if not name or name in begins or name in ending or name.startswith(OPEN):
                 continue
-            meant = near(name, known | ending)
+            meant = near(name, chain(ending, known))
             if meant:
                 message = f'Nothing raises an event "{name}".'
                 if meant in ending:

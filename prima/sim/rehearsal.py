@@ -60,7 +60,7 @@ def check_names(
     What could not be read is None: then nothing is said of its names.
     """
     problems: list[Problem] = []
-    known: dict[tuple[str, str], tuple[set[str], str]] = {}
+    known: dict[tuple[str, str], tuple[set[str] | None, str]] = {}
     if world is not None:
         points = set(world.places) | set(world.things)
         known["robot", "at"] = set(world.places), "place"
@@ -75,9 +75,10 @@ def check_names(
         for tag, name in NAMING_APPLICATIONS:
             known[tag, name] = ids, "application"
     for node in scenario.node.walk():
-        for (tag, name), (words, what) in known.items():
-            word = node.attributes.get(name)
-            if node.tag == tag and word is not None and word not in words:
+        for name in node.attributes:
+            words, what = known.get((node.tag, name), (None, ""))
+            word = node.attributes[name]
+            if words is not None and word not in words:
                 place = node.attribute_place(name)
                 message = f'There is no {what} "{word}".'
                 remedy = nearest(word, words)

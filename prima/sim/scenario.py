@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -71,13 +71,12 @@ class Reader:
         place = node.attribute_place(attribute) if attribute in node.attributes else node.place
         self.problems.append(Problem(place, severity, code, message, remedy))
 
-    def known(self, node: Node, name: str, words: Iterator[str] | set[str], what: str) -> None:
+    def known(self, node: Node, name: str, words: Collection[str], what: str) -> None:
         """Note a problem where an attribute names something that is not there."""
         word = node.get(name)
-        choices = set(words)
-        if word and word not in choices:
+        if word and word not in words:
             message = f'There is no {what} "{word}".'
-            self.problem(node, "no-such-name", message, name, nearest_name(word, choices))
+            self.problem(node, "no-such-name", message, name, nearest_name(word, words))
 
     def finish(self) -> None:
         """Raise what was found.
@@ -164,7 +163,7 @@ def read_world(file: str, data: bytes) -> Map:
             )
     for node in reader.root.all("way"):
         for end in ("from", "to"):
-            reader.known(node, end, set(world.places), "place")
+            reader.known(node, end, world.places, "place")
         if node.get("from") == node.get("to") != "":
             message = f'The way goes from "{node.get("from")}" to itself.'
             reader.problem(node, "bad-value", message, "to", "Name another place.")
@@ -294,11 +293,12 @@ def read_robot(file: str, data: bytes) -> Profile:
             profile.motions[node.get("command")] = motion
             if "duration" not in node.attributes:
                 profile.durations[node.get("command")] = motion.duration
+    allowed: dict[str, set[str]] = {}
     for node in root.all("allows"):
-        reader.known(node, "command", set(rows), "Command")
-        row = rows.get(node.get("command"))
-        if row is not None:
-            rows[row.name] = replace(row, extra=row.extra | {node.get("argument")})
+        reader.known(node, "command", rows, "Command")
+        allowed.setdefault(node.get("command"), set()).add(node.get("argument"))
+    for name in allowed.keys() & rows.keys():
+        rows[name] = replace(rows[name], extra=rows[name].extra | allowed[name])
     profile.commands = {name: row for name, row in rows.items() if row.devices <= profile.devices}
     for node in root.all("substitute"):
         _substitute(reader, node, rows, profile)
@@ -310,11 +310,12 @@ def read_robot(file: str, data: bytes) -> Profile:
 def _check_devices(reader: Reader, profile: Profile) -> None:
     """A device of the robot's own that none of its Commands needs, most likely a slip."""
     own = {name for node in reader.root.all("adds") for name in node.get("devices").split()}
+    free = (set(DEVICES) | own) - profile.devices
     for node in reader.root.all("device"):
         name = node.get("name")
         if name in DEVICES or name in own:
             continue
-        meant = near(name, (set(DEVICES) | own) - profile.devices)
+        meant = near(name, free)
         message = f'No Command of this robot needs a device "{name}".'
         remedy = f'Did you mean "{meant}"?' if meant else ""
         remedy = remedy or f'Name it in an <adds devices="{name}">, or remove it.'
@@ -323,8 +324,8 @@ def _check_devices(reader: Reader, profile: Profile) -> None:
 
 def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
     """Another Command in the place of one that the robot lacks (X6)."""
-    reader.known(node, "command", set(rows), "Command")
-    reader.known(node, "by", set(profile.commands), "Command")
+    reader.known(node, "command", rows, "Command")
+    reader.known(node, "by", profile.commands, "Command")
     lacking, other = rows.get(node.get("command")), profile.commands.get(node.get("by"))
     if lacking is None or other is None:
         return

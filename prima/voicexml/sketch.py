@@ -8,6 +8,7 @@ and nothing else: of a prompt its words, of a question that it asks.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from urllib.parse import urldefrag
 
 from prima.interpreter.elements import (
@@ -195,7 +196,11 @@ class Sketch:
         """Whether something is played while an element's resource is fetched."""
         if node.get("fetchaudio"):
             return True
-        properties = [one for wider in self._wider for one in wider.walk() if one.key == "property"]
+        return self._plays_somewhere
+
+    @cached_property
+    def _plays_somewhere(self) -> bool:
+        properties = (one for wider in self._wider for one in wider.walk() if one.key == "property")
         return any(one.get("name") == "fetchaudio" for one in properties)
 
     def _target(self, node: Node) -> str | Expression | None:
@@ -219,14 +224,29 @@ class Sketch:
         if not isinstance(item, Field):
             return
         yield "maxspeechtimeout"
-        around = [item.node, *self._wider]
-        around += [form.node for form, unit in self._units.values() if item in unit.items]
-        for node in around:
-            for link in node.all("link"):
-                if link.attributes.keys() & {"event", "eventexpr"}:
-                    yield link.get("event") or None
-            if any(one.get("name") == "universals" for one in node.all("property")):
-                yield from UNIVERSAL
+        yield from self._called_in(item.node)
+        yield from self._called_outside
+        form = self._holders.get(id(item))
+        yield from self._called_in(form.node) if form is not None else ()
+
+    @cached_property
+    def _called_outside(self) -> list[str | None]:
+        """What the user may bring about anywhere in the document."""
+        return list(dict.fromkeys(one for node in self._wider for one in self._called_in(node)))
+
+    @cached_property
+    def _holders(self) -> dict[int, Form]:
+        """The forms of the items in units."""
+        return {id(item): form for form, unit in self._units.values() for item in unit.items}
+
+    @staticmethod
+    def _called_in(node: Node) -> Iterator[str | None]:
+        """What the user may bring about by what is directly in an element."""
+        for link in node.all("link"):
+            if link.attributes.keys() & {"event", "eventexpr"}:
+                yield link.get("event") or None
+        if any(one.get("name") == "universals" for one in node.all("property")):
+            yield from UNIVERSAL
 
 
 def text_of(pieces: Iterable[Node | str]) -> Text:

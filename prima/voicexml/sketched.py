@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 
 from prima.commands import TABLE_4_2, CommandType
 from prima.errors import Problem
+from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
-from prima.interpreter.selection import takes
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, is_unit
@@ -71,7 +71,7 @@ def _unit_problems(
 
 def _is_foreign(name: str, own: set[str]) -> bool:
     """Whether a handler that names an event waits for what is not of the dialog itself."""
-    return bool(name) and not any(takes(one, name) for one in own)
+    return bool(name) and own.isdisjoint(beginnings(name))
 
 
 def _thrown_in(root: Node) -> Iterator[str]:

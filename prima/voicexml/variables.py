@@ -8,9 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from prima.deferred import pattern
 from prima.errors import Problem, did_you_mean
 from prima.markup.tree import Node
-from prima.names import IDENTIFIER, assigned_names, declared_names, free_names
+from prima.names import (
+    IDENTIFIER,
+    Known,
+    Scope,
+    assigned_names,
+    declared_names,
+    free_names,
+    is_only_asked,
+)
 from prima.script.compiling import compiled
 from prima.voicexml.check import NAMING, is_code
 from prima.voicexml.document import Page
@@ -22,11 +31,13 @@ ALWAYS = frozenset(
     ]
 )
 """What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4)."""
-SCOPES = frozenset(["session", "application", "document", "dialog"])
 LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog"])
 """Elements whose namelist names variables."""
 DIALOGS = ("form", "menu")
 SETUP = ("var", "script", "data")
+NOTHING = Scope()
+LISTED = pattern(r"\S+")
+"""A name in a list of names."""
 
 Text = Callable[[Page, Node], str | None]
 """Gives the text of a script in a file, if it can be had."""
@@ -41,35 +52,35 @@ def check_variables(page: Page, root: Page | None, text: Text) -> list[Problem]:
     if page.application and root is None:
         return []
     try:
-        shared = set(ALWAYS) | _outside(page, text)
-        shared |= _outside(root, text) if root is not None else set()
+        shared = [_outside(page, text), *([_outside(root, text)] if root is not None else [])]
         dialogs = {id(node): _declared(page, node, text) for node in page.dialogs.values()}
     except Unknown:
         return []
     problems: list[Problem] = []
-    everywhere = shared.union(*dialogs.values())
+    everywhere = Known(*shared, Scope(set().union(*dialogs.values())))
+    outside = Known(*shared)
     for node in page.root.nodes:
         if node.tag in DIALOGS:
-            problems += _used(node, shared | dialogs.get(id(node), set()))
+            problems += _used(node, Known(*shared, dialogs.get(id(node), NOTHING)))
         elif node.tag in SETUP:
-            problems += _used(node, shared)
+            problems += _used(node, outside)
         elif dialogs:  # else handlers and links stand in the dialogs of other documents
             problems += _used(node, everywhere)
     return problems
 
 
-def _outside(page: Page, text: Text) -> set[str]:
+def _outside(page: Page, text: Text) -> Scope:
     """What a document declares outside of its dialogs, and anywhere in handlers and links."""
-    found: set[str] = set()
+    found = Scope()
     for node in page.root.nodes:
         if node.tag not in DIALOGS:
             found |= _declared(page, node, text)
     return found
 
 
-def _declared(page: Page, top: Node, text: Text) -> set[str]:
+def _declared(page: Page, top: Node, text: Text) -> Scope:
     """The names that an element and all that it holds declare."""
-    found: set[str] = set()
+    found = Scope()
     for node in top.walk():
         if node.key == "script":
             code = text(page, node) if {"src", "srcexpr"} & node.attributes.keys() else None
@@ -82,36 +93,34 @@ def _declared(page: Page, top: Node, text: Text) -> set[str]:
     return found
 
 
-def _used(top: Node, known: set[str]) -> Iterator[Problem]:
+def _used(top: Node, known: Known) -> Iterator[Problem]:
     for node in top.walk():
         for attribute in node.attributes:
             if is_code(node, attribute):
                 yield from _in_code(node, attribute, known)
         if node.key == "assign":
-            yield from _listed(node, "name", [node.get("name")], known)
+            yield from _listed(node, "name", known)
         elif node.key in LISTING:
-            yield from _listed(node, "namelist", node.get("namelist").split(), known)
+            yield from _listed(node, "namelist", known)
 
 
-def _in_code(node: Node, attribute: str, known: set[str]) -> Iterator[Problem]:
+def _in_code(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
     code = node.get(attribute)
     plain = compiled(code)
     for name, start in (free_names(code) if plain is None else plain.names).items():
-        if name not in known and not code[:start].rstrip().endswith("typeof"):
+        if name not in ALWAYS and name not in known and not is_only_asked(code, start):
             yield _undeclared(node, attribute, start, name, known)
 
 
-def _listed(node: Node, attribute: str, names: list[str], known: set[str]) -> Iterator[Problem]:
-    for whole in names:
-        head = whole.partition(".")[0]
-        if IDENTIFIER.fullmatch(head) and head not in known | SCOPES:
-            start = max(node.get(attribute).find(whole), 0)
-            yield _undeclared(node, attribute, start, head, known)
+def _listed(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
+    for whole in LISTED.finditer(node.get(attribute)):
+        head = whole[0].partition(".")[0]
+        if IDENTIFIER.fullmatch(head) and head not in ALWAYS and head not in known:
+            yield _undeclared(node, attribute, whole.start(), head, known)
 
 
-def _undeclared(node: Node, attribute: str, start: int, name: str, known: set[str]) -> Problem:
+def _undeclared(node: Node, attribute: str, start: int, name: str, known: Known) -> Problem:
     message = f'The variable "{name}" is not declared: this will be error.semantic.'
-    words = {word for word in known if IDENTIFIER.fullmatch(word) and word not in ALWAYS}
-    remedy = did_you_mean(name, words) or f'Declare it: <var name="{name}"/>.'
+    remedy = did_you_mean(name, known.written()) or f'Declare it: <var name="{name}"/>.'
     place = node.source.inside(node.index, attribute, start)
     return Problem(place, "warning", "undeclared-variable", message, remedy)
