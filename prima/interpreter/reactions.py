@@ -62,7 +62,7 @@ DEEPEST = 30
 WORD = pattern(r"[\w$]+")
 MOST_ACTS = 300
 """Pieces of content that are written out for one event."""
-MOST_LETTERS, MOST_WRITTEN = 20_000, 1_000_000
+MOST_LETTERS, MOST_WRITTEN = 40_000, 1_000_000
 """Characters of the function for one event, and of all different ones of a document: compiled, each
 takes ten bytes and more."""
 
