@@ -245,6 +245,12 @@ def validation(family: str, size: int) -> float:
     return taken
 
 
+def growth(family: str, size: int) -> float:
+    """With which power of the size the time grows, from a quarter of a size up to it."""
+    sizes = [size // 4, size // 2, size]
+    return exponent(sizes, [fresh(validation, family, one).value for one in sizes])
+
+
 def exponent(sizes: list[int], seconds: list[float]) -> float:
     """With which power of the size the time grows."""
     logs = [math.log(size) for size in sizes], [math.log(one) for one in seconds]

@@ -6,7 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from bench import batch, isolation, matching, mediation, peers, processes, simulation, workloads
+from bench import (
+    batch,
+    isolation,
+    large,
+    matching,
+    mediation,
+    peers,
+    processes,
+    simulation,
+    workloads,
+)
 
 
 @dataclass(frozen=True)
@@ -357,6 +367,45 @@ def editor() -> list[Row]:
     ]
 
 
+LARGE = {
+    "undeclared names": "undeclared names in expressions",
+    "VoiceXML dialogs with gotos": "VoiceXML dialogs with gotos",
+    "places with ways": "places with ways",
+    "forms with gotos": "forms with gotos",
+    "unknown elements": "unknown elements",
+    "`let`": "let",
+    "`let` in one script": "let in one script",
+    "wrong expressions": "wrong expressions",
+}
+"""What large documents are full of, and the families of :mod:`bench.large` that have it."""
+
+
+def large_ones() -> list[Row]:
+    """Validation of documents of nearly as many bytes as are read."""
+    size = (large.MOST_BYTES,)
+    quick = (4_000,)
+    return [
+        row
+        for what, family in LARGE.items()
+        for row in (
+            Row(
+                f"2 MB of {what}",
+                "s",
+                Call(large.validation, (family, *size), (family, *quick)),
+                most=5,
+                rounds=3,
+            ),
+            Row(
+                f"2 MB of {what}: growth",
+                "",
+                Call(large.growth, (family, *size), (family, *quick)),
+                most=1.1,
+                rounds=3,
+            ),
+        )
+    ]
+
+
 def isolated() -> list[Row]:
     """What it costs that scripts run in processes of their own."""
     return [
@@ -394,5 +443,6 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Batch": batches,
     "Grammars and diff": matches,
     "Editor": editor,
+    "Large documents": large_ones,
     "Isolation": isolated,
 }
