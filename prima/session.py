@@ -100,9 +100,7 @@ class Session:
         self._began = moment(date)
         self._engines = Engines(isolate)
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {
-            doc.id: interpreter_of(doc, own, self._began, self._engines) for doc in documents
-        }
+        self.apps = {doc.id: self._made(doc, own) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.chronicle = Chronicle()
         self.mediator = Mediator(policy, commands, self.chronicle, bound, absence, patience)
@@ -125,6 +123,17 @@ class Session:
         self._turns: list[tuple[str, Stream]] = []
         """Streams of which the latest selection suspended or resumed, with which: their
         applications want to hear of it."""
+
+    def _made(self, document: AnyDocument, arguments: Mapping[str, frozenset[str]]) -> App:
+        """The interpreter of a document; one for which no engine can be had ends at its start."""
+
+        def make() -> App:
+            return interpreter_of(document, arguments, self._began, self._engines)
+
+        try:
+            return make()
+        except EngineLost as error:
+            return self._engines.without(error, make)
 
     # Driving ------------------------------------------------------------------
 
@@ -301,9 +310,7 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            app = self.apps[name] = interpreter_of(
-                app.document, app.arguments, self._began, self._engines
-            )
+            app = self.apps[name] = self._made(app.document, app.arguments)
         self._loaded.add(name)
         self._alive = None
         app.sensors.update(self._sensors)

@@ -16,7 +16,7 @@ from tests.robot import Bench, document
 ENDLESS = "var a = []; for (var i = 0; i < 45; i++) a = [a, a]; a.flat(Infinity)"
 """Takes no memory and looks at no limit of the engine."""
 ENDS_AS_XML = ENDLESS.replace("<", "&lt;")
-ASKS = '<form id="f"><on event="ask"><speak><value expr="[1, 2].length"/></speak></on></form>'
+ASKS = '<form id="f"><on event="ask"><speak><value expr="Math.max(1, 2)"/></speak></on></form>'
 
 
 def engine_of(engines: Engines, name: str = "a", kind: str = "ea") -> IsolatedEngine:
@@ -193,3 +193,68 @@ def test_a_process_ends_with_the_one_that_needs_it() -> None:
             break
         time.sleep(0.05)
     assert not os.path.exists(f"/proc/{pid}")
+
+
+def test_processes_that_were_ended_while_nobody_used_them_are_passed_over() -> None:
+    engines = Engines()
+    pids = [engine_of(engines, name).host.pid for name in "ab"]
+    engines.close()
+    for pid in pids:
+        os.kill(pid, signal.SIGKILL)
+    engine = engine_of(Engines())
+    assert engine.host.pid not in pids
+    assert engine.value("1", scopes_of(engine)) == 1
+
+
+def test_an_application_without_an_engine_ends_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that cannot be started, or ends while its application is made (E2)."""
+
+    def nobody() -> worker.Worker:
+        raise EngineLost("its engine cannot be started: Too many open files")
+
+    monkeypatch.setattr(worker, "hire", nobody)
+    plain = '<form id="f"><on event="ask"><speak>Yes?</speak></on></form>'
+    bench = Bench(document(ASKS, "ea", "bad"), document(plain, "fa", "good"))
+    bench.event("ask")
+    assert bench.saying() == ["Yes?"]
+    (over,) = bench.phases("unload")
+    assert over["app"] == "bad"
+    assert over["rule"] == "E2"
+    assert "Too many open files" in over["outcome"]
+    assert bench.session.defects == []
+
+
+def test_an_engine_that_ends_while_its_application_is_made_is_replaced(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    named = IsolatedEngine.named
+    ended: list[int] = []
+
+    def once(engine: IsolatedEngine, name: str) -> object:
+        if not ended:
+            ended.append(engine.host.pid)
+            os.kill(engine.host.pid, signal.SIGKILL)
+        return named(engine, name)
+
+    monkeypatch.setattr(IsolatedEngine, "named", once)
+    bench = Bench(document(ASKS, "ea", "good"))
+    bench.event("ask")
+    assert bench.saying() == ["2"]
+
+
+def test_tags_run_in_the_process_of_their_application() -> None:
+    """What ends a tag's process costs no run beside it in another thread."""
+    from prima.script.budget import Budget
+
+    engine, other = engine_of(Engines(), "a"), engine_of(Engines(), "b")
+    with pytest.raises(EngineLost, match="did not stop"):
+        IsolatedSandbox(Budget(host=engine.host)).run(ENDLESS)
+    assert engine.lost
+    assert other.value("1", scopes_of(other)) == 1
+    assert IsolatedSandbox(Budget(host=other.host)).fault("x = 1") == ""
+
+
+def test_code_of_somebody_else_that_ends_the_common_process_is_no_fault_of_this() -> None:
+    syntax().expression("a")
+    os.kill(isolated._common[0].pid, signal.SIGKILL)
+    syntax().expression("a + b")

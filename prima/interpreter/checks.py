@@ -68,7 +68,7 @@ from prima.names import (
     is_only_asked,
 )
 from prima.script.compiling import compiled
-from prima.script.evaluation import ScriptError
+from prima.script.evaluation import EngineLost, ScriptError
 from prima.values import nearest, read_value
 
 MANY_FORMS = 8
@@ -743,6 +743,8 @@ class Checker:
             shown = " ".join(expr.code.split())
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
             message = f'"{shown}" is not ECMAScript: {error}.'
+            if isinstance(error, EngineLost):
+                message = f'"{shown}" cannot be checked: {error}.'
             place = expr.node.code_place(expr.attribute, error.line, error.column)
             remedy = self._expression_remedy(expr.code)
             self.problems.append(Problem(place, "error", "bad-expression", message, remedy))

@@ -325,7 +325,7 @@ class Executor:
         try:
             if isinstance(value, str):
                 return int(read_value("duration", value))
-            if isinstance(value, int | float) and 0 <= value < 86_400_000:
+            if isinstance(value, int | float) and 0 <= value <= 86_400_000:
                 return round(value) if "delay" in node.attributes else round(value * 1000)
         except ValueError:
             pass

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from prima.deferred import dataclass
 
 TIME_LIMIT = 0.5
@@ -20,6 +22,9 @@ class Budget:
     """Seconds of the processor that tags have taken."""
     steps: int = MOST_MATCHING
     """Steps of matching that are left; at or below 0 where the application listens for too much."""
+
+    host: Any = None
+    """The process of the application's engine, in which its tags run; if none, one that all share."""
 
     @property
     def over(self) -> bool:

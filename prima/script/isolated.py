@@ -7,7 +7,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from prima.messages import Json
 from prima.script import worker
@@ -24,6 +25,9 @@ ISOLATIONS = ("ea", "all", "none")
 
 Where it is ``ea``, FAs share one. Where it is ``none``, engines run in the process of the run, and
 nothing can stop code that escapes their limits: for documents that can be trusted alone."""
+
+
+Made = TypeVar("Made")
 
 
 def _data(value: Any) -> list[Any]:
@@ -178,6 +182,21 @@ class IsolatedEngine(_Remote):
         self._call("script", _data(code), _value(scope), _values(scopes))
 
 
+class AbsentEngine:
+    """What an application has whose engine cannot be had: nothing is evaluated, and it ends."""
+
+    def __init__(self, lost: str) -> None:
+        self.lost = lost
+        self.now, self.spent = 0, 0.0
+        self.nothing: Scope = None
+
+    def named(self, _name: str) -> Scope:
+        """A scope that nobody can look into."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise EngineLost(self.lost)
+
+
 class Engines:
     """The engines of one run's applications, each where its code may run.
 
@@ -189,6 +208,8 @@ class Engines:
         self._isolate = isolate
         self.hosts: dict[str, Worker] = {}
         """The processes, by the application; that of all FAs by nothing."""
+        self._absent = ""
+        """Why the next application has no engine."""
         if isolate not in ISOLATIONS:
             raise ValueError(f'"{isolate}" is none of {", ".join(ISOLATIONS)}')
 
@@ -198,17 +219,30 @@ class Engines:
         Raises:
             EngineLost: no process can be started.
         """
+        if self._absent:
+            return cast("IsolatedEngine", AbsentEngine(self._absent))
         if self._isolate == "none":
             from prima.script.engine import Engine
 
             return Engine(scopes)
         key = name if self._isolate == "all" or kind != "fa" else ""
         host = self.hosts.get(key)
-        if host is None or host.lost:
+        if host is None or not host.alive:
             host = self.hosts[key] = worker.hire()
         made = IsolatedEngine(host, scopes)
         made.maker = self
         return made
+
+    def without(self, error: EngineLost, make: Callable[[], Made]) -> Made:
+        """Make an application once more, for which no engine could be had; if need be without."""
+        try:
+            return make()
+        except EngineLost:
+            self._absent = str(error)
+            try:
+                return make()
+            finally:
+                self._absent = ""
 
     def close(self) -> None:
         """Give the processes back: nothing can be evaluated any more."""
@@ -240,7 +274,8 @@ class IsolatedSandbox(_Remote):
 
     def __init__(self, budget: Budget, others: int = 0) -> None:
         """``others`` is how many sandboxes the same utterance has already."""
-        super().__init__(_shared(), "sandbox", [_data(others)], budget)
+        host = budget.host if budget.host is not None else _shared()
+        super().__init__(host, "sandbox", [_data(others)], budget)
 
     def run(self, code: str) -> None:
         """See :meth:`Sandbox.run`."""
@@ -296,6 +331,14 @@ class IsolatedSyntax(_Remote):
 
     def __init__(self, host: Worker) -> None:
         super().__init__(host, "syntax", [], Nobody())
+
+    def _call(self, method: str, *arguments: list[Any]) -> Any:
+        """Call it; once more in a new process, as somebody else's code may have ended this one."""
+        try:
+            return super()._call(method, *arguments)
+        except EngineLost:
+            super().__init__(_shared(), "syntax", [], Nobody())
+            return super()._call(method, *arguments)
 
     def expression(self, code: str) -> None:
         """See :meth:`Syntax.expression`."""

@@ -109,6 +109,11 @@ class Worker:
         """Whether it has ended, or belongs to the process that this one was forked from."""
         return bool(self.why) or self._owner != os.getpid()
 
+    @property
+    def alive(self) -> bool:
+        """Whether it can be called, as far as the system tells."""
+        return not self.lost and self._process.poll() is None
+
     def call(self, target: int, method: str, arguments: list[Any], meter: Meter) -> Any:
         """Call a method there, and give what it gives: data, or the handle of a value.
 
@@ -191,11 +196,20 @@ def hire() -> Worker:
         gc.collect()  # runs that nobody closed give theirs back
     while _idle:
         worker = _idle.pop()
-        if not worker.lost:
+        if _reset(worker):  # it may have been ended meanwhile
             return worker
     worker = Worker()
     _started.add(worker)
     return worker
+
+
+def _reset(worker: Worker) -> bool:
+    """Let a process forget everything; gives whether it can be used."""
+    try:
+        worker.call(0, "reset", [], Nobody())
+    except EngineLost:
+        return False
+    return True
 
 
 def dismiss(worker: Worker) -> None:
@@ -203,9 +217,7 @@ def dismiss(worker: Worker) -> None:
     if worker.lost:
         return
     worker.use += 1
-    try:
-        worker.call(0, "reset", [], Nobody())
-    except ScriptError:
+    if not _reset(worker):
         return
     if len(_idle) < MOST_IDLE:
         _idle.append(worker)

@@ -16,7 +16,7 @@ from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.names import IDENTIFIER, RESERVED
-from prima.script.evaluation import ScriptError
+from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.isolated import IsolatedSyntax, syntax
 from prima.values import NUMBER, read_value
 from prima.voicexml.arranging import (
@@ -558,6 +558,8 @@ def _compile(node: Node, name: str, problems: list[Problem], checker: IsolatedSy
         place = node.code_place(name, error.line, error.column)
         code = " ".join((node.get(name) if name else node.own_text).split())[:60]
         message = f'"{code}" is not ECMAScript: {error}. This will be error.semantic.'
+        if isinstance(error, EngineLost):
+            message = f'"{code}" cannot be checked: {error}.'
         problems.append(Problem(place, "warning", "bad-expression", message))
 
 

@@ -71,7 +71,8 @@ class Inputs:
         are of the others (5.1.5).
         """
         most = self.most_results(context)
-        self._budget = Budget(self.owner.engine.now)
+        engine = self.owner.engine
+        self._budget = Budget(engine.now, host=getattr(engine, "host", None))
         first: Active | None = None
         results: list[Found] = []
         for text, sure in said:
