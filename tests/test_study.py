@@ -111,6 +111,22 @@ def test_on_a_way_one_may_talk() -> None:
     assert seen(spoken_into(move())).broken == 0
 
 
+@pytest.mark.parametrize("policy", ["prima", "fifo"])
+def test_whoever_speaks_beside_a_way_from_its_first_instant_on_breaks_nothing(policy: str) -> None:
+    """Whichever of the two is recorded first."""
+    stage = Stage(policy)
+    stage.request("ea", say("The answer is"), move(), say("forty two."))
+    stage.select()
+    stage.request("fa", say("I like trains."))
+    stage.at(100).end("ea#1")
+    assert sorted(stage.select()) == ["ea#2.1", "fa#1"]
+    stage.at(300).end("fa#1")
+    stage.select()
+    stage.at(400).end("ea#2.1", goal=True)
+    stage.select()
+    assert seen(stage).broken == 0
+
+
 def test_a_topic_that_is_spoken_into_twice_is_broken_once() -> None:
     """The stream stands still first, then its head turns: the user heard one interruption."""
     stage = Stage("fifo")

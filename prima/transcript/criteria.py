@@ -257,9 +257,13 @@ class Observer:
             self._respond(tree)
 
     def _go_on(self, tree: _Tree, speaks: bool) -> None:
-        """A stream does something, or speaks: has another application broken it meanwhile?"""
+        """A stream does something, or speaks: has another application broken it meanwhile?
+
+        What begins beside it at the same instant has not come in between.
+        """
         spoken_into = speaks and tree.spoken_into
-        broken = spoken_into or bool(tree.broken_by and not tree.by_reaction)
+        came_in = bool(tree.broken_by) and tree.since < self._now
+        broken = spoken_into or (came_in and not tree.by_reaction)
         if broken:
             self.found.broken += 1
             self.broken_since = tree.since
