@@ -15,7 +15,14 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from http.client import HTTPConnection, HTTPException, HTTPMessage, HTTPResponse, HTTPSConnection
+from http.client import (
+    HTTPConnection,
+    HTTPException,
+    HTTPMessage,
+    HTTPResponse,
+    HTTPSConnection,
+    IncompleteRead,
+)
 from typing import IO, NoReturn
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlencode, urljoin, urlsplit
@@ -157,7 +164,8 @@ class _Asking:
         except URLError as error:
             self.found = Fetched("", 0, self.uri, problem=_silence(error.reason))
         except (OSError, HTTPException, ValueError) as error:
-            self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {error}")
+            why = "the answer breaks off" if isinstance(error, IncompleteRead) else error
+            self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {why}")
         finally:
             self.close()
             self.done.set()

@@ -214,3 +214,11 @@ def test_json_means_the_same() -> None:
     text = '{"a":"\u202e\x7f\U000e0041\u9999"}\n'
     assert escaped(text) == '{"a":"\\u202e\\u007f\\udb40\\udc41\u9999"}\n'
     assert json.loads(escaped(text)) == json.loads(text)
+
+
+def test_no_text_in_the_data_of_a_page_turns_others() -> None:
+    """Wherever in it: the reasons that a record gives as well."""
+    from prima.report.page import json_text
+
+    data = {"runs": [["a", {"by\u2066": "x\u202ey\x1b"}, 1.5, None, True]]}
+    assert json_text(data) == '{"runs":[["a",{"by\ufffd":"x\ufffdy\ufffd"},1.5,null,true]]}'

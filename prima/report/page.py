@@ -74,7 +74,7 @@ def text(what: str) -> str:
 
 def json_text(data: Json | dict[str, Any]) -> str:
     """JSON that can stand in a script element: nothing in it ends or opens one."""
-    made = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    made = json.dumps(_seen(data), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         made = made.replace(letter, f"\\u{ord(letter):04x}")
     return made
@@ -335,6 +335,15 @@ def _time(row: Row | None) -> str:
 
 
 # Data ----------------------------------------------------------------------------------------
+
+
+def _seen(data: Any) -> Any:
+    """Data in which every text is one that may be shown."""
+    if isinstance(data, str):
+        return visible(data, "\n")
+    if isinstance(data, dict):
+        return {visible(key): _seen(value) for key, value in data.items()}
+    return [_seen(one) for one in data] if isinstance(data, list | tuple) else data
 
 
 def _data(
