@@ -743,9 +743,11 @@ class Checker:
             shown = " ".join(expr.code.split())
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
             message = f'"{shown}" is not ECMAScript: {error}.'
-            if isinstance(error, EngineLost):
-                message = f'"{shown}" cannot be checked: {error}.'
             place = expr.node.code_place(expr.attribute, error.line, error.column)
+            if isinstance(error, EngineLost):  # perhaps from outside: a run may still go well
+                message = f'"{shown}" cannot be checked: {error}.'
+                self.problems.append(Problem(place, "warning", "bad-expression", message))
+                return False
             remedy = self._expression_remedy(expr.code)
             self.problems.append(Problem(place, "error", "bad-expression", message, remedy))
             return False

@@ -322,7 +322,10 @@ def syntax() -> IsolatedSyntax:
     """What compiles code in the process that all share; a new one if that was lost."""
     host = _shared()
     if not _checkers or _checkers[0].host is not host:
-        _checkers[:] = [IsolatedSyntax(host)]
+        try:
+            _checkers[:] = [IsolatedSyntax(host)]
+        except EngineLost:  # it was ended from outside while nobody used it
+            _checkers[:] = [IsolatedSyntax(_shared())]
     return _checkers[0]
 
 
@@ -337,8 +340,10 @@ class IsolatedSyntax(_Remote):
         try:
             return super()._call(method, *arguments)
         except EngineLost:
-            super().__init__(_shared(), "syntax", [], Nobody())
-            return super()._call(method, *arguments)
+            return IsolatedSyntax(_shared())._once(method, *arguments)
+
+    def _once(self, method: str, *arguments: list[Any]) -> Any:
+        return super()._call(method, *arguments)
 
     def expression(self, code: str) -> None:
         """See :meth:`Syntax.expression`."""
