@@ -284,6 +284,16 @@ def test_o2_of_several_streams_the_one_that_ran_goes_on() -> None:
     assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:1"]
 
 
+def test_o2_of_several_streams_the_one_that_ran_goes_on_though_it_came_later() -> None:
+    stage = Stage()
+    stage.request("ea", command("turn", angle=10), cause=EVENT)
+    stage.request("ea", command("turn", angle=20), cause=EVENT + 1)
+    assert stage.select() == ["ea#2"]
+    stage.at(10).request("ea", command("stop-moving"), cause=EVENT + 2)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:2"]
+
+
 def test_o3_leaving_a_state_deletes_what_has_not_started_and_ends_loops() -> None:
     stage = Stage()
     stage.request("ea", move(), say("There."))
@@ -358,6 +368,19 @@ def test_o3_of_several_streams_the_one_that_ran_goes_on() -> None:
     stage.request("ea", say(), state=2, cause=EVENT + 2)
     stage.select()
     assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:1"]
+
+
+def test_o3_of_several_streams_that_run_the_one_that_started_last_goes_on() -> None:
+    stage = Stage()
+    stage.request("ea", command("gesture", name="bow"), cause=EVENT)
+    stage.select()
+    stage.request("ea", command("turn", angle=10), cause=EVENT + 1)
+    stage.select()
+    assert stage.running == {"ea#1", "ea#2"}
+    stage.at(10).leave("ea")
+    stage.request("ea", say(), state=2, cause=EVENT + 2)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:2"]
 
 
 def test_o3_in_a_window_its_own_stream_goes_on() -> None:
@@ -665,6 +688,17 @@ def test_f2_a_higher_priority_than_all_of_the_floors_stream_may_start() -> None:
     assert stage.floor == ["ea:1", "fa:1"]
 
 
+def test_f2_a_higher_priority_than_some_of_the_floors_stream_is_not_enough() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(move()), Step(say())], cause=1)
+    assert stage.select() == ["ea#2", "ea#1.1"]
+    stage.at(5).request("fa", command("gesture", name="bow"))
+    assert stage.select() == [], "it outranks the move, not the words"
+    assert stage.holds("fa#1") == ["F2"]
+    stage.at(10).end("ea#2")
+    assert stage.select() == ["fa#1"]
+
+
 def test_f3_the_floor_falls_back_when_its_holder_ends() -> None:
     stage = Stage()
     stage.request("fa", ask("1"), ask("2"), cause=1)
@@ -747,6 +781,57 @@ def test_f6_a_stream_that_has_not_spoken_is_no_topic_yet() -> None:
     assert stage.select() == ["ea#1", "fa#1"]
 
 
+def test_f6_who_holds_the_floor_may_speak_into_a_topic() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("gesture", name="bow"), say("forty two."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    stage.at(12).request("fa", command("face-human"), say("Ouch there."), cause=EVENT)
+    assert stage.select() == ["fa#1"], "the reaction takes the floor without a word"
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["fa#2"], "what follows it is no reaction, but has the floor"
+
+
+def test_f6_a_topic_that_works_in_loops_may_be_spoken_into() -> None:
+    stage = Stage()
+    stage.request("ea", say("Follow me."), move(), say("Here we are."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2.1"]
+    stage.at(20).request("fa", say("I like trains."))
+    assert stage.select() == ["fa#1"]
+
+
+def test_f6_a_unit_keeps_its_own_speaker() -> None:
+    """Between two utterances in a unit it is the unit that others wait for, by S1."""
+    stage = Stage()
+    bow = command("gesture", name="bow")
+    stage.request("ea", Group(chain(say("The answer is"), bow, say("forty two."))))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    for part in ("ea#2", "ea#3", "ea#4"):
+        assert stage.select() == ([] if part == "ea#2" else [part])
+        stage.end(part)
+    assert stage.select() == ["fa#1"]
+    assert [(r["rule"], r["by"]) for r in stage.phases("hold")] == [("S1", "ea#1")]
+
+
+def test_f6_who_waits_too_long_for_a_unit_holds_its_devices_back() -> None:
+    """It waits by S1, so S3 and E6 apply: nobody whom it outranks takes the wheels from it."""
+    stage = Stage(patience=1000, apps={"fa": "fa", "ea": "ea", "guide": "ea"})
+    bow = command("gesture", name="bow")
+    stage.request("ea", Group(chain(say("The answer is"), bow, say("forty two."))))
+    stage.select()
+    stage.at(5).request("fa", Group(chain(say("Look."), command("turn", angle=10))))
+    stage.select()
+    stage.at(2000).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(2010).request("guide", command("turn", angle=20))
+    assert stage.select() == []
+    assert stage.holds("guide#1") == ["S3"]
+
+
 def test_f4_without_a_floor_only_devices_and_the_channel_count() -> None:
     stage = Stage()
     stage.request("ea", say())
@@ -808,6 +893,37 @@ def test_k1_a_stream_that_leaves_itself_engages_nobody() -> None:
     stage.at(10).end("fa#1")
     assert stage.select() == ["fa#2.1"]
     stage.request("ea", move())
+    assert stage.select() == ["ea#1.1"]
+
+
+def test_k1_a_stream_of_which_only_a_part_leaves_engages_still() -> None:
+    table = {
+        **TABLE_4_2,
+        "glide": replace(TABLE_4_2["set-position"], name="glide", devices=frozenset({"arm"})),
+    }
+    stage = Stage(table=table)
+    steps = [Step(ask()), Step(move(), (0,)), Step(say("This way."), (0,))]
+    stage.request("fa", steps=steps)
+    stage.select()
+    stage.at(10).end("fa#1")
+    assert set(stage.select()) == {"fa#2.1", "fa#3"}
+    stage.request("ea", Command("glide", {"x": 1, "y": 1}))
+    assert stage.select() == []
+    assert stage.holds("ea#1") == ["K1"]
+    stage.at(20).end("fa#3")
+    assert stage.select() == ["ea#1.1"]
+
+
+def test_k1_a_stream_that_is_held_and_does_nothing_engages_still() -> None:
+    stage = Stage("prima+x3")
+    stage.request("fa", ask(), hold=5000)
+    stage.select()
+    stage.at(10).end("fa#1")
+    stage.select()
+    stage.at(20).request("ea", move(), cause=EVENT)
+    assert stage.select() == [], "a reaction may break in (F2), but not leave the user"
+    assert stage.holds("ea#1") == ["K1"]
+    stage.at(5010).mediator.expire()
     assert stage.select() == ["ea#1.1"]
 
 

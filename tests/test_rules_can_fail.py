@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import count
@@ -38,6 +39,15 @@ def wrapped(where: Any, name: str, change: Callable[[Any], Any]) -> Patch:
     """Change what a rule gives."""
     whole = getattr(where, name)
     return put(where, name, lambda *given: change(whole(*given)))
+
+
+def reworded(where: Any, name: str, clause: str, other: str) -> Patch:
+    """Change one clause in the text of a rule."""
+    text = inspect.getsource(getattr(where, name))
+    assert text.count(clause) == 1, f'"{clause}" is not once in {name}'
+    made: dict[str, Any] = {}
+    exec(text.replace(clause, other), vars(where), made)
+    return put(where, name, made[name])
 
 
 def nothing(*_given: object) -> None:
@@ -170,6 +180,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         "priority does not count",
         put(rules, "outranks", lambda priority, stream, memory: False),
     ),
+    ("f2", "above any", reworded(rules, "outranks", "all(priority", "any(priority")),
     ("f3", "never", put(rules, "f3", lambda ab, reacts, memory: False)),
     ("f3", "always", put(rules, "f3", lambda ab, reacts, memory: True)),
     ("f5", "dropped", put(Mediator, "_stop_rolling", nothing)),
@@ -187,6 +198,13 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ),
     ("f6", "silent streams too", lambda patch: patch.setattr(Stream, "spoken", True)),
     ("f6", "whatever comes next", put(rules, "speaks_next", lambda ab: True)),
+    (
+        "f6",
+        "whoever has the floor",
+        reworded(rules, "f6", " or ab.stream is memory.holder", ""),
+    ),
+    ("f6", "loops too", reworded(rules, "f6", "not other.feedback and ", "")),
+    ("f6", "in units too", reworded(rules, "f6", "other.unit is None and ", "")),
     ("k1", "dropped", put(rules, "k1", nothing)),
     ("k1", "for ever", put(Failures, "_look_for_user", nothing)),
     ("k1", "who leaves engages", put(rules, "engages", lambda stream, memory: True)),
@@ -194,6 +212,12 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         "k1",
         "who searches does not",
         put(rules, "engages", lambda stream, memory: not memory.absent),
+    ),
+    ("k1", "who leaves in part", reworded(rules, "engages", "not all(", "not any(")),
+    (
+        "k1",
+        "who does nothing",
+        reworded(rules, "engages", "not contending or", "bool(contending) and"),
     ),
     (
         "o1",
@@ -208,8 +232,10 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ),
     ("o1", "dropped", put(Mediator, "_parent", nothing)),
     ("o2", "nothing is cancelled", put(Mediator, "_order_now", only_placed)),
+    ("o2", "the first goes on", put(mediator, "going_on", lambda streams: streams[0])),
     ("o3", "dropped", put(Mediator, "leave_state", nothing)),
     ("o3", "nothing goes on", put(Mediator, "_continue", nothing)),
+    ("o3", "the first goes on", put(mediator, "going_on", lambda streams: streams[0])),
     ("c2", "nobody is told", put(Session, "_tell_turns", nothing)),
     ("c3", "dropped", put(Mediator, "open_window", nothing)),
     (
