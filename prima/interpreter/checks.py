@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -253,6 +254,29 @@ def _check_code(code: str, script: bool) -> None:
     from prima.script.isolated import syntax
 
     (syntax().script if script else syntax().expression)(code)
+
+
+def _look_ahead(document: Document) -> None:
+    """Let the engine look at all code at once that needs it: each call takes time."""
+    scripts = {id(act.code): act.code for act in _scripts(document)}
+    codes = [(one.code, True) for one in scripts.values()]
+    codes += [
+        (one.code, False)
+        for one in document.expressions
+        if id(one) not in scripts and compiled(one.code) is None
+    ]
+    if len(codes) > 1:
+        from prima.script.isolated import syntax
+
+        with suppress(ScriptError):  # who asks for one of them is told that it cannot be started
+            syntax().look_ahead(codes)
+
+
+def _scripts(document: Document) -> Iterator[Script]:
+    holders: list[Document | Form] = [document, *document.forms.values()]
+    yield from (act for one in holders for act in one.setup if isinstance(act, Script))
+    for _, content, _ in document.contents():
+        yield from (act for act in all_acts(content) if isinstance(act, Script))
 
 
 class Leads:
@@ -601,6 +625,7 @@ class Checker:
         every = Scope(self.shared.union(*self._declared.values(), *self._given.values()))
         known: dict[str | None, Known] = {form.id: self.known_in(form) for form, _ in self.forms}
         known[None] = Known(every)
+        _look_ahead(self.document)
         self._outside(document, Known(self.shared), known[None])
         for form, items in self.forms:
             self._outside(form, known[form.id], known[form.id])

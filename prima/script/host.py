@@ -46,7 +46,8 @@ METHODS: Mapping[str, Mapping[str, int]] = {
         "rule": GIVES_VALUE, "reached": GIVES_DATA, "fault": GIVES_DATA, "carry": GIVES_DATA,
         "take": GIVES_VALUE, "json": GIVES_DATA,
     },
-    "Syntax": {"expression": GIVES_NOTHING, "script": GIVES_NOTHING, "has_statements": GIVES_DATA},
+    "Syntax": {"expression": GIVES_NOTHING, "script": GIVES_NOTHING, "has_statements": GIVES_DATA,
+               "faults": GIVES_DATA},
 }  # fmt: skip
 """What may be called of what is here, by its class."""
 

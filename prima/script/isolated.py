@@ -7,14 +7,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from prima.messages import Json
 from prima.script import worker
 from prima.script.budget import Budget
 from prima.script.ecmascript import UNDEFINED
-from prima.script.evaluation import SCOPES, EngineLost, Item, Scope, bounded, plain_number
+from prima.script.evaluation import (
+    SCOPES,
+    EngineLost,
+    Item,
+    Scope,
+    ScriptError,
+    bounded,
+    plain_number,
+)
 from prima.script.worker import Handle, Meter, Nobody, Worker
 
 if TYPE_CHECKING:
@@ -329,11 +338,41 @@ def syntax() -> IsolatedSyntax:
     return _checkers[0]
 
 
+AT_ONCE, LETTERS_AT_ONCE = 500, 100_000
+"""Codes, and characters of them, that are compiled in one call: it has so much time."""
+
+
 class IsolatedSyntax(_Remote):
     """Compiles code by itself, without running it."""
 
     def __init__(self, host: Worker) -> None:
         super().__init__(host, "syntax", [], Nobody())
+        self._faults: dict[tuple[str, bool], tuple[str, int, int] | None] = {}
+        """What has been found out ahead, by codes and whether they are scripts."""
+
+    def look_ahead(self, codes: Iterable[tuple[str, bool]]) -> None:
+        """Find out at once what is wrong with many codes: what has been found out before is let go.
+
+        Args:
+            codes: the codes that will be asked about, and whether they are scripts.
+        """
+        self._faults = {}
+        asked: list[tuple[str, bool]] = []
+        letters = 0
+        for one in dict.fromkeys(codes):
+            if asked and (len(asked) >= AT_ONCE or letters + len(one[0]) > LETTERS_AT_ONCE):
+                self._ask(asked)
+                asked, letters = [], 0
+            asked.append(one)
+            letters += len(one[0])
+        self._ask(asked)
+
+    def _ask(self, codes: list[tuple[str, bool]]) -> None:
+        if self._use != self.host.use or self.host.lost:
+            return  # who asks for one of them is told
+        with suppress(ScriptError):
+            faults = super()._call("faults", _data(codes))  # not twice, if it ends the process
+            self._faults |= zip(codes, faults, strict=True)
 
     def _call(self, method: str, *arguments: list[Any]) -> Any:
         """Call it; once more in a new process, as somebody else's code may have ended this one."""
@@ -347,11 +386,19 @@ class IsolatedSyntax(_Remote):
 
     def expression(self, code: str) -> None:
         """See :meth:`Syntax.expression`."""
-        self._call("expression", _data(code))
+        self._compile("expression", code, False)
 
     def script(self, code: str) -> None:
         """See :meth:`Syntax.script`."""
-        self._call("script", _data(code))
+        self._compile("script", code, True)
+
+    def _compile(self, method: str, code: str, is_script: bool) -> None:
+        if (code, is_script) not in self._faults:
+            self._call(method, _data(code))
+        elif fault := self._faults[code, is_script]:
+            error = ScriptError(fault[0])
+            error.line, error.column = fault[1:]
+            raise error
 
     def has_statements(self, code: str) -> bool:
         """See :meth:`Syntax.has_statements`."""

@@ -75,6 +75,21 @@ class Syntax:
         self._compile(code, f"return [function () {{\n{code}\n}}]")
         self._compile(code, f"return (function () {{\n{code}\n}})")
 
+    def faults(self, codes: list[tuple[str, bool]]) -> list[tuple[str, int, int] | None]:
+        """What is wrong with each of several codes, with line and column; None with what is right.
+
+        Args:
+            codes: the codes, and whether they are scripts.
+        """
+        found: list[tuple[str, int, int] | None] = []
+        for code, is_script in codes:
+            try:
+                (self.script if is_script else self.expression)(code)
+                found.append(None)
+            except ScriptError as error:
+                found.append((str(error), error.line, error.column))
+        return found
+
     def has_statements(self, code: str) -> bool:
         """Whether code that should be one expression is none, but could be a script."""
         try:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -16,6 +17,7 @@ from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.names import IDENTIFIER, RESERVED
+from prima.script.compiling import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.isolated import IsolatedSyntax, syntax
 from prima.values import NUMBER, read_value
@@ -385,16 +387,17 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     Only validation asks for them: a run is told of what it reaches, as an event.
     """
     problems: list[Problem] = []
+    codes = [(code, not name) for node in root.walk() for name, code in _codes(node)]
+    if len(codes) > 1:
+        with suppress(ScriptError):  # who asks for one of them is told that it cannot be started
+            syntax().look_ahead(codes)
     checker = syntax()
     stack = [root]
     while stack:
         node = stack.pop()
         stack.extend(node.nodes)
-        for name in node.attributes:
-            if is_code(node, name):
-                _compile(node, name, problems, checker)
-        if node.key == "script" and node.own_text.strip():
-            _compile(node, "", problems, checker)
+        for name, code in _codes(node):
+            _compile(node, name, code, problems, checker)
         if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
             problems += grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):
@@ -545,18 +548,26 @@ def _statements(node: Node, name: str) -> Problem:
     return Problem(node.attribute_place(name), "warning", "bad-expression", message, remedy)
 
 
-def _compile(node: Node, name: str, problems: list[Problem], checker: IsolatedSyntax) -> None:
+def _codes(node: Node) -> Iterator[tuple[str, str]]:
+    """The code of an element that an engine has to look at, with its attribute; none for a script."""
+    for name in node.attributes:
+        if is_code(node, name) and compiled(node.get(name)) is None:
+            yield name, node.get(name)
+    if node.key == "script" and node.own_text.strip():
+        yield "", node.own_text
+
+
+def _compile(
+    node: Node, name: str, code: str, problems: list[Problem], checker: IsolatedSyntax
+) -> None:
     try:
-        if name:
-            checker.expression(node.get(name))
-        else:
-            checker.script(node.own_text)
+        (checker.expression if name else checker.script)(code)
     except ScriptError as error:
-        if name not in ("", "cond") and checker.has_statements(node.get(name)):
+        if name not in ("", "cond") and checker.has_statements(code):
             problems.append(_statements(node, name))
             return
         place = node.code_place(name, error.line, error.column)
-        code = " ".join((node.get(name) if name else node.own_text).split())[:60]
+        code = " ".join(code.split())[:60]
         message = f'"{code}" is not ECMAScript: {error}. This will be error.semantic.'
         if isinstance(error, EngineLost):
             message = f'"{code}" cannot be checked: {error}.'
