@@ -653,6 +653,27 @@ def test_a_way_leads_out_of_where_the_body_is_too_near_to_a_wall() -> None:
 TRACKS = '<block><tracking-human distance="1"/></block>'
 
 
+@pytest.mark.parametrize("x", [5.21, 5.22, 5.25, 5.3])
+@pytest.mark.parametrize("y", [1.45, 1.5, 1.6, 2.5])
+def test_a_way_leads_out_of_a_wall_itself(tmp_path: Path, x: float, y: float) -> None:
+    """Where a scenario puts the body into the thickness of a wall, on the side of the room."""
+    office = (ROOT / "documents" / "worlds" / "office.xml").read_text(encoding="utf-8")
+    odd = f'<place id="odd" x="{x}" y="{y}" title="Odd"/><place id="hall"'
+    (tmp_path / "w.xml").write_text(office.replace('<place id="hall"', odd, 1), encoding="utf-8")
+    (tmp_path / "go.xml").write_text(
+        HEAD.format("ea", "go", "en")
+        + '<form id="f"><block><topological-move to="lab"/><exit/></block></form></prima>'
+    )
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
+        f' robot="{ROOT / "documents" / "robots" / "papero.xml"}"><robot at="odd"/>'
+        '<person x="0.9" y="0"/><application src="go.xml"/></scenario>'
+    )
+    made = api.rehearse(tmp_path / "s.xml")
+    assert made.failures == []
+    assert made.records[-1]["time"] < 60
+
+
 def test_tracking_keeps_the_body_from_the_end_of_a_wall(tmp_path: Path) -> None:
     """The user walks round it, so the straight line to him leads past it by less than a radius."""
     transcript = rehearse(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pymunk
 
+from prima.sim.plan import crosses
 from prima.sim.scenario import Corner, Map, Point, Profile
 
 STEP_MS = 50
@@ -102,8 +103,11 @@ class World:
     # Seeing --------------------------------------------------------------------
 
     def clear(self, a: Point, b: Point) -> bool:
-        """Whether no wall stands between two points."""
-        return self._space.segment_query_first(a, b, 0.0, WALLS) is None
+        """Whether no wall stands between two points; one that begins in a wall may leave it."""
+        found = self._space.segment_query_first(a, b, 0.0, WALLS)
+        if found is not None and found.alpha == 0.0:
+            return not any(crosses((a, b), wall) for wall in self.map.walls)
+        return found is None
 
     def passable(self, a: Point, b: Point) -> bool:
         """Whether the robot's body, and a little more, fits through in a straight line.
