@@ -877,3 +877,20 @@ def test_an_argument_of_a_command_in_voicexml_that_is_given_twice(tmp_path: Path
     (problem,) = api.validate([str(path)])
     assert problem.code == "exclusive"
     assert problem.message == '<p:turn> has both "angle" and "angle-expr".'
+
+
+@pytest.mark.parametrize("thrown", ["x.y", "z"])
+def test_a_way_back_that_goes_by_a_thrown_event_is_told_too(tmp_path: Path, thrown: str) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">\n'
+        f'<on event="touch"><throw event="{thrown}"/></on>'
+        '<on event="x.y"><goto next="#g"/></on><on event="z"><log>z</log></on>\n'
+        '<form id="f"><field name="q"><prompt>Well?</prompt><option>yes</option>'
+        '<noinput count="3"><exit/></noinput><filled><exit/></filled></field></form>'
+        '<form id="g"><block><goto next="#f"/></block></form></prima>'
+    )
+    told = [one.message for one in api.validate([str(path)]) if one.code == "told-twice"]
+    assert [message for message in told if 'If "touch" comes' in message] == (
+        [told[0]] if thrown == "x.y" else []
+    )

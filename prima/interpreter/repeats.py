@@ -73,7 +73,7 @@ class _Ways:
         self._left = MOST_STEPS
         self._shared: dict[str, list[tuple[str, Goto]]] = {}
         """Where the document's own handlers lead back, by forms."""
-        for event, gotos in self._of(document.handlers):
+        for event, gotos in self._of(document.handlers, document.handlers):
             ways = {name: way for way in reversed(gotos) for name in self._leads(way)}
             for name, way in ways.items():
                 self._shared.setdefault(name, []).append((event, way))
@@ -82,17 +82,33 @@ class _Ways:
         """The events that may come while a form says something, and the gotos back to it."""
         yield from self._shared.get(form.id, ())
         own = [form.handlers, *(item.handlers for item in all_items(form.items))]
-        for event, gotos in (one for handlers in own for one in self._of(handlers)):
+        scope = [*form.handlers, *self._document.handlers]
+        for event, gotos in (one for handlers in own for one in self._of(handlers, scope)):
             way = next((one for one in gotos if form.id in self._leads(one)), None)
             if way is not None:
                 yield event, way
 
-    def _of(self, handlers: Iterable[Handler]) -> Iterator[Leaving]:
+    def _of(self, handlers: Iterable[Handler], scope: Sequence[Handler]) -> Iterator[Leaving]:
         for handler in handlers:
-            gotos = [act for act in _gotos(handler.content) if isinstance(act.form, str)]
+            gotos = self._gotos(handler, scope, ())
             event = next(filter(self._from_outside, handler.events), "") if gotos else ""
             if event and not _brings_news(handler):
                 yield event, gotos
+
+    def _gotos(
+        self, handler: Handler, scope: Sequence[Handler], before: tuple[Handler, ...]
+    ) -> list[Goto]:
+        """The gotos of a handler, and of those of a scope that take what it throws."""
+        gotos = [act for act in _gotos(handler.content) if isinstance(act.form, str)]
+        before = (*before, handler)
+        for act in all_acts(handler.content):
+            if isinstance(act, Throw) and isinstance(act.event, str) and self._left > 0:
+                self._left -= len(scope)
+                names = set(beginnings(act.event))
+                taker = next((one for one in scope if not names.isdisjoint(one.events)), None)
+                if taker is not None and taker not in before:
+                    gotos += self._gotos(taker, scope, before)
+        return gotos
 
     def _leads(self, way: Goto) -> set[str]:
         """The forms to which a goto leads, at once or by way of others."""
