@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from prima.messages import Emergency, Inbound, Occurred
+from prima.messages import Emergency, Inbound, Occurred, Unloaded
 from tests.generated import APPS, Play, World, perform, plays
 from tests.invariants import check
 
@@ -201,6 +201,9 @@ BESIDE = play(
 """Who speaks beside a move that has the floor takes nothing from it (F3)."""
 
 
+TAKEN_OUT = play(form(SAY.format("Long.")), IDLE, events=((10, Unloaded("ea")),))
+
+
 def listens_on(records: Records) -> Records:
     """A question whose state was left listens; cut off there."""
     return records[: indexes(records, phase="cancel", rule="O3")[0]]
@@ -217,6 +220,18 @@ def takes_the_floor(records: Records) -> Records:
     index = indexes(records, phase="decision", app="fa")[0]
     taken = {"phase": "floor", "tree": "fa:1", "floor": ["ea:1", "fa:1"], "outcome": "taken"}
     return [*records[:index], {**records[index], **taken}, *records[index:]]
+
+
+def told_as(new: str, number: int = 0, **match: Any) -> Corruption:
+    """A decision and its start are both told by another rule."""
+
+    def told(records: Records) -> Records:
+        index = indexes(records, phase="decision", **match)[number]
+        start = next(one for one in records[index:] if one["phase"] == "start")
+        records[index]["rule"] = start["rule"] = new
+        return records
+
+    return told
 
 
 @dataclass(frozen=True)
@@ -247,6 +262,22 @@ FALSEHOODS = (
     Falsehood("resume", SUSPENDED, drop(0, phase="resume"), "13 (C2)"),
     Falsehood("end-untold", RIVALS, drop(0, phase="stream-end"), "13 (C1)"),
     Falsehood("end-told-twice", RIVALS, double({"time": 1}, phase="start"), "3 (U1)"),
+    # The rules that are told, and what became of whom.
+    *(
+        Falsehood(f"alone-{rule}", BROKEN, told_as(rule), "13 (S2)")
+        for rule in ("S4", "F2", "K1", "F6", "E6", "X5", "U4")
+    ),
+    Falsehood("alone-S1", BROKEN, told_as("S1", number=1), "13 (S2)"),
+    Falsehood("by-priority", BESIDE, told_as("S4", rule="F2"), "13 (S2)"),
+    Falsehood("start", BROKEN, change(0, {"phase": "start"}, rule="S4"), "13 (S1)"),
+    Falsehood("start-lost", RIVALS, change(0, {"phase": "start"}, rule="S2e"), "13 (S1)"),
+    Falsehood("in-unit", play(UNIT, IDLE), change(1, {"phase": "start"}, rule="U5"), "13 (S1)"),
+    Falsehood("taken-by", BROKEN, change(0, {"phase": "floor"}, rule="F3"), "13 (F3)"),
+    Falsehood("taken-as", BROKEN, change(0, {"phase": "floor"}, outcome="held"), "13 (F3)"),
+    Falsehood("given-by", BROKEN, change(1, {"phase": "floor"}, rule="F1"), "13 (F3)"),
+    Falsehood("given-as", BROKEN, change(1, {"phase": "floor"}, outcome="taken"), "13 (F3)"),
+    Falsehood("cancelled", LEFT, change(0, {"phase": "cancel"}, outcome="waiting"), "13 (O3)"),
+    Falsehood("unloaded", TAKEN_OUT, drop(0, phase="unload", actor="mediator"), "13 (E2)"),
     # Stops.
     Falsehood(
         "unstopped", play(TRACKS, SPEAKS, events=(at(20),)), drop(0, phase="stop"), "14 (F5)"

@@ -6,7 +6,16 @@ failures, events and windows, by the numbered rules of the mediation. What the
 mediator says about its own view (``floor``, ``suspend``, ``resume``, ``hold``,
 ``decision``, ``stop``, ``stream-end``) is not believed: it is a claim that is
 compared with what was built. So are the extensions' ``held``, ``interrupt`` and
-``inserted``.
+``inserted``, the rules of ``start``, ``decision`` and ``floor``, and the outcomes of ``floor``
+and ``cancel``.
+
+Believed are the rule and outcome of ``unload``, and that an application has ended on its own:
+where that cancels nothing by E2, nothing else tells it, so a dropped ``unload`` is found only if
+something is cancelled, or the application was taken out of the robot. The rule of ``cancel`` is
+held to what justifies it, and where two rules do either is taken. An AB that
+follows one that failed (E1), or is in an interrupted unit (X2), may be told as linked or waiting
+when it is cancelled. Under a baseline policy a decision's
+rule is believed, and its start is held to it.
 
 Each file is a family of rules and stands on those before it: ``model``,
 ``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``floor`` (F, C2),

@@ -71,11 +71,16 @@ class Checker(Leaving):
         if record["actor"] == "mediator":
             self.apps.setdefault(record["app"], len(self.apps))
             self.gone_apps.discard(record["app"])
+            self.loaded.add(record["app"])
 
     def _unload(self, record: Record) -> None:
         if record["actor"] == "mediator":
             self.gone_apps.add(record["app"])
             self.unloaded.add(record["app"])
+            self.taken_out.discard(record["app"])
+            self.loaded.discard(record["app"])
+        elif record["app"] in self.loaded:
+            self.taken_out.add(record["app"])
 
     def _decision(self, record: Record) -> None:
         if self.decision is not None and self.prima:
@@ -198,6 +203,7 @@ class Checker(Leaving):
         if self.halted:
             self.report(2, "E5", f"{record['behavior']} starts during the emergency stop")
         self._devices_free(ab, record["behavior"])
+        self.started_by(ab, record)
         if ab.interrupted:
             self.starts_again(ab, record)
         if ab.unit is None:
@@ -295,6 +301,9 @@ class Checker(Leaving):
             self.justified(cut)
         self.channel_kept_inside()
         self.left_rightly()
+        for app in self.ordered(self.taken_out):
+            self.report(13, "E2", f"{app} is taken out, but its end is not told")
+        self.taken_out.clear()
         if self.prima:
             self._told_rightly()
         for tree in self.resumed:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.invariants.model import AB, GONE, RUNNING, Cut, Record, base
+from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, base
 from tests.invariants.selection import Selection
 
 
@@ -83,6 +83,10 @@ class Endings(Selection):
                 self._loop_over(ab)
             self.wait(ab)
             return
+        # What is taken out at once, a failed tree or a unit, may be told as it was before.
+        behind = rule in ("E1", "X2") and was == WAITING and ab.followed_at == self.now
+        if record["outcome"] not in ((was, LINKED) if behind else (was,)):
+            self.report(13, rule, f"{ab.shown} is {was} when cancelled, not {record['outcome']}")
         # What the tree wanted when the first of it was taken out, and what it was asked since.
         devices = self.tree_devices.get(ab.tree.name, frozenset()).union(
             *(one.devices for one in ab.tree.members.values())

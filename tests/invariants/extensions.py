@@ -194,7 +194,7 @@ class Extensions(Floor):
         tree.until = until
         self.close_trees()
         if not self.floor:
-            self.give_floor(tree)
+            self.give_floor(tree, "X3")
 
     def holds_rightly(self) -> None:
         """X3, at the end of an instant: nothing is held too long, or while it goes on."""
@@ -253,3 +253,4 @@ class Extensions(Floor):
             self.ended_trees.add(tree.name)
             if tree in self.floor:
                 self.floor.remove(tree)
+                self.turned.append((tree.name, "returned", "F3"))

@@ -79,17 +79,18 @@ class Floor(Channel):
             tree.causes.add(reaction)
         elif holder is None or holder.app == ab.app or not self._in_the_way(ab, holder):
             return
-        self.give_floor(tree)
+        self.give_floor(tree, "F1" if reaction is not None else "F3")
 
     def _in_the_way(self, ab: AB, holder: Tree) -> bool:
         """F3: whether a running or waiting AB of the floor's stream wants one of the devices."""
         own = [other for other in holder.members.values() if other.contends]
         return any(ab.devices & other.devices for other in (*own, *holder.contending()))
 
-    def give_floor(self, tree: Tree) -> None:
+    def give_floor(self, tree: Tree, rule: str) -> None:
         """C2: who takes the floor suspends the others' streams; those rank alike (S2d)."""
         if self.holder is tree:
             return
+        self.turned.append((tree.name, "taken", rule))
         if tree in self.floor:
             self.floor.remove(tree)
         self.floor.append(tree)
@@ -117,6 +118,7 @@ class Floor(Channel):
         if told != (rest if record["outcome"] == "returned" else [*rest, tree]):
             self.report(13, "F3", f"the floor is {told}, after {self.told_floor}")
         self.told_floor = told
+        self.told_turns.append((tree, record["outcome"], record["rule"]))
 
     def note_suspend(self, record: Record) -> None:
         self.suspensions[record["tree"]] = record["by"]
@@ -133,6 +135,7 @@ class Floor(Channel):
         if names != self.told_floor:
             self.report(13, "F3", f"the floor is {names}; the records say {self.told_floor}")
             self.told_floor = names
+        self._turns_told_rightly()
         for tree, by in self.suspended_by.items():
             told = self.suspensions.pop(tree, None)
             if told != by:
@@ -142,6 +145,16 @@ class Floor(Channel):
         for tree in self.ordered(self.resumptions):
             self.report(13, "C2", f"{tree} does not resume, as a record says")
         self.suspensions, self.suspended_by, self.resumptions = {}, {}, set()
+
+    def _turns_told_rightly(self) -> None:
+        """F1, F3, X3: who took the floor and who gave it back, and by which rule.
+
+        In which order, the stack tells; that of several that end at once is open.
+        """
+        if sorted(self.told_turns) != sorted(self.turned):
+            text = f"the floor was {self.turned}; the records say {self.told_turns}"
+            self.report(13, "F3", text)
+        self.turned, self.told_turns = [], []
 
     # Stops --------------------------------------------------------------------------
 

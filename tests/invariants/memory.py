@@ -40,11 +40,15 @@ class Memory:
         self.apps: dict[str, int] = {app: number for number, app in enumerate(declared)}
         """The order in which the applications were declared (S2f)."""
         self.gone_apps: set[str] = set()
+        self.loaded: set[str] = set()
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
         self.trees: dict[str, Tree] = {}
         self.floor: list[Tree] = []
+        self.turned: list[tuple[str, str, str]] = []
+        """Which streams took the floor or gave it back since it was last compared, and by what."""
+        self.told_turns: list[tuple[str, str, str]] = []
         self.windows: list[Tree] = []
         """Open windows, the latest last."""
         self.latest: dict[str, AB] = {}
@@ -104,6 +108,8 @@ class Memory:
         """Commands wanted now in this instant, and their places (O2)."""
         self.failed: list[AB] = []
         self.unloaded: set[str] = set()
+        self.taken_out: set[str] = set()
+        """Applications that are taken out of the robot in this instant, and whose end is untold."""
         self.released = False
         self.started_leaving: list[tuple[str, set[AB]]] = []
         self.started_inside: list[AB] = []

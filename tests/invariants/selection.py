@@ -126,6 +126,27 @@ class Selection(Patience):
             number = 5 if rule in ("S2a", "S2b") and other.devices & ab.devices else 12
             self.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
 
+    def admitted_by(self, ab: AB) -> str:
+        """The rule by which an AB starts with which nothing competes."""
+        holder = self.holder
+        if self.carries_floor(ab):
+            return "X5"
+        if holder is not None and holder.app != ab.app:
+            return "F2"
+        return "S4" if self.running else "S1"
+
+    def started_by(self, ab: AB, record: Record) -> None:
+        """A start says the rule of its decision; inside a unit, which is not decided, the unit's."""
+        told, shown = self.decision, record["behavior"]
+        if ab.unit is not None:
+            expected = "U4" if ab.unit.name in self.groups else "U5"
+        elif told is not None and told["winner"] == shown:
+            expected = told["rule"]
+        else:
+            return  # that nobody decided so is found elsewhere
+        if record["rule"] != expected:
+            self.report(13, "S1", f"{shown} starts by {expected}, not {record['rule']}")
+
     def decided_rightly(self, ab: AB, shown: str) -> None:
         """The ``decision`` before a start: its losers, and the rule that decided."""
         told, self.decision = self.decision, None
@@ -159,8 +180,9 @@ class Selection(Patience):
     def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
         """S2: what decided between the winner and the first that could have started, if any."""
         if not rivals:
-            if rule.startswith("S2") or rule == "S3":
-                self.report(13, "S2", f"{shown} starts by {rule}, but no loser could have started")
+            expected = self.admitted_by(ab)
+            if rule != expected:
+                self.report(13, "S2", f"{shown} starts by {rule}, without losers, not {expected}")
             return
         expected = self.rule_between(ab, rivals[0])
         alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
