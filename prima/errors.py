@@ -28,7 +28,7 @@ MOST_COMPARED = 30_000
 """Pairs of words that are compared for the guesses at one document."""
 
 MOST_TOLD = 1_000
-"""Problems that are told of; of the others only how many there are."""
+"""Problems that are listed; the others are counted."""
 
 Severity = Literal["error", "warning", "note"]
 SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")

@@ -26,6 +26,7 @@ from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines
 from prima.transcript.rules import RULES
 from prima.transcript.table import Row
+from prima.visible import visible
 from tests.generated_report import long_run
 
 ROOT = Path(__file__).parent.parent
@@ -169,7 +170,8 @@ EVIL = "</script><!--<script><b onclick='x'>\u2028\u2029\"&amp;\x00\x1b[31m"
 
 
 def test_nothing_that_is_said_becomes_markup() -> None:
-    assert json.loads(json_text([EVIL])) == [EVIL]
+    assert json.loads(json_text([EVIL])) == [visible(EVIL, "\n")]
+    assert json.loads(json_text(["</script> & <b>"])) == ["</script> & <b>"]
     assert not re.search("[<>&\u2028\u2029]", json_text([EVIL]))
     assert not re.search("[<>\"'\x00\x1b]", text(EVIL))
     records = json.loads(json.dumps(run().records))

@@ -64,7 +64,7 @@ logger = logging.getLogger("prima.lsp")
 
 
 def _converter() -> Converter:
-    """What reads messages; unlike pygls's own it takes nothing for a text or number that is none."""
+    """What reads messages; unlike pygls's own it refuses values of wrong types."""
     made: Converter = default_converter()  # type: ignore[no-untyped-call]
     for kind in (str, int, bool):
         made.register_structure_hook(kind, functools.partial(_exactly, kind))
