@@ -417,7 +417,7 @@ def isolated() -> list[Row]:
             Call(isolation.calls, ("none", SECONDS)),
         ),
         Row(
-            "The demo, in which Python evaluates all",
+            "The demo's run",
             "s",
             Call(isolation.run, ("ea", "demo", 5)),
             "without isolation",
