@@ -3,7 +3,7 @@
 ``python -m bench.fuzz mutated 100000 [SEED]`` breaks the shipped documents in one to four places;
 ``python -m bench.fuzz generated 100000 [SEED]`` puts their elements together at random. Each document
 is validated and, if nothing forbids it, run for a minute beside an application of the other kind.
-What is no error of the document's own (a traceback, a defect, a run that takes too long) is kept in
+Faults of PRIMA itself (a traceback, a defect, a run that takes too long) are kept in
 ``build/fuzz``.
 """
 

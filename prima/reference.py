@@ -212,7 +212,7 @@ def limits() -> str:
         ("elements in a file", f"{LIMITS.elements:,}", "`too-large`"),
         ("attributes of an element", f"{LIMITS.attributes}", "`too-large`"),
         ("elements inside each other", f"{LIMITS.depth}", "`too-deep`"),
-        ("problems that are told of", f"{LIMITS.problems:,}", "`more-problems`"),
+        ("problems listed", f"{LIMITS.problems:,}", "`more-problems`"),
         ("names that one script declares", f"{syntax.MOST_NAMES:,}", "`bad-expression`"),
         ("a time in an attribute", f"{LONGEST_MS // 1000:,} s", "`bad-value`"),
         (

@@ -976,7 +976,7 @@ def test_wrong_parameters_are_answered_as_such_and_the_server_goes_on() -> None:
                 assert "error" not in answer
             else:
                 assert answer.get("error", {}).get("code") == -32602, (method, one, answer)
-                assert answer["error"]["message"] == f"These are no parameters of {method}."
+                assert answer["error"]["message"] == f"Wrong parameters of {method}."
     speak(process, {"jsonrpc": "2.0", "id": -1, "method": "shutdown"})
     assert hear(process) == {"jsonrpc": "2.0", "id": -1, "result": None}
     speak(process, {"jsonrpc": "2.0", "method": "exit"})

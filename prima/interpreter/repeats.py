@@ -49,7 +49,7 @@ def told_twice(
 
     Args:
         document: the document.
-        foreign: tells of a handler's event whether it may come from outside; by default, what
+        foreign: whether a handler's event may come from outside; by default, what
             PRIMA's language has it to be.
         remedy: what to do about it.
     """

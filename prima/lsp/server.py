@@ -87,7 +87,7 @@ class Protocol(LanguageServerProtocol):
         except JsonRpcException as error:
             if "id" in data and "method" in data:
                 asked = data["id"] if isinstance(data["id"], str | int) else None
-                message = f"These are no parameters of {str(data['method'])[:80]}."
+                message = f"Wrong parameters of {str(data['method'])[:80]}."
                 told = lsp.ResponseError(JsonRpcInvalidParams.CODE, message)
                 self._send_response(asked, None, told)  # type: ignore[arg-type]
             raise error

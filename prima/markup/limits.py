@@ -17,7 +17,7 @@ class Limits:
     depth: int = 100
     """Elements inside each other."""
     problems: int = MOST_TOLD
-    """That are told of; of the others only how many there are. No document is refused for them."""
+    """Problems listed; the others are counted. No document is refused for them."""
 
 
 HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200, 20_000_000)
