@@ -143,17 +143,14 @@ class _Helpers(dict[str, Any]):
 
 
 class Engine:
-    """The ECMAScript of one application, or of several that trust each other.
-
-    ``memory`` bounds all that it holds (bytes).
-    """
+    """The ECMAScript of one application."""
 
     lost = ""
     """Why nothing can be evaluated any more: this one is in its caller's process."""
 
-    def __init__(self, scopes: tuple[str, ...] = SCOPES, memory: int = MEMORY_LIMIT) -> None:
+    def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
         context = quickjs.Context()
-        context.set_memory_limit(memory)
+        context.set_memory_limit(MEMORY_LIMIT)
         context.set_max_stack_size(STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         self._context = context
