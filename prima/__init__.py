@@ -5,8 +5,8 @@ The package's interface is loaded when it is used; see :mod:`prima.api`.
 
 from __future__ import annotations
 
-# Not from typing: this is imported before an interrupt is taken care of, and has to be quick.
-TYPE_CHECKING = False
+from typing import TYPE_CHECKING
+
 if TYPE_CHECKING:
     from typing import Any
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from prima.codes import CODES
 from prima.commands import ABSENCE_MS, PATIENCE_MS
-from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
 from prima.interpreter.elements import Document
 from prima.loading import (

@@ -15,14 +15,13 @@ import signal
 import stat
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from prima import __version__
-from prima.deferred import dataclass, field
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, UsageError
 from prima.pool import Died, cores, spread
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
 
-from prima.deferred import dataclass, field
 from prima.errors import did_you_mean, one_of
 from prima.values import Value, outside, quoted, read_value, within
 

@@ -11,12 +11,12 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from os.path import dirname, isabs, isfile, join, realpath, relpath
 from typing import Any
 
 from prima.codes import CODES
-from prima.deferred import dataclass, field, pattern
 from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean
 from prima.markup.reader import decode
 from prima.markup.tree import MARKUP, Source
@@ -25,7 +25,7 @@ SETTINGS = "prima.toml"
 KINDS = (".xml", ".vxml", ".grxml", ".gram", ".abnf")
 """How the names of documents end."""
 WORD = "prima-ignore"
-COMMENT = pattern(rf"\s*{WORD}\b\s*(:?)\s*(\S*)\s*(.*?)\s*", re.DOTALL)
+COMMENT = re.compile(rf"\s*{WORD}\b\s*(:?)\s*(\S*)\s*(.*?)\s*", re.DOTALL)
 FORM = f"Write <!-- {WORD}: CODE reason -->."
 OF_SCENARIOS = frozenset(
     [
@@ -34,7 +34,7 @@ OF_SCENARIOS = frozenset(
     ]
 )
 """Codes of warnings that a document may get from a scenario alone: nobody knows which do not."""
-ENTRY = pattern(r"^\s*\[\[\s*ignore\s*\]\]", re.MULTILINE)
+ENTRY = re.compile(r"^\s*\[\[\s*ignore\s*\]\]", re.MULTILINE)
 KEYS = ("code", "files", "reason")
 
 Position = tuple[int, int]

@@ -11,11 +11,11 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from itertools import islice
 from os.path import exists, getsize, isfile, normpath
 from typing import TYPE_CHECKING, TypeVar
 
-from prima.deferred import dataclass, field, pattern
 from prima.errors import (
     DocumentError,
     Place,
@@ -143,7 +143,7 @@ def read_application(
     return document, page.problems
 
 
-VOICEXML = pattern(rb"<(?:[\w.-]+:)?vxml[\s>/]")
+VOICEXML = re.compile(rb"<(?:[\w.-]+:)?vxml[\s>/]")
 """How the root element of VoiceXML begins."""
 
 
@@ -380,9 +380,9 @@ def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[
             yield Problem(place, "warning", "no-such-file", message, _nearby(folder / file))
 
 
-SCHEME = pattern(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
+SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 """How a URI begins that is no file's name."""
-GRAMMAR = pattern(rb"<(?:[\w.-]+:)?grammar[\s>/]")
+GRAMMAR = re.compile(rb"<(?:[\w.-]+:)?grammar[\s>/]")
 """How the root element of a grammar begins that is a file of its own."""
 GRAMMAR_FILES = (".gram", ".abnf", ".grxml", ".srgs")
 """How the names of files end that are nothing but grammars."""

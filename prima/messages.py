@@ -9,9 +9,8 @@ All of them are data: whoever receives one decides what it means.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
-
-from prima.deferred import dataclass, field
 
 Json = Any
 Data = Mapping[str, Json]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import islice
 from types import MappingProxyType
 from typing import Final
 
-from prima.deferred import dataclass, pattern
 from prima.errors import MANY_WORDS
 
 STRANGE: Final = "\u01c0"
@@ -127,16 +128,16 @@ WORD = r"(?:[^\W\d]|\$)[\w$]*"
 TEMPLATE = (
     r"`(?:\\.|\$\{(?:[^`{}]|`(?:\\.|[^`\\])*+`|\{[^{}]*+\})*+\}|[^`\\])*+`?"  # one in another
 )
-TOKEN = pattern(
+TOKEN = re.compile(
     rf"""//[^\n]*+|/\*(?:[\s\S]*?\*/|[\s\S]*)|"(?:\\[\s\S]|[^"\\\n])*+"?|'(?:\\[\s\S]|[^'\\\n])*+'?"""
     rf"""|{TEMPLATE}|[0-9][\w.]*+|#?{WORD}|\.\.\.|=>|[=!]==?|[<>]=|\?\.(?![0-9])|\S"""
 )
-PATTERN = pattern(r"/(?![/*])(?:\\.|\[(?:\\.|[^\]\\\n]){0,99}+\]|[^/\\\n\[])++/[a-z]*")
+PATTERN = re.compile(r"/(?![/*])(?:\\.|\[(?:\\.|[^\]\\\n]){0,99}+\]|[^/\\\n\[])++/[a-z]*")
 """A regular expression, where a division cannot stand."""
-INSERTED = pattern(r"\$\{((?:[^`{}]|\{[^{}]*\})*)\}")
+INSERTED = re.compile(r"\$\{((?:[^`{}]|\{[^{}]*\})*)\}")
 """An expression in a template."""
-IDENTIFIER = pattern(WORD)
-OPERAND = pattern(r"[\w$)\]\"'`]")
+IDENTIFIER = re.compile(WORD)
+OPERAND = re.compile(r"[\w$)\]\"'`]")
 """How something ends behind which a stroke divides."""
 BEFORE_OPERAND = frozenset(["return", "typeof", "case", "in", "of", "do", "else", "void", "delete"])
 PAIRS = {"(": ")", "[": "]", "{": "}"}
@@ -284,8 +285,8 @@ def assigned_names(code: str) -> set[str]:
     return (outside | inside - reader.declared() - reader.parameters()) - GLOBALS
 
 
-ASSIGNS = pattern(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
-DECLARES = pattern(r"\b(?:var|let|const|function|class)\b")
+ASSIGNS = re.compile(rf"{WORD}\s*(?:=(?!=)|(?:in|of)\b)")
+DECLARES = re.compile(r"\b(?:var|let|const|function|class)\b")
 
 
 class Reader:

@@ -7,9 +7,9 @@ import signal
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from prima.deferred import dataclass
 from prima.errors import RunError
 
 if TYPE_CHECKING:

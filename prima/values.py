@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache, lru_cache
-
-from prima.deferred import dataclass, pattern
 
 Value = str | int | float | bool
 
@@ -24,13 +23,13 @@ _START = (
 _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
 """Characters that go on with one, dot and hyphen apart; ``\\c`` in XML Schema."""
 
-DURATION = pattern(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
+DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
 NAME = rf"[{_START}][{_REST}.\-]*"
 TARGET = f"#{NAME}"
 _WORD = rf"[{_START}$][{_REST}$]*"
 VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
 EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
-NUMBER = pattern(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 LONGEST_NAME = 500
 """Letters that a name may have."""
 XML_SPACE = " \t\r\n"
@@ -49,7 +48,7 @@ def well_formed(text: str) -> str:
     return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 
-HALF_PAIR = pattern(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
+HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
 """Half a surrogate pair in JSON of ECMAScript: an escape there; whole pairs are letters."""
 
 

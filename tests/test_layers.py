@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
-    {"deferred", "errors", "visible"},
+    {"errors", "visible"},
     {"diagnostics", "writing"},
     {"names", "values"},
     {"commands", "prelude"},
@@ -240,7 +240,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
 
 BESIDE_VALIDATE = (
     *("pymunk", "pydantic", "lxml", "_quickjs"),
-    *("json", "pathlib", "dataclasses", "urllib", "asyncio"),
+    "asyncio",
     *("prima.api", "prima.messages", "prima.session", "prima.sim", "prima.script.engine"),
 )
 """What checking an application of simple code does without, so that it starts quickly."""

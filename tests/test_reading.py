@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterator
 
 import pytest
@@ -81,33 +80,6 @@ def test_what_was_used_last_stays_longest() -> None:
     read_document("one more.xml", application(FORM.format("f")))
     assert "1.xml" not in reader._kept
     assert reader._kept["0.xml"].document is first
-
-
-@pytest.mark.parametrize("size", [1, 2 * reader.LARGE])
-@pytest.mark.parametrize("enabled", [True, False])
-def test_python_looks_for_garbage_as_before(size: int, enabled: bool) -> None:
-    good, bad = application(FORM.format("f") + " " * size), b"<nothing" + b" " * size
-    try:
-        gc.enable() if enabled else gc.disable()
-        read_document("a.xml", good)
-        assert gc.isenabled() == enabled
-        with pytest.raises(DocumentError):
-            read_document("b.xml", bad)
-        assert gc.isenabled() == enabled
-    finally:
-        gc.enable()
-
-
-def test_what_the_program_has_set_aside_stays_aside() -> None:
-    reader._aside.clear()
-    gc.freeze()
-    try:
-        aside = gc.get_freeze_count()
-        read_document("a.xml", application(FORM.format("f") + " " * 2 * reader.LARGE))
-        assert gc.get_freeze_count() > aside / 2
-    finally:
-        gc.unfreeze()
-        reader._aside.clear()
 
 
 CODE = [

@@ -5,12 +5,10 @@ from __future__ import annotations
 import codecs
 import json
 import os
-import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing
 
 import click
 from click.exceptions import Exit
@@ -77,7 +75,7 @@ def run_all(
     progress = _Progress(len(plan))
     exits: Counter[int] = Counter()
     earlier = 0
-    with _interruptible(), closing(run_batch(plan, options, workers)) as rows:
+    with closing(run_batch(plan, options, workers)) as rows:
         table = _Table(plan, form)
         try:
             for row in rows:
@@ -157,15 +155,3 @@ class _Progress:
         if self.shown:
             click.echo(f"\r{' ' * len(self.shown)} \r", err=True, nl=False)
         self.shown = ""
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Let Ctrl-C raise KeyboardInterrupt: it waits for processes, and has to end them."""
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
-from prima.deferred import dataclass
 from prima.errors import Problem
 from prima.grammar.chart import MAX_STEPS, Chart
 from prima.grammar.errors import GrammarError, Where, refuse

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Literal
 
-from prima.deferred import dataclass, field
 from prima.grammar.errors import Where
 from prima.grammar.media import Form
 from prima.messages import Json

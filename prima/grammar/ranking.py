@@ -8,10 +8,10 @@ that which takes more.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
-from prima.deferred import dataclass, field
 from prima.grammar.chart import Cell, Way
 from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
 from prima.grammar.text import Utterance

@@ -7,9 +7,9 @@ value of the last rule that it refers to, or else the text of its tokens.
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import Any, Literal
 
-from prima.deferred import dataclass
 from prima.errors import Place
 from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Tag, Words

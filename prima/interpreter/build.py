@@ -13,7 +13,6 @@ from prima.commands import (
     missing_argument,
     too_long,
 )
-from prima.deferred import pattern
 from prima.errors import Problem, parted
 from prima.interpreter.elements import (
     Act,
@@ -87,9 +86,9 @@ PARTS = {
 }
 """What elements are for that others are for as well; the rest go by their tags."""
 COMMANDS = frozenset(ACTING)
-EVENT = pattern(r"event|_message|\beval\b|valueOf|\\u")
+EVENT = re.compile(r"event|_message|\beval\b|valueOf|\\u")
 """What code has that may look at the event that is being handled."""
-DIALOG = pattern(rf"dialog|{STRANGE}|\beval\b|\bthis\b|valueOf|\\u")
+DIALOG = re.compile(rf"dialog|{STRANGE}|\beval\b|\bthis\b|valueOf|\\u")
 """What code has that may know the scope of a form, and put something into it."""
 ONLY_NEXT = frozenset(["next"])
 

@@ -10,7 +10,6 @@ from itertools import chain
 from typing import Any
 
 from prima.commands import TABLE_4_2, Argument, CommandType, check_argument, missing_argument
-from prima.deferred import pattern
 from prima.errors import Place, Problem, Severity, did_you_mean, few, parted
 from prima.interpreter.elements import (
     Act,
@@ -77,10 +76,10 @@ MANY_FORMS = 8
 MANY_STEPS = 200
 """Steps of one run beyond which its branches are not compared."""
 
-STRINGS = pattern(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
-ASSIGNMENT = pattern(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
-BRACES = pattern(r"\$?\{\{?\s*(\w+)\s*\}\}?")
-CALL = pattern(r"\s*\(")
+STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+ASSIGNMENT = re.compile(r"(?<![=!<>+*/%&|^-])(=)(?![=>])")
+BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+CALL = re.compile(r"\s*\(")
 """What expressions and texts are looked through for."""
 
 LEAVING = (Goto, Return, Exit)

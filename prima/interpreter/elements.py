@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from prima.deferred import dataclass, field, field_names
 from prima.interpreter.grammar import Answers, Grammar
 from prima.markup.tree import Node
 
@@ -361,7 +361,7 @@ class Form:
 
     def __getstate__(self) -> tuple[None, dict[str, Any]]:
         """What of it can be copied to another process: functions are written anew there."""
-        kept = {name: getattr(self, name) for name in field_names(type(self))}
+        kept = {name: getattr(self, name) for name in self.__slots__}
         return None, {**kept, "known": None, "reactions": None}
 
 

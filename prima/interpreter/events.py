@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from prima.commands import DEVICES
-from prima.deferred import dataclass
 from prima.errors import Place, Problem, guessable
 from prima.interpreter.elements import (
     Acts,

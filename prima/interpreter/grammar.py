@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING
-
-from prima.deferred import dataclass, field, pattern
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -19,7 +18,7 @@ from prima.script.budget import Budget
 
 CJK = r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 _BETWEEN_CJK = f"(?<=[{CJK}]) +| +(?=[{CJK}])"  # takes long to compile, and few texts need it
-_KEPT = pattern(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
+_KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 FEW = 8
 """So many alternatives are all tried."""
 MAX_STEPS = 100_000

@@ -10,11 +10,11 @@ their Python compiled once.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from prima.deferred import pattern
 from prima.interpreter.bounds import MAX_STEPS
 from prima.interpreter.content import SIMPLE
 from prima.interpreter.elements import (
@@ -59,7 +59,7 @@ DONE = Transfer()
 """There is nothing left to do: no handler takes the event, or its error has been handled."""
 DEEPEST = 30
 """Columns at which content may stand: how deep ``if`` may be inside each other."""
-WORD = pattern(r"[\w$]+")
+WORD = re.compile(r"[\w$]+")
 MOST_ACTS = 300
 """Pieces of content that are written out for one event."""
 MOST_LETTERS, MOST_WRITTEN = 40_000, 1_000_000

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterator
-from contextlib import contextmanager
+from dataclasses import dataclass
 
-from prima.deferred import dataclass
 from prima.errors import Problem, few_guesses
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
@@ -21,8 +19,6 @@ WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
 
 MOST_KEPT, MOST_KEPT_BYTES = 64, 2_000_000
 """How many documents are kept that have been read, and how many bytes they were read from."""
-LARGE = 20_000
-"""Bytes from which on a document is so many objects that looking for garbage among them counts."""
 
 
 @dataclass(slots=True)
@@ -53,7 +49,7 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     read = _kept.pop(file, None)
     if read is None or read.data != data or read.limits != limits:
         read = None  # the memory of the one before is free for this one
-        with _no_looking_for_garbage(len(data)), few_guesses():
+        with few_guesses():
             read = _Read(data, limits, *_read(file, data))
     _keep(file, read)
     return read.document, list(read.problems)
@@ -70,41 +66,6 @@ def _keep(file: str, read: _Read) -> None:
             break
         oldest = _kept.pop(name, None)
         left -= len(oldest.data) if oldest else 0
-
-
-@contextmanager
-def _no_looking_for_garbage(size: int) -> Iterator[None]:
-    """Keep Python from looking for garbage meanwhile: what is made of a document stays.
-
-    A large one's objects go to those that have been looked through already, unless the program
-    has set objects aside itself.
-    """
-    if not gc.isenabled():
-        yield
-        return
-    gc.disable()
-    try:
-        if size >= LARGE:
-            gc.collect(1)  # what is garbage now must not stay
-        yield
-        if size >= LARGE and not _objects_set_aside():
-            gc.freeze()
-            gc.unfreeze()
-    finally:
-        gc.enable()
-
-
-_aside: list[bool] = []
-
-
-def _objects_set_aside() -> bool:
-    """Whether the program has kept objects from being looked at, as the language server does.
-
-    Counting them takes long where there are some; so it is done until there are.
-    """
-    if not _aside and gc.get_freeze_count():
-        _aside.append(True)
-    return bool(_aside)
 
 
 def _read(file: str, data: bytes) -> tuple[Document, tuple[Problem, ...]]:

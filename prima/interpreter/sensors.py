@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import lru_cache
 
-from prima.deferred import pattern
 from prima.interpreter.elements import Document
 from prima.names import GLOBALS, STRANGE, free_names, tokens_of
 from prima.script.ecmascript import CONSTANTS
 
-SENSOR = pattern(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
-HIDING = pattern(
+SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
+HIDING = re.compile(
     r"""\bname\s*=\s*["']\s*(?:sensor|undefined|NaN|Infinity)\s*["']"""
     r"""|\bsensor\s*=[^=]|\b(?:var|let|const|function|class)\s+sensor\b"""
 )
 """Where a document declares, or a script gives a value to, what conditions take for granted."""
 OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
-UNCLEAR = pattern(
+UNCLEAR = re.compile(
     r"\bapplication\b(?!\s*\??\.\s*(?!valueOf)[\w$]+(?![\w$])(?!\s*[(]))"
     rf"|\bthis\b|{STRANGE}|\beval\b|\\"
 )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from prima.deferred import dataclass
 from prima.errors import Problem, did_you_mean, one_of
 from prima.interpreter.elements import (
     CommandTemplate,

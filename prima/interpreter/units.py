@@ -8,9 +8,9 @@ from outside is handled in the unit by the handlers of its items and its own alo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from prima.commands import TABLE_4_2, CommandType
-from prima.deferred import dataclass
 from prima.errors import Problem
 from prima.interpreter.elements import (
     Act,

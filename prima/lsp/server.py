@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import functools
-import gc
 import logging
 import os
 from collections.abc import Callable
@@ -305,10 +304,6 @@ def _warm() -> None:
     import prima.interpreter.checks
     import prima.sim.rehearsal
     import prima.voicexml.document  # noqa: F401
-
-    gc.collect()
-    gc.freeze()  # what is there now stays; looking at it again and again costs every check
-    gc.set_threshold(50_000, 10, 10)
 
 
 def _folders(server: Server) -> list[Path]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from prima.deferred import dataclass
+from dataclasses import dataclass
+
 from prima.errors import MOST_TOLD
 
 

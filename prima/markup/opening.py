@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 
-from prima.deferred import pattern
-
 BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
-DOCTYPE = pattern(rb"<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>", re.DOTALL)
+DOCTYPE = re.compile(rb"<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>", re.DOTALL)
 PIECES = ((b"<?", b"?>"), (b"<!--", b"-->"))
 """How processing instructions and comments begin and end."""
 

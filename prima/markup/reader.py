@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from prima.deferred import pattern
 from prima.errors import DocumentError, Place, Problem, did_you_mean
 from prima.markup.build import (
     MAX_NAME,
@@ -61,7 +60,7 @@ REMEDIES = (
     (r"CData", "It ends with ]]>."),
 )  # fmt: skip
 """The parser's words, and what the author may do."""
-ENCODING = pattern(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
+ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
 BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF16_LE, "utf-16"),
@@ -70,8 +69,8 @@ BOMS = (
     (b"\0<\0?", "utf-16-be"),
 )
 """How files of some encodings begin (XML 1.0, appendix F)."""
-LATE_DECLARATION = pattern(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
-TEMPLATE = pattern(r"<%|<\?php|<\?=")
+LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
+TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
 
 def _error(place: Place, code: str, message: str, remedy: str = "") -> DocumentError:
@@ -330,7 +329,7 @@ WORDS = (
     (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
 )
 """The parser's words, and plainer ones."""
-OPEN_QUOTE = pattern(r"""=\s*(["'])[^"'<]*\Z""")
+OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
 
 
 def _clearer(source: Source, place: Place, message: str, remedy: str) -> tuple[Place, str, str]:

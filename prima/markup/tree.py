@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
-from prima.deferred import dataclass, field, pattern
 from prima.errors import Place
 
-MARKUP = pattern(
+MARKUP = re.compile(
     r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']|"[^"]*"|'[^']*')*+>"""
     r"""|(?P<start><)(?:[^>"']|"[^"]*"|'[^']*')*+>""",
     re.DOTALL,
 )
 """A piece of markup of a well-formed document; a start tag has its group."""
-NAME = pattern(r"<[^\s/>]+")
-ATTRIBUTE = pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
-PIECE = pattern(
+NAME = re.compile(r"<[^\s/>]+")
+ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+PIECE = re.compile(
     r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|(?P<plain>[^<&]+)|.", re.DOTALL
 )
 """A piece of text as written: it gives no character, several as they are, or one."""

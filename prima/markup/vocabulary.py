@@ -8,9 +8,8 @@ fills the tables of the language reference; a test holds the three together.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Literal
-
-from prima.deferred import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 
-from prima.deferred import dataclass, field
 from prima.errors import Place
 from prima.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 
-from prima.deferred import dataclass, field
 from prima.errors import Place
 from prima.markup.tree import Node
 

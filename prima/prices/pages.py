@@ -5,9 +5,9 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from urllib.parse import urldefrag, urlsplit
 
-from prima.deferred import dataclass
 from prima.errors import DocumentError
 from prima.markup.tree import Node
 from prima.prices.model import Gap

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 
-from prima.deferred import dataclass, field
 from prima.markup.tree import Node
 from prima.messages import Cue
 from prima.sim.voice import timeline

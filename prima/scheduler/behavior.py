@@ -8,11 +8,11 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Final, Literal
 
 from prima.commands import CommandType
-from prima.deferred import dataclass, field
 from prima.messages import Command, Data, Group, Record
 from prima.scheduler.effects import Effects
 

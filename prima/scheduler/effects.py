@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from prima.commands import CommandType
-from prima.deferred import dataclass, field
 from prima.messages import Command, Data
 
 FAR = 0.5

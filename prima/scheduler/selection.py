@@ -8,7 +8,8 @@ devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
 
 from __future__ import annotations
 
-from prima.deferred import dataclass
+from dataclasses import dataclass
+
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.scheduler import rules
 from prima.scheduler.behavior import Behavior

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
-
-from prima.deferred import dataclass
 
 TIME_LIMIT = 0.5
 """Seconds of processor time that the tags of one utterance may take."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
-from prima.deferred import dataclass, pattern
 from prima.names import GLOBALS, RESERVED
 from prima.script.ecmascript import CONSTANTS, HELPERS, Scopes, index_of, number_text
 
@@ -106,10 +106,10 @@ ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
 DIGITS = frozenset("0123456789")
 LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$")
 WORD = LETTERS | DIGITS
-NUMBER = pattern(
+NUMBER = re.compile(
     r"(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w$.])", re.ASCII
 )
-ESCAPED = pattern(r"""(["'])(?:\\[^ux0-9\n\r\u2028\u2029]|(?!\1)[^\\\n\r])*\1""", re.ASCII)
+ESCAPED = re.compile(r"""(["'])(?:\\[^ux0-9\n\r\u2028\u2029]|(?!\1)[^\\\n\r])*\1""", re.ASCII)
 """A text in which characters are escaped by what stands for themselves, or for white space."""
 LONG_MARKS = ("===", "!==", "==", "!=", "<=", ">=", "&&", "||")
 MARKS = {

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 import operator
+import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from prima.deferred import pattern
 from prima.script.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
 
 if TYPE_CHECKING:
@@ -58,12 +58,12 @@ SHORT = 200
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
 """What ECMAScript takes for white space."""
-NUMERIC = pattern(
+NUMERIC = re.compile(
     r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
 )
-INDEX = pattern("0|[1-9][0-9]{0,9}")
+INDEX = re.compile("0|[1-9][0-9]{0,9}")
 MOST_INDEX = 2**32 - 2
-SURROGATE = pattern("[\ud800-\udfff]")
+SURROGATE = re.compile("[\ud800-\udfff]")
 HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
 """First and second halves of letters."""
 MISSING = object()

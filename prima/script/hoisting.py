@@ -8,7 +8,8 @@ the scope has already, and a ``function`` there under another name, from which t
 
 from __future__ import annotations
 
-from prima.deferred import dataclass, field
+from dataclasses import dataclass, field
+
 from prima.names import DECLARES, HEADED, PAIRS, Reader
 
 HIDDEN = "$_"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
-from prima.deferred import dataclass, field
 from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes
 from prima.messages import (

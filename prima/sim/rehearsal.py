@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
-from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read

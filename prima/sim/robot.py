@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from itertools import pairwise
 
-from prima.deferred import dataclass, field
 from prima.messages import (
     Command,
     Ended,

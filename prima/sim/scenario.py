@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
 from prima.commands import ABSENCE_MS, DEVICES, PATIENCE_MS, TABLE_4_2, Argument, CommandType
-from prima.deferred import dataclass, field
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
 from prima.interpreter.surroundings import nearest as nearest_name

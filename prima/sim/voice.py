@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 
-from prima.deferred import dataclass
 from prima.messages import Cue
 
 RATES = {"en": 14.0, "ja": 8.0, "zh": 5.0, "ko": 6.0}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from typing import Any
 
-from prima.deferred import dataclass, field
 from prima.errors import Place
 from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes

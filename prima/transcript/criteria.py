@@ -8,9 +8,8 @@ measured alike. Times in seconds.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
-from prima.deferred import dataclass, field
 from prima.messages import Record
 
 

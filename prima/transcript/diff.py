@@ -6,10 +6,9 @@ import json
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Literal
 
-from prima.deferred import dataclass, field
 from prima.transcript.measures import Summary
 from prima.transcript.table import Row
 from prima.visible import escaped, visible

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from prima.deferred import dataclass
 from prima.messages import Record
 from prima.transcript.criteria import Observer
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from prima.commands import TABLE_4_2
-from prima.deferred import dataclass
 from prima.errors import counted
 from prima.messages import Record
 from prima.visible import visible

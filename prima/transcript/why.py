@@ -5,8 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from prima.deferred import dataclass
 from prima.messages import Record
 from prima.transcript.table import Row
 

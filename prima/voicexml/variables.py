@@ -6,9 +6,9 @@ it is declared, and in a whole document if outside of all dialogs.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 
-from prima.deferred import pattern
 from prima.errors import Problem, did_you_mean
 from prima.markup.tree import Node
 from prima.names import (
@@ -36,7 +36,7 @@ LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog"])
 DIALOGS = ("form", "menu")
 SETUP = ("var", "script", "data")
 NOTHING = Scope()
-LISTED = pattern(r"\S+")
+LISTED = re.compile(r"\S+")
 """A name in a list of names."""
 
 Text = Callable[[Page, Node], str | None]
