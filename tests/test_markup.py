@@ -12,7 +12,7 @@ from prima.commands import Argument, check_argument
 from prima.errors import DocumentError, Problem
 from prima.interpreter.reader import read_document
 from prima.markup.reader import parse
-from prima.names import declared_names, free_names
+from prima.script.names import script_names
 from prima.sim.scenario import read_robot, read_scenario, read_world
 from tests.robot import read, xml
 
@@ -156,13 +156,13 @@ NAMES: list[tuple[str, set[str]]] = [
 
 @pytest.mark.parametrize(("code", "names"), NAMES)
 def test_names_that_code_uses_without_declaring_them(code: str, names: set[str]) -> None:
-    assert free_names(code).keys() == names
-    assert all(code[start:].startswith(name) for name, start in free_names(code).items())
+    assert script_names(code).free.keys() == names
+    assert all(code[start:].startswith(name) for name, start in script_names(code).free.items())
 
 
 def test_names_that_code_declares() -> None:
     code = "var {a, b: c} = o, d\nlet [e] = f; function g() {} class H {} i = 1"
-    assert declared_names(code) == {"a", "c", "d", "e", "g", "H"}
+    assert script_names(code).declared == {"a", "c", "d", "e", "g", "H"}
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_names_that_code_declares() -> None:
 )
 def test_names_are_found_in_time_in_hostile_code(code: str) -> None:
     began = time.monotonic()
-    declared_names(f"var x;{code}")
+    script_names(f"var x;{code}")
     assert time.monotonic() - began < 5
 
 

@@ -14,7 +14,6 @@ from prima import api
 from prima.interpreter import application
 from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
 from prima.interpreter.reader import read_document
-from prima.names import STRANGE
 from prima.script import compiling
 from prima.script.compiling import (
     BUILT_IN,
@@ -28,6 +27,7 @@ from prima.script.compiling import (
 from prima.script.ecmascript import CONSTANTS
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
+from prima.script.globals import STRANGE
 from prima.script.isolated import Engines
 
 ENGINE = Engine()

@@ -6,10 +6,10 @@ import contextlib
 
 import pytest
 
-from prima.names import assigned_names
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
 from prima.script.hoisting import hoisted
+from prima.script.names import script_names
 from tests.work import steps
 
 
@@ -136,7 +136,7 @@ def test_code_that_seems_to_be_a_text_stays_within_its_function() -> None:
 
 def work(code: str) -> int:
     """Steps that it takes to look through a script."""
-    return steps(lambda: (hoisted(code), assigned_names(code)))
+    return steps(lambda: (hoisted(code), script_names(code)))
 
 
 @pytest.mark.parametrize(

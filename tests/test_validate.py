@@ -651,6 +651,9 @@ def told(folder: Path, content: str, attributes: str = "", **others: str) -> lis
             '<form xmlns:p="urn:prima:dialogue:1"><block><p:turn angle-expr="x"/></block></form>',
             "x",
         ),
+        ("<form><block><script>var y = x;</script></block></form>", "x"),
+        ("<script>function f(y) { return x + y; }</script><form><var name='x'/></form>", "x"),
+        ("<form><block><script>x++;</script></block></form>", "x"),
     ],
 )
 def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, name: str) -> None:
@@ -671,6 +674,10 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
         '<form><block><log expr="session.connection + lastresult$.length"/></block></form>',
         '<catch event="e"><log expr="_event + x"/></catch><form><var name="x"/></form>',
         '<form><block><assign name="document.x" expr="1"/></block></form>',
+        '<form><var name="x"/><block><script>y = x; a: while (y--) break a;</script></block></form>',
+        "<script>with (Math) { var y = floor(PI); } function f() { return g() + y; }"
+        "function g() { try { f(); } catch (e) { return e; } }</script><form/>",
+        "<script>if (typeof x != 'undefined') eval('x');</script><form/>",
     ],
 )
 def test_a_variable_that_something_declares_is_none_to_tell(tmp_path: Path, content: str) -> None:

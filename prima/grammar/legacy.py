@@ -12,7 +12,8 @@ import re
 from functools import lru_cache
 
 from prima.grammar.model import Document
-from prima.names import PASSED
+from prima.script.names import script_names
+from prima.script.parse import Code, Node, inner, parse_expression, parse_script
 
 FORMATS = {
     "": "",
@@ -26,25 +27,16 @@ FORMATS = {
 """Tag formats and how their tags are read; where none is told, the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
-_SKIPPED = re.compile(PASSED, re.VERBOSE | re.DOTALL)
-_SIGN = r"(?:(?<![\w$.])|(?<=\.\.\.))\$(?:\$|(?P<rule>[^\W\d]\w*))?(?![\w$])"
-_DOLLAR = re.compile(_SIGN)
-_DOLLARS = re.compile(rf"(?P<passed>{PASSED})|{_SIGN}", re.VERBOSE | re.DOTALL)
-_DECLARED = re.compile(r"(?<![\w$.])(?:var|let|const|class|function)\s+(\$[\w$]*)")
-_PARAMETERS = re.compile(r"(?<![\w$.])function\b\s*+\*?\s*+[\w$]*+\s*+\(([^()]*)\)")
-_USED = re.compile(
-    r"[{,]\s*\w+\s*:|(?<!\.\.)\.\s*[\w$]+|(?<![\w$])(?P<own>out|rules|meta)(?![\w$])"
-)
+_OWN = frozenset(["out", "rules", "meta"])
 """Names of SISR as identifiers; those of properties are passed over."""
-_SISR = re.compile(r"(?<![\w.$])(?:out\b\s*[.=\[+]|(?:rules|meta)\s*[.\[])")
+_NAMES = ("identifier", "shorthand_property_identifier")
+_GIVES = ("assignment_expression", "augmented_assignment_expression", "variable_declarator")
 _SLOT = re.compile(r"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)\s*=(?!=)\s*(.+?)\s*")
 _GSL = re.compile(r"<\s*([A-Za-z_]\w*)\s+([^<>]+?)\s*>")
 _ALL_GSL = re.compile(rf"(?:\s*{_GSL.pattern})+\s*")
 _PIECE = re.compile(rf"{_STRING}|(?P<open>[\[{{(])|(?P<close>[\]}})])|(?P<end>;)|[^\s]|\s+")
 _WORDS = re.compile(r"[^\W\d][\w' -]*")
-_LITERAL = re.compile(r"""(?s)(?:"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\{.*\}|\[.*\])""")
 _CONSTANTS = {"true", "false", "null", "undefined"}
-_ASSIGNED = re.compile(r"(?<![=!<>])=(?!=)")
 
 
 def settle(document: Document) -> None:
@@ -64,45 +56,73 @@ def _drafted(codes: list[str], globals: list[str]) -> bool:
     """Whether tags are in the way of the drafts: with ``$`` and without any name of SISR 1.0."""
     if not any("$" in code for code in codes):
         return False
-    scripts = [_bare(code) for code in codes]
-    everything = [*scripts, *(_bare(code) for code in globals)]
-    if any(match["own"] for code in everything for match in _USED.finditer(code)):
+    everything = [script_names(code) for code in (*codes, *globals)]
+    used = {name for names in everything for name in (*names.read, *names.written)}
+    if used & _OWN:
         return False
-    declared = {name for code in everything for name in _declared(code)}
-    signs = {match[0] for code in scripts for match in _DOLLAR.finditer(code)}
+    declared = {name for names in everything for name in names.declared}
+    signs = {
+        name
+        for code in codes
+        for names in (script_names(code),)
+        for name in (*names.read, *names.written)
+        if name.startswith("$")
+    }
     return not signs <= declared
 
 
-def _declared(script: str) -> list[str]:
-    """The names with ``$`` that a script gives to variables and functions of its own."""
-    parameters = " ".join(_PARAMETERS.findall(script))
-    return _DECLARED.findall(script) + re.findall(r"\$[\w$]*", parameters)
-
-
-def _bare(code: str) -> str:
-    """A script without strings, comments and regular expressions."""
-    return _SKIPPED.sub(" ", code)
-
-
 def _guess(document: Document, codes: list[str]) -> str:
-    if any(_SISR.search(_bare(code)) for code in codes):
+    if any(_uses_sisr(code) for code in codes):
         return "script"
     bare = all(not _dollars(one) and not _slots(one) and not _value(one) for one in codes)
     return "literals" if bare and not document.globals else "legacy"
 
 
+def _uses_sisr(code: str) -> bool:
+    """Whether code looks at a variable of SISR 1.0 or gives it a value; mere words do not."""
+    if not any(name in code for name in _OWN):
+        return False
+    parsed = parse_script(code)
+    return parsed is not None and any(_is_sisr(parsed, node) for node in parsed.walk())
+
+
+def _is_sisr(code: Code, node: Node) -> bool:
+    if node.type != "identifier" or node.parent is None or node.parent.children[0] != node:
+        return False
+    around = node.parent.type
+    if around in ("member_expression", "subscript_expression"):
+        return code.of(node) in _OWN
+    return code.of(node) == "out" and (around in _GIVES or around == "binary_expression")
+
+
+def _signs(code: str) -> list[tuple[int, int, str]]:
+    """Where the drafts' variables stand in code: offsets and names."""
+    parsed = parse_script(code) if "$" in code else None
+    found = []
+    for node in parsed.walk() if parsed is not None else ():
+        if parsed is not None and node.type in _NAMES and parsed.of(node).startswith("$"):
+            found.append((parsed.start(node), parsed.end(node), parsed.of(node)))
+    return found
+
+
 def _dollars(code: str) -> bool:
-    return _DOLLAR.search(_bare(code)) is not None
+    return bool(_signs(code))
 
 
 def _value(code: str) -> bool:
-    return _LITERAL.fullmatch(code.strip()) is not None
+    """Whether a tag is a text, an array or an object."""
+    code = code.strip()
+    if code[:1] + code[-1:] in ("{}", "[]"):
+        return True
+    parsed = parse_expression(code)
+    value = inner(parsed) if parsed is not None else None
+    return value is not None and value.type == "string"
 
 
 @lru_cache(maxsize=4096)
 def translate(code: str) -> str:
     """A tag as a script of SISR 1.0."""
-    if _SISR.search(_bare(code)):
+    if _uses_sisr(code):
         return code
     if _dollars(code):
         return _from_dollars(code)
@@ -117,15 +137,14 @@ def translate(code: str) -> str:
 def _from_dollars(code: str) -> str:
     """``$`` is the rule's variable, ``$$`` the last rule's value, ``$name`` that of a rule."""
 
-    def put(match: re.Match[str]) -> str:
-        if match["passed"] is not None:
-            return match["passed"]
-        if match[0] == "$$":
-            return "rules.latest()"
-        return f"rules.{match['rule']}" if match["rule"] else "out"
-
-    script = _DOLLARS.sub(put, code)
-    if _ASSIGNED.search(_DOLLARS.sub("", code)):
+    pieces, at = [], 0
+    for start, end, name in _signs(code):
+        value = {"$": "out", "$$": "rules.latest()"}.get(name, f"rules.{name[1:]}")
+        pieces += [code[at:start], value]
+        at = end
+    script = "".join([*pieces, code[at:]])
+    parsed = parse_script(code)
+    if parsed is not None and any(node.type in _GIVES for node in parsed.walk()):
         return script
     return f"out = ({script}\n);"
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
 from prima.grammar.model import BuiltIn, Choice, Document, Part, Reference, Repeat, Sequence, Tag
-from prima.names import GLOBALS, assigned_names, declared_names, free_names
 from prima.script.budget import Budget
+from prima.script.globals import GLOBALS
+from prima.script.names import script_names
+from prima.script.parse import parse_script
 
 SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
@@ -17,10 +18,6 @@ ELSEWHERE = frozenset(
     ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
 )
 """Variables that applications have, and tags have not."""
-_RULE = re.compile(r"(?<![\w$.])(?:rules|meta)\s*\.\s*([^\W\d]\w*)(?!\w)(?!\s*\()")
-_OTHER_TEXT = re.compile(
-    r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[^\n]*|/\*.*?\*/', re.DOTALL
-)
 LOST = "what needs it is not taken"
 
 
@@ -52,9 +49,8 @@ def _script(document: Document, tag: Tag) -> str:
 
 def _unknown(document: Document, sound: dict[int, str]) -> Iterator[Problem]:
     """Names that are neither SISR's nor given a value by any tag of the document."""
-    codes = [*sound.values()]
-    own = {name for code in codes for name in (*declared_names(code), *assigned_names(code))}
-    known = own | SISR
+    names = [script_names(code) for code in sound.values()]
+    known = set(SISR).union(*(one.declared | one.written for one in names))
     for tag in document.globals:
         yield from _names(tag, sound.get(id(tag), ""), known)
     for rule in document.rules.values():
@@ -66,10 +62,8 @@ def _unknown(document: Document, sound: dict[int, str]) -> Iterator[Problem]:
 
 
 def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
-    used = {*free_names(code), *(ELSEWHERE & set(re.findall(r"(?<![\w$.])\w+", _bare(code))))}
-    for name in sorted(used - known):
-        if re.search(rf"\btypeof\s+{re.escape(name)}\b", code):
-            continue
+    names = script_names(code)
+    for name in sorted({*names.free, *(ELSEWHERE & names.read.keys())} - known):
         message = f'The tag uses "{name}", which nothing in the grammar declares: {LOST}.'
         remedy = did_you_mean(name, known | GLOBALS - ELSEWHERE)
         remedy = remedy or f"For the text itself write '{name}' in quotes."
@@ -78,7 +72,7 @@ def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
 
 def _rules(tag: Tag, code: str, rules: set[str]) -> Iterator[Problem]:
     """Rules by name, of which the tag's own rule refers to none."""
-    for name in dict.fromkeys(_RULE.findall(_bare(code))):
+    for name in _rules_used(code):
         if name in rules:
             continue
         message = f'The tag uses the rule "{name}", to which its own rule does not refer.'
@@ -86,8 +80,20 @@ def _rules(tag: Tag, code: str, rules: set[str]) -> Iterator[Problem]:
         yield Problem(tag.where(), "warning", "no-such-rule", message, remedy)
 
 
-def _bare(code: str) -> str:
-    return _OTHER_TEXT.sub(" ", code)
+def _rules_used(code: str) -> list[str]:
+    """The rules whose values or texts a tag looks at: ``rules.name``, ``meta.name``."""
+    found: list[str] = []
+    parsed = parse_script(code)
+    for node in parsed.walk() if parsed is not None else ():
+        if node.type != "member_expression" or node.parent is None:
+            continue
+        holder, part = node.child_by_field_name("object"), node.child_by_field_name("property")
+        called = node.parent.type == "call_expression"
+        if holder is None or part is None or called or holder.type != "identifier":
+            continue
+        if parsed is not None and parsed.of(holder) in ("rules", "meta"):
+            found.append(parsed.of(part))
+    return [*dict.fromkeys(found)]
 
 
 def _held(body: Part) -> tuple[list[Tag], set[str]]:

@@ -67,8 +67,8 @@ from prima.interpreter.units import (
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
-from prima.names import HANDLED, RESERVED, STRANGE
 from prima.script.evaluation import SCOPES
+from prima.script.globals import HANDLED, RESERVED, STRANGE
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:

@@ -58,17 +58,12 @@ from prima.interpreter.units import (
     units_of,
 )
 from prima.markup.tree import Node
-from prima.names import (
-    HANDLED,
-    Known,
-    Scope,
-    declared_names,
-    free_names,
-    handled_names,
-    is_only_asked,
-)
 from prima.script.compiling import compiled
 from prima.script.evaluation import EngineLost, ScriptError
+from prima.script.globals import HANDLED
+from prima.script.known import Known, Scope
+from prima.script.names import expression_names, script_names
+from prima.script.parse import parse_expression
 from prima.values import nearest, read_value
 
 MANY_FORMS = 8
@@ -565,7 +560,9 @@ class Checker:
     def _setup_names(setup: Iterable[Declare | Script]) -> set[str]:
         names: set[str] = set()
         for act in setup:
-            names |= {act.name} if isinstance(act, Declare) else declared_names(act.code.code)
+            names |= (
+                {act.name} if isinstance(act, Declare) else script_names(act.code.code).declared
+            )
         return names
 
     def _names(self) -> None:
@@ -597,7 +594,7 @@ class Checker:
         for form, declare in self.acts.of(Declare):
             self._own(form).add(declare.name)
         for form, script in self.acts.of(Script):
-            self._own(form).update(declared_names(script.code.code))
+            self._own(form).update(script_names(script.code.code).declared)
         for form, loop in self.acts.of(Foreach):
             self._own(form).add(loop.item)
         for form, items in self.forms:
@@ -707,17 +704,15 @@ class Checker:
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _expression(self, expr: Expression, known: Known) -> None:
-        plain = compiled(expr.code)
-        if plain is not None or self._compiles(expr):
-            names = free_names(expr.code) if plain is None else plain.names
-            for name, start in names.items():
+        if compiled(expr.code) is not None or self._compiles(expr):
+            names = expression_names(expr.code)
+            for name, start in names.free.items():
                 if name not in known:
                     bare = expr.code.strip() == name and expr.node.tag != "value"
                     called = CALL.match(expr.code, start + len(name)) is not None
                     self._undeclared(_place_in(expr, start), name, known, bare, called)
-            for name, start in handled_names(expr.code).items():
-                asked = is_only_asked(expr.code, start)
-                if not (asked or name in known or id(expr.node) in self._handling):
+            for name, start in names.handled.items():
+                if not (name in known or id(expr.node) in self._handling):
                     self._unhandled(_place_in(expr, start), name)
             self._assigns(expr)
 
@@ -734,21 +729,20 @@ class Checker:
 
     def _assigns(self, expr: Expression) -> None:
         """A condition that gives a variable a value, where a comparison was meant."""
-        code = expr.code
-        for comparison in ("==", "!=", "<=", ">=", "=>"):
-            code = code.replace(comparison, "")
-        if "=" not in code or expr.attribute not in ("cond", "when"):
+        if "=" not in expr.code or expr.attribute not in ("cond", "when"):
             return
-        found = ASSIGNMENT.search(STRINGS.sub(lambda text: "_" * len(text[0]), expr.code))
-        if found:
-            message = "This condition gives a variable a value; it does not compare."
-            place = _place_in(expr, found.start(1))
-            problem = Problem(place, "warning", "assigning-condition", message, "Write ==.")
-            self.problems.append(problem)
+        parsed = parse_expression(expr.code)
+        for node in parsed.walk() if parsed is not None else ():
+            if parsed is not None and node.type == "assignment_expression":
+                message = "This condition gives a variable a value; it does not compare."
+                place = _place_in(expr, parsed.start(node.children[1]))
+                problem = Problem(place, "warning", "assigning-condition", message, "Write ==.")
+                self.problems.append(problem)
+                return
 
     def _script(self, act: Script, known: Known) -> None:
         if self._compiles(act.code, script=True):
-            for name, start in free_names(act.code.code).items():
+            for name, start in script_names(act.code.code).free.items():
                 if name not in known:
                     message = f'The script uses "{name}", which nothing declares.'
                     place = _place_in(act.code, start)

@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import lru_cache
 
 from prima.interpreter.elements import Document
-from prima.names import GLOBALS, STRANGE, free_names, tokens_of
 from prima.script.ecmascript import CONSTANTS
+from prima.script.globals import STRANGE
+from prima.script.names import Names, expression_names, script_names
+from prima.script.parse import Code, Node, parse_expression, parse_script
 
-SENSOR = re.compile(r"\bsensor\b(?:\s*\??\.\s*([\w$]+))?")
-HIDING = re.compile(
-    r"""\bname\s*=\s*["']\s*(?:sensor|undefined|NaN|Infinity)\s*["']"""
-    r"""|\bsensor\s*=[^=]|\b(?:var|let|const|function|class)\s+sensor\b"""
-)
-"""Where a document declares, or a script gives a value to, what conditions take for granted."""
-OTHER = frozenset(["application", "document", "dialog", "session", "event", "_event", "_message"])
-UNCLEAR = re.compile(
-    r"\bapplication\b(?!\s*\??\.\s*(?!valueOf)[\w$]+(?![\w$])(?!\s*[(]))"
-    rf"|\bthis\b|{STRANGE}|\beval\b|\\"
-)
-"""By what code may look at ``sensor`` without saying so."""
-
-
+TAKEN = CONSTANTS.keys() | {"sensor"}
+"""Names that conditions take for granted."""
 NOTHING_READ: frozenset[str] = frozenset()
 """What :func:`sensors_read` gives for a document that depends on no sensor."""
 
 
 def hides_sensors(document: Document) -> bool:
     """Whether the document may have a variable of its own by a name that conditions look at."""
-    return HIDING.search(document.node.source.text) is not None
+    return any(
+        node.attributes.get("name", "").strip() in TAKEN for node in document.node.walk()
+    ) or any(
+        names.opaque or not TAKEN.isdisjoint(names.declared | names.written | names.changed)
+        for names in _names(document)
+    )
+
+
+def _names(document: Document) -> Iterator[Names]:
+    yield from (expression_names(expression.code) for expression in document.expressions)
+    yield from (script_names(code) for code in _scripts(document))
 
 
 @lru_cache(maxsize=1000)
@@ -39,11 +38,10 @@ def sensors_of(code: str) -> frozenset[str] | None:
 
     None where it may depend on anything else, or where which ones cannot be told.
     """
-    used = {token.text for token in tokens_of(code)}
-    found = SENSOR.findall(code)
-    if free_names(code) or used & (OTHER | (GLOBALS - CONSTANTS.keys()) - {"sensor"}):
+    names = expression_names(code)
+    if names.opaque or not names.read.keys() <= TAKEN:
         return None
-    return frozenset(found) if found and all(found) else None
+    return _looked_at(parse_expression(code)) or None
 
 
 def sensors_read(document: Document) -> frozenset[str] | None:
@@ -66,26 +64,69 @@ def _sensors_read(document: Document) -> frozenset[str] | None:
     if any(sensors_of(watch.when.code) is None for watch in (*document.watches, *inner)):
         return None
     read: set[str] = set()
-    for code in map(_without_texts, _codes(document)):
-        found = SENSOR.findall(code)
-        if UNCLEAR.search(code) or not all(found):
+    for parsed in _codes(document):
+        found = _looked_at(parsed)
+        if found is None:
             return None
-        read.update(found)
+        read |= found
     return frozenset(read)
 
 
-def _without_texts(code: str) -> str:
-    """Code without what is only said in it; a template may hold code."""
-    kept = (one.text for one in tokens_of(code) if not one.text.startswith(("'", '"')))
-    return " ".join(kept)
+def _looked_at(code: Code | None) -> frozenset[str] | None:
+    """The sensors that code looks at; None where it may look at others without saying so."""
+    if code is None or not code.sound:
+        return None
+    read = set()
+    for node in code.walk():
+        if node.type not in NAMED:
+            continue
+        text = code.of(node)
+        if node.type == "this" or text == "eval" or STRANGE in text or "\\" in text:
+            return None
+        if text == "application" and _member(code, node) in ("", "valueOf"):
+            return None
+        if text == "sensor":
+            whole = node.parent if node.type == "property_identifier" else node
+            part = _member(code, whole)
+            if not part:
+                return None
+            read.add(part)
+    return frozenset(read)
 
 
-def _codes(document: Document) -> Iterator[str]:
+NAMED = frozenset(
+    [
+        "identifier",
+        "property_identifier",
+        "shorthand_property_identifier",
+        "this",
+        "escape_sequence",
+    ]
+)
+"""Nodes that may name a sensor, or anything else."""
+
+
+def _member(code: Code, node: Node | None) -> str:
+    """The member of a node's value that is looked at; empty if it is none, or a method."""
+    parent = node.parent if node is not None else None
+    if parent is None or parent.type != "member_expression" or parent.children[0] != node:
+        return ""
+    if parent.parent is not None and parent.parent.type == "call_expression":
+        return ""
+    part = parent.child_by_field_name("property")
+    return code.of(part) if part is not None else ""
+
+
+def _scripts(document: Document) -> Iterator[str]:
+    return (node.own_text for node in document.node.walk() if node.tag == "script")
+
+
+def _codes(document: Document) -> Iterator[Code | None]:
     """All code of a document, with the variables that elements name."""
-    for expression in document.expressions:
-        yield expression.code
+    yield from (parse_expression(expression.code) for expression in document.expressions)
+    yield from (parse_script(code) for code in _scripts(document))
     for node in document.node.walk():
-        if node.tag == "script":
-            yield node.own_text
         for name in ("name", "namelist"):
-            yield node.attributes.get(name, "")
+            value = node.attributes.get(name, "")
+            if any(word in value for word in ("sensor", "application", STRANGE)):
+                yield from (parse_expression(word) for word in value.split())

@@ -9,22 +9,15 @@ from dataclasses import dataclass, replace
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.scan import Attr, Page, Tag
 from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
-from prima.names import (
-    GLOBALS,
-    IDENTIFIER,
-    INSERTED,
-    RESERVED,
-    declared_names,
-    free_names,
-    tokens_of,
-)
+from prima.script.globals import GLOBALS, RESERVED
+from prima.script.names import expression_names, script_names
 from prima.voicexml.vocabulary import VOICEXML
 
 ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
 LETTERS = {"&lt;": "<", "&gt;": ">", "&amp;": "&", "&quot;": '"', "&apos;": "'"}
 WORD = re.compile(r"\S+")
-SCOPES = ("document", "dialog", "application")
-OF_DOCUMENT = re.compile(r"(?:document|application)\.\s*$")
+OF_DOCUMENT = ("document", "application")
+"""Objects whose members are variables of the document."""
 KNOWN = RESERVED | GLOBALS
 LONGEST_CODE = 100_000
 """Characters of code beyond which its names are not looked for."""
@@ -128,33 +121,12 @@ def _code(code: str, first: int, tag: Tag) -> Iterator[Mark]:
     """Variables that an expression uses."""
     if len(code) > LONGEST_CODE:
         return
-    home, free = _home("variable", tag), free_names(code)
-    for name, start in _names(code):
-        if name in free or (start and code[start - 1] == "."):
-            at = first + start
-            scope = home
-            if OF_DOCUMENT.search(code, max(start - 100, 0), start):
-                scope = -1
-            yield Mark(("variable",), name, at, at + len(name), False, tag, scope)
-
-
-def _names(code: str) -> Iterator[tuple[str, int]]:
-    """Names of variables in code, members left out, with where they stand."""
-    tokens = tokens_of(code)
-    texts = ["", "", *(token.text for token in tokens), ""]
-    for index, token in enumerate(tokens, 2):
-        if token.text.startswith("`"):
-            for inside in INSERTED.finditer(token.text):
-                for name, start in _names(inside[1]):
-                    yield name, token.start + inside.start(1) + start
-        if not IDENTIFIER.fullmatch(token.text) or token.text in KNOWN:
-            continue
-        if texts[index - 1] in (".", "?."):
-            if texts[index - 2] not in SCOPES:
-                continue
-        elif texts[index + 1] == ":" and texts[index - 1] in ("{", ","):
-            continue
-        yield token.text, token.start
+    home = _home("variable", tag)
+    for use in expression_names(code).uses:
+        if use.name not in KNOWN:
+            at = first + use.start
+            scope = -1 if use.holder in OF_DOCUMENT else home
+            yield Mark(("variable",), use.name, at, at + len(use.name), False, tag, scope)
 
 
 def _script(code: str, tag: Tag) -> Iterator[Mark]:
@@ -163,15 +135,15 @@ def _script(code: str, tag: Tag) -> Iterator[Mark]:
     inner = inner if "<![CDATA[" in code else plain(inner)
     if len(inner) > LONGEST_CODE:
         return
-    home, own, free = _home("variable", tag), declared_names(inner), free_names(inner)
+    home, names = _home("variable", tag), script_names(inner)
     told: set[str] = set()
-    for name, start in _names(inner):
-        at = tag.end + start
-        if name in own:
-            yield Mark(("variable",), name, at, at + len(name), name not in told, tag, home)
-            told.add(name)
-        elif name in free:
-            yield Mark(("variable",), name, at, at + len(name), False, tag, home)
+    for use in names.uses:
+        name, at = use.name, tag.end + use.start
+        if use.holder or name in KNOWN:
+            continue
+        defines = name in names.declared and name not in told
+        yield Mark(("variable",), name, at, at + len(name), defines, tag, home)
+        told.add(name)
 
 
 def _given(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:

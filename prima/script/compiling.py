@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from prima.names import GLOBALS, RESERVED
 from prima.script.ecmascript import CONSTANTS, HELPERS, Scopes, index_of, number_text
+from prima.script.globals import GLOBALS, RESERVED
 
 Function = Callable[[Scopes], Any]
 Where = Callable[[str], tuple[str, ...]]

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.names import IDENTIFIER, STRANGE, WORD, assigned_names, declared_names
 from prima.prelude import (
     CLOCK,
     DATE,
@@ -41,7 +40,9 @@ from prima.script.evaluation import (
     plain_number,
     whole,
 )
+from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted, hoisted
+from prima.script.names import script_names
 from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
 from prima.values import well_formed, well_formed_json
 
@@ -439,13 +440,13 @@ class Engine:
                 return self._wrapped(script), script
             except ScriptError:  # something in it is not what it seems
                 pass
-        script = Hoisted(code, others=sorted(declared_names(code)))
+        script = Hoisted(code, others=sorted(script_names(code).declared))
         return self._wrapped(script), script
 
     def _wrapped(self, script: Hoisted) -> Any:
         # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
         # scope, which here is the script's own (VoiceXML 5.3.12).
-        loose = sorted(assigned_names(script.code) - {*script.variables})
+        loose = sorted(script_names(script.code).written - {*script.variables} - GLOBALS)
         known = "||".join(f"n in {_short(scope)}" for scope in self._scopes)
         declare = (
             f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){INTO}[n]=undefined;"

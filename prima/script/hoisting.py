@@ -8,20 +8,17 @@ the scope has already, and a ``function`` there under another name, from which t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from prima.names import DECLARES, HEADED, PAIRS, Reader
+from prima.script.names import FUNCTIONS, bound_names
+from prima.script.parse import Code, Node, parse_script
 
 HIDDEN = "$_"
 """What is added to the name of a function at the top."""
-CONTINUES = frozenset("([`+-/*.")
-"""How a line may begin that goes on with an expression of the line before."""
-ENDS = frozenset(["", ";", "}"])
-STATEMENTS = HEADED | {"switch", "catch"}
-"""What has a head in brackets, and a block behind it."""
-BLOCKS = frozenset(["{", ")", "else", ":"])
-"""Behind what a function may be declared in a block."""
-CLOSING = frozenset(PAIRS.values())
+DECLARED_FUNCTIONS = ("function_declaration", "generator_function_declaration")
+CLASSES = ("class_declaration", "class")
+WORDS = ("var", "let", "const", "function", "class")
 
 
 @dataclass(slots=True)
@@ -47,123 +44,110 @@ class Hoisted:
 
 def hoisted(code: str) -> Hoisted | None:
     """Take a script's declarations out of it; None where its text cannot be seen through."""
-    return _Hoister(code).hoist() if DECLARES.search(code) else Hoisted(code)
+    if not any(word in code for word in WORDS):
+        return Hoisted(code)
+    parsed = parse_script(code)
+    if parsed is None or not parsed.sound:
+        return None
+    return _Hoister(parsed).hoist()
 
 
-class _Hoister(Reader):
+class _Hoister:
     """Finds what is declared outside of functions."""
 
-    def __init__(self, code: str) -> None:
-        super().__init__(code)
-        self.script = Hoisted(code)
+    def __init__(self, code: Code) -> None:
+        self.code = code
+        self.script = Hoisted(code.text)
         self.edits: list[tuple[int, int, str]] = []
         """From where to where which text is put."""
-        self.shares = not {"function", "=>", "class"}.isdisjoint(self.texts)
-        self.depth = 0
-        """In how many brackets the piece stands that is looked at."""
+        nodes = list(code.walk())
+        self.shares = any(node.type in FUNCTIONS or node.type in CLASSES for node in nodes)
+        self.names = {code.of(node) for node in nodes if node.type == "identifier"}
 
     def hoist(self) -> Hoisted | None:
         """See :func:`hoisted`."""
-        script, index = self.script, 0
-        brackets = sum(text in PAIRS or text in CLOSING for text in self.texts)
-        if len(self.ends) != brackets:
-            return None
-        while index < len(self.tokens):
-            text = self.texts[index]
-            self.depth += (text in PAIRS) - (text in CLOSING)
-            if text in ("var", "let", "const") and self._text(index - 1) != ".":
-                self._declared(index)
-            elif text in ("function", "class") and self._is_keyword(index):
-                self._named(index)
-            index = self._next(index)
+        script = self.script
+        for node in self._outside():
+            if node.type == "for_in_statement":
+                self._loop(node)
+            elif node.type in ("variable_declaration", "lexical_declaration"):
+                self._declaration(node)
+            elif node.type in DECLARED_FUNCTIONS or node.type == "class_declaration":
+                self._named(node)
         script.variables = [*dict.fromkeys([*script.variables, *script.functions])]
         script.others = [*dict.fromkeys(script.others)]
         hidden = {f"{name}{HIDDEN}" for name in script.functions}
-        if not hidden.isdisjoint(self.texts) or not {*script.variables}.isdisjoint(script.others):
+        if not (hidden.isdisjoint(self.names) and {*script.variables}.isdisjoint(script.others)):
             return None  # a name stands for two things
-        pieces, at = [], 0
-        for start, end, text in sorted(self.edits):
-            pieces += [self.code[at:start], text]
-            at = end
-        script.code = "".join([*pieces, self.code[at:]])
+        script.code = self._edited()
         return script
 
-    def _declared(self, index: int) -> None:
+    def _outside(self) -> Iterator[Node]:
+        """The nodes that are in no function and no class, in the order of the text."""
+        waiting = [self.code.root]
+        while waiting:
+            node = waiting.pop()
+            yield node
+            if node.type not in FUNCTIONS and node.type not in CLASSES:
+                waiting += reversed(node.named_children)
+
+    def _edited(self) -> str:
+        pieces, at, text = [], 0, self.code.text
+        for start, end, put in sorted(self.edits):
+            pieces += [text[at:start], put]
+            at = end
+        return "".join([*pieces, text[at:]])
+
+    def _declaration(self, node: Node) -> None:
         """Variables are declared; those of ``var`` belong to the scope whatever they stand in.
 
         At the top ``let`` and ``const`` do where functions may share them; a function's own
         variables are quicker, and they are given to the scope at the end.
         """
-        kind, names = self.texts[index], sorted(self._declaration(index + 1))
-        ours = kind == "var" or self.depth == 0
-        moves = kind == "var" or (ours and self.shares)
-        if moves and names and self._text(index + 1) not in PAIRS:
-            start = self.tokens[index].start
-            self.edits += [(start, start + len(kind), " " * len(kind)), *self._closed(index + 1)]
-            self.script.variables += names
-        elif ours:
-            self.script.others += names
+        declarators = (one for one in node.named_children if one.type == "variable_declarator")
+        first = next(declarators).child_by_field_name("name")
+        names = bound_names(self.code, node)
+        if node.type == "lexical_declaration":
+            if node.parent != self.code.root:
+                return
+            if not self.shares:
+                self.script.others += names
+                return
+        last = node.children[-1]
+        open_ended = last.type != ";" or last.is_missing
+        if self._move(node.children[0], first, names) and open_ended:
+            end = self.code.end(node)
+            self.edits.append((end, end, ";"))  # the next line might go on with it now
 
-    def _named(self, index: int) -> None:
-        """A function or a class begins, which is declared if it has a name and is no operand."""
-        at = index + 1 + (self._text(index + 1) == "*")
-        name = self._text(at)
-        if not self._is_name(name):
+    def _loop(self, node: Node) -> None:
+        """``for (var x in y)``."""
+        kind, left = node.child_by_field_name("kind"), node.child_by_field_name("left")
+        if kind is not None and kind.type == "var" and left is not None:
+            self._move(kind, left, bound_names(self.code, left))
+
+    def _move(self, word: Node, first: Node | None, names: list[str]) -> bool:
+        """Make assignments of declarations, unless they begin with a pattern."""
+        moves = first is not None and first.type == "identifier"
+        if moves:
+            start, end = self.code.start(word), self.code.end(word)
+            self.edits.append((start, end, " " * (end - start)))
+        (self.script.variables if moves else self.script.others).extend(names)
+        return moves
+
+    def _named(self, node: Node) -> None:
+        """A function or class is declared."""
+        name = node.child_by_field_name("name")
+        if name is None:
             return
-        before = self._text(index - 1 - (self._text(index - 1) == "async"))
-        headed = before == ")" and self._text(self.ends.get(index - 1, 0) - 1) in HEADED
-        alone = before in ENDS or (self._begins_line(index) and not headed)
-        function = self.texts[index] == "function"
-        if alone and function and self.depth == 0:
-            end = self.tokens[at].start + len(name)
+        top, text = node.parent == self.code.root, self.code.of(name)
+        if top and node.type in DECLARED_FUNCTIONS:
+            end = self.code.end(name)
             self.edits.append((end, end, HIDDEN))
-            self.script.functions.append(name)
+            self.script.functions.append(text)
             self.script.shifts.append(self._place(end))
-        elif (alone and self.depth == 0) or (function and (alone or before in BLOCKS)):
-            self.script.others.append(name)
-
-    def _next(self, index: int) -> int:
-        """Where to look next: behind the body of a function that begins here."""
-        text = self.texts[index]
-        if text in ("function", "class") and self._is_keyword(index):
-            at = self._function_end(index) if text == "function" else self._class_body(index)
-            return max(at, index) + 1
-        if text == "=>" and self._text(index + 1) == "{":
-            return self.ends.get(index + 1, index) + 1
-        if self._is_method(index) and self._may_be_method(index):
-            return self.ends.get(self.ends[index + 1] + 1, index) + 1
-        return index + 1
-
-    def _class_body(self, index: int) -> int:
-        """Where the body of a class ends."""
-        at = index + 1
-        while at < len(self.tokens) and self.texts[at] != "{":
-            at = self.ends.get(at, at) + 1
-        return self.ends.get(at, index)
-
-    def _may_be_method(self, index: int) -> bool:
-        """Whether what stands before ``( ... ) {`` is a method's name, not the head of a statement."""
-        text = self.texts[index]
-        if text == "function" or text in PAIRS or text in (")", "}"):
-            return False
-        return text not in STATEMENTS or self._text(index - 1) == ","
-
-    def _closed(self, index: int) -> list[tuple[int, int, str]]:
-        """What ends declarators without a value where the next line would go on with them."""
-        made = []
-        at, name = index, True
-        while at < len(self.tokens) and self.texts[at] not in (";", ")", "}", "]"):
-            after = self._text(at + 1)
-            if name and after[:1] in CONTINUES and self.tokens[at + 1].fresh:
-                end = self.tokens[at].start + len(self.texts[at])
-                made.append((end, end, ";"))
-                break
-            if at > index and self._next_statement(at):
-                break
-            at = self.ends.get(at, at) + 1
-            name = self._text(at - 1) == ","
-        return made
+        elif top or node.type in DECLARED_FUNCTIONS:
+            self.script.others.append(text)
 
     def _place(self, offset: int) -> tuple[int, int]:
-        line = self.code.count("\n", 0, offset)
-        return line + 1, offset - self.code.rfind("\n", 0, offset) - 1
+        before = self.code.text[:offset]
+        return before.count("\n") + 1, offset - before.rfind("\n") - 1

@@ -6,13 +6,11 @@
 from __future__ import annotations
 
 import json
-import re
 from time import thread_time
 from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.names import PASSED
 from prima.prelude import (
     CLOCK,
     DATE,
@@ -114,35 +112,30 @@ CHECK = r"""
 """Compiles a script by itself, which ends before it begins; it declares nothing outside."""
 
 
-_PIECE = re.compile(
-    rf"{PASSED} | (?P<open>[(\[{{]) | (?P<close>[)\]}}]) | (?<![\w$.])(?P<word>let|const)(?=\s|[\[{{])"
-    r" | (?:\A|(?<=[;}\n]))\s*+(?P<class>class)\s+(?P<name>[A-Za-z_$][\w$]*)",
-    re.VERBOSE | re.DOTALL,
-)
-
-
 def shared(code: str) -> str:
     """A script whose declarations at its top are all of the global scope, by which others see them.
 
-    ``let`` and ``const`` would be seen nowhere else where code is evaluated by a function.
+    ``let``, ``const`` and ``class`` would be seen nowhere else where code is evaluated by a function.
     """
-    depth, in_class = 0, False
+    if not any(word in code for word in ("let", "const", "class")):
+        return code
+    from prima.script.parse import parse_script
 
-    def put(match: re.Match[str]) -> str:
-        nonlocal depth, in_class
-        depth += (match["open"] is not None) - (match["close"] is not None)
-        text = match[0]
-        if depth == 0 and match["word"]:
-            return "var"
-        if depth == 0 and match["class"]:
-            in_class = True
-            return text.replace("class", f"var {match['name']} = class", 1)
-        if depth == 0 and in_class and text == "}":
-            in_class = False
-            return "};"
-        return text
-
-    return _PIECE.sub(put, code)
+    parsed = parse_script(code)
+    if parsed is None or not parsed.sound:
+        return code
+    pieces, at = [], 0
+    for node in parsed.root.children:
+        name = node.child_by_field_name("name")
+        if node.type == "lexical_declaration":
+            word = node.children[0]
+            pieces += [code[at : parsed.start(word)], "var"]
+            at = parsed.end(word)
+        elif node.type == "class_declaration" and name is not None:
+            start, end = parsed.start(node), parsed.end(node)
+            pieces += [code[at:start], f"var {parsed.of(name)} = {code[start:end]};"]
+            at = end
+    return "".join([*pieces, code[at:]])
 
 
 class Sandbox:

@@ -8,9 +8,10 @@ from typing import Any
 
 import _quickjs as quickjs
 
-from prima.names import declared_names
 from prima.prelude import MEMORY_LIMIT, STACK_LIMIT, reason
 from prima.script.evaluation import ScriptError
+from prima.script.names import script_names
+from prima.script.parse import MOST_CODE
 
 MOST_NAMES = 5_000
 """Names that one script may declare: the engine compares each with all others."""
@@ -70,7 +71,9 @@ class Syntax:
         Raises:
             ScriptError: with the line and column inside the script.
         """
-        if len(declared := declared_names(code)) > MOST_NAMES:
+        if len(code) > MOST_CODE:
+            raise ScriptError(f"it has more than {MOST_CODE:,} characters")
+        if len(declared := script_names(code).declared) > MOST_NAMES:
             raise ScriptError(f"it declares {len(declared):,} names, more than {MOST_NAMES:,}")
         self._compile(code, f"return [function () {{\n{code}\n}}]")
         self._compile(code, f"return (function () {{\n{code}\n}})")

@@ -9,18 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 
-from prima.errors import Problem, did_you_mean
+from prima.errors import Place, Problem, did_you_mean
 from prima.markup.tree import Node
-from prima.names import (
-    IDENTIFIER,
-    Known,
-    Scope,
-    assigned_names,
-    declared_names,
-    free_names,
-    is_only_asked,
-)
-from prima.script.compiling import compiled
+from prima.script.globals import IDENTIFIER
+from prima.script.known import Known, Scope
+from prima.script.names import Names, expression_names, script_names
 from prima.voicexml.check import NAMING, is_code
 from prima.voicexml.document import Page
 
@@ -78,16 +71,29 @@ def _outside(page: Page, text: Text) -> Scope:
     return found
 
 
+def _script(page: Page, node: Node, text: Text) -> Names:
+    """The names in a script, which may stand in a file.
+
+    Raises:
+        Unknown: it cannot be read.
+    """
+    elsewhere = {"src", "srcexpr"} & node.attributes.keys()
+    code = text(page, node) if elsewhere else node.own_text
+    if code is None:
+        raise Unknown
+    found = script_names(code)
+    if found.opaque:
+        raise Unknown
+    return found
+
+
 def _declared(page: Page, top: Node, text: Text) -> Scope:
     """The names that an element and all that it holds declare."""
     found = Scope()
     for node in top.walk():
         if node.key == "script":
-            code = text(page, node) if {"src", "srcexpr"} & node.attributes.keys() else None
-            if code is None and ("src" in node.attributes or "srcexpr" in node.attributes):
-                raise Unknown
-            code = code or node.own_text
-            found |= declared_names(code) | assigned_names(code) | set(free_names(code))
+            names = _script(page, node, text)
+            found |= names.declared | names.written
         if name := node.get(NAMING.get(node.key, "")):
             found |= {name, f"{name}$"}
     return found
@@ -102,25 +108,35 @@ def _used(top: Node, known: Known) -> Iterator[Problem]:
             yield from _listed(node, "name", known)
         elif node.key in LISTING:
             yield from _listed(node, "namelist", known)
+        elif node.key == "script" and not {"src", "srcexpr"} & node.attributes.keys():
+            yield from _in_script(node, known)
 
 
 def _in_code(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
-    code = node.get(attribute)
-    plain = compiled(code)
-    for name, start in (free_names(code) if plain is None else plain.names).items():
-        if name not in ALWAYS and name not in known and not is_only_asked(code, start):
-            yield _undeclared(node, attribute, start, name, known)
+    for name, start in expression_names(node.get(attribute)).free.items():
+        if name not in ALWAYS and name not in known:
+            place = node.source.inside(node.index, attribute, start)
+            yield _undeclared(place, name, known)
+
+
+def _in_script(node: Node, known: Known) -> Iterator[Problem]:
+    """What a script in the document reads that nothing declares: also in functions."""
+    code = node.own_text
+    for name, start in script_names(code).free.items():
+        if name not in ALWAYS and name not in known:
+            place = node.source.inside(node.index, "", start)
+            yield _undeclared(place, name, known)
 
 
 def _listed(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
     for whole in LISTED.finditer(node.get(attribute)):
         head = whole[0].partition(".")[0]
         if IDENTIFIER.fullmatch(head) and head not in ALWAYS and head not in known:
-            yield _undeclared(node, attribute, whole.start(), head, known)
+            place = node.source.inside(node.index, attribute, whole.start())
+            yield _undeclared(place, head, known)
 
 
-def _undeclared(node: Node, attribute: str, start: int, name: str, known: Known) -> Problem:
+def _undeclared(place: Place, name: str, known: Known) -> Problem:
     message = f'The variable "{name}" is not declared: this will be error.semantic.'
     remedy = did_you_mean(name, known.written()) or f'Declare it: <var name="{name}"/>.'
-    place = node.source.inside(node.index, attribute, start)
     return Problem(place, "warning", "undeclared-variable", message, remedy)

@@ -1,0 +1,39 @@
+"""The variables that code of a document may see, by the scopes that hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import islice
+
+from prima.errors import MANY_WORDS
+from prima.script.globals import IDENTIFIER
+
+
+class Scope(set[str]):
+    """The names of the variables of one scope."""
+
+    @cached_property
+    def written(self) -> list[str]:
+        """Those that code can hold and that are not our own, as many as are guessed among.
+
+        Asked for once all names are there.
+        """
+        meant = (one for one in self if IDENTIFIER.fullmatch(one) and not one.startswith("$"))
+        return list(islice(meant, MANY_WORDS + 1))
+
+
+class Known:
+    """The variables that some code may see: looked up in their scopes, which are never joined."""
+
+    __slots__ = ("_scopes",)
+
+    def __init__(self, *scopes: Scope) -> None:
+        self._scopes = scopes
+
+    def __contains__(self, name: object) -> bool:
+        return any(name in scope for scope in self._scopes)
+
+    def written(self) -> Iterator[str]:
+        """Variables that an author may have meant."""
+        return (name for scope in self._scopes for name in scope.written)
