@@ -14,8 +14,6 @@ from prima import loading
 from prima.certificate import certificates
 from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses
 from prima.ignores import Ignores
-from prima.interpreter.reactions import MOST_LETTERS, reaction_of
-from prima.interpreter.reader import read_document
 from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.desk import Desk
@@ -138,20 +136,3 @@ def test_ignores_are_found_by_their_places(tmp_path: Path) -> None:
     assert [one.place.line for one in ignores.left(problems)] == [3]
     ignores.check(str(path))
     assert ignores.told() == []
-
-
-def test_the_functions_of_a_documents_reactions_are_bounded() -> None:
-    long = " + ".join(["n"] * 8)
-    forms = "".join(
-        f'<form id="s{index}"><on event="tick">{f"""<assign name="m" expr="{long}"/>""" * 200}'
-        f'<assign name="m" expr="{index}"/><goto next="#s{(index + 1) % 9}"/></on></form>'
-        for index in range(9)
-    )
-    short = '<form id="short"><on event="tick"><assign name="m" expr="n"/></on></form>'
-    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="ring">'
-    names = '<var name="n" expr="1"/><var name="m" expr="0"/>'
-    document, _ = read_document("ring.xml", f"{head}{names}{forms}{short}</prima>".encode())
-    *large, small = document.forms.values()
-    assert all(reaction_of(document, one, ((one.handlers[0], ("tick",)),)) is None for one in large)
-    assert reaction_of(document, small, ((small.handlers[0], ("tick",)),)) is not None
-    assert 0 < document.written < MOST_LETTERS

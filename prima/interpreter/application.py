@@ -39,7 +39,6 @@ from prima.interpreter.frame import (
 from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Armed, Handling
 from prima.interpreter.plain import PlainEngine, is_plain
-from prima.interpreter.reactions import DONE
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.markup.tree import Node
 from prima.messages import (
@@ -89,8 +88,6 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self.kind = document.kind
         self.arguments = arguments or {}
         super().__init__(evaluator_of(document, engines or Engines()))
-        self.quick = isinstance(self.engine, PlainEngine) == document.plain
-        """Whether what an event does may be done by a function, where nobody can look into it."""
         self.application = self.engine.named("application")
         self.execute = Executor(self)
         self.handling = Handling(self)
@@ -137,26 +134,8 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
                 self.renew(now)
         frame = self.frame
         if frame is not None:
-            item, reactions, reaction = frame.item, frame.form.reactions, None
-            if reactions is not None:
-                key = event.name if item is None else (item.name, event.name)
-                reaction = reactions.get(key)
             try:
-                if reaction is None or not self.quick or frame.units:
-                    self.handling.dispatch(event, frame)
-                else:
-                    react, given = reaction
-                    way = react(self, frame, event, given)
-                    if way is None:
-                        if frame.form.items:
-                            self.go_on(frame)
-                    elif type(way) is not Form:
-                        if way is not DONE:
-                            self.transfer(frame, way)
-                    elif frame.asked or frame.fibers or frame.caller or self._timers:
-                        self.transfer(frame, GoForm(way.id))
-                    else:  # there is nothing to leave and nothing to begin: the frame may stay
-                        frame.form, frame.state = way, next(self.states)
+                self.handling.dispatch(event, frame)
             except (Thrown, ScriptError, GoOut) as error:
                 self._rescue(error)
         self.cause = None

@@ -68,7 +68,7 @@ from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.script.evaluation import SCOPES
-from prima.script.globals import HANDLED, RESERVED, STRANGE
+from prima.script.globals import HANDLED, RESERVED
 from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:
@@ -88,8 +88,6 @@ PARTS = {
 COMMANDS = frozenset(ACTING)
 EVENT = re.compile(r"event|_message|\beval\b|valueOf|\\u")
 """What code has that may look at the event that is being handled."""
-DIALOG = re.compile(rf"dialog|{STRANGE}|\beval\b|\bthis\b|valueOf|\\u")
-"""What code has that may know the scope of a form, and put something into it."""
 ONLY_NEXT = frozenset(["next"])
 
 
@@ -268,7 +266,6 @@ class Builder:
             scripted=self.scripted,
             counting=self.counting,
             curious=self.any_has(EVENT),
-            tampering=self.any_has(DIALOG),
         )
         self.settle_units(document)
         return document

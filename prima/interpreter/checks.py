@@ -58,7 +58,7 @@ from prima.interpreter.units import (
     units_of,
 )
 from prima.markup.tree import Node
-from prima.script.compiling import compiled
+from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.globals import HANDLED
 from prima.script.known import Known, Scope

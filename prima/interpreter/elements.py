@@ -316,21 +316,6 @@ class Unit(Item):
     longest: int = 60000
 
 
-class Known:
-    """What has been found out of the events that have happened in a form.
-
-    Each is kept by its name, or by that of the item that was being visited and its own.
-    """
-
-    __slots__ = ("seen", "taking")
-
-    def __init__(self) -> None:
-        self.taking: dict[Any, Any] = {}
-        """The handlers in scope that take it."""
-        self.seen: dict[Any, int] = {}
-        """How often it has happened until now."""
-
-
 @dataclass(slots=True)
 class Form:
     """A state of the application."""
@@ -346,23 +331,14 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
-    known: Known | None = field(default=None, repr=False, compare=False)
-    """What has been found out of the events that have happened in it."""
-    reactions: dict[Any, Any] | None = field(default=None, repr=False, compare=False)
-    """What events do in it that have happened often, as functions and what these are called with;
-    None if that cannot be. They are kept by their names, or by the name of the item that was being
-    visited and theirs."""
-
+    takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
+    """The handlers that take an event in it, as far as it has happened: by the event's name, or by
+    the name of the item that was being visited and the event's."""
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""
 
     def __post_init__(self) -> None:
         self.bare = not (self.items or self.setup or self.watches)
-
-    def __getstate__(self) -> tuple[None, dict[str, Any]]:
-        """What of it can be copied to another process: functions are written anew there."""
-        kept = {name: getattr(self, name) for name in self.__slots__}
-        return None, {**kept, "known": None, "reactions": None}
 
 
 Content = tuple[Form | None, tuple[Act, ...], Node]
@@ -396,12 +372,6 @@ class Document:
     """Whether any code may look at the event that is being handled."""
     sensors: tuple[frozenset[str] | None] | None = None
     """Which sensors any code may look at; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
-    tampering: bool = False
-    """Whether code that an engine evaluates may put variables into the scope of a form."""
-    dialog_names: frozenset[str] | None = None
-    """The names that scopes of forms may have; None until somebody has looked."""
-    written: int = 0
-    """Characters of the functions that have been written for its reactions."""
     _contents: list[Content] | None = field(default=None, repr=False, compare=False)
 
     def contents(self) -> list[Content]:

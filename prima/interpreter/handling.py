@@ -6,9 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
-from prima.interpreter.elements import Expression, Form, Handler, Item, Known, Watch
+from prima.interpreter.elements import Expression, Handler, Item, Watch
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
-from prima.interpreter.reactions import reaction_of
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.interpreter.sensors import hides_sensors, sensors_of
 from prima.messages import Event, Json, Notice
@@ -19,8 +18,6 @@ if TYPE_CHECKING:
 
 MAX_FIBERS = 64
 """Handlers that may be under way at once in a state."""
-OFTEN = 4
-"""How often an event happens in a state until what it does is written as a function."""
 MOST_KEPT = 1_000
 """Names of events for which a form keeps its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
@@ -34,13 +31,6 @@ Key = str | tuple[str, str]
 def key_of(item: Item | None, event: str) -> Key:
     """By what a form keeps what an event does in it."""
     return event if item is None else (item.name, event)
-
-
-def known_of(form: Form) -> Known:
-    """What has been found out of the events of a form."""
-    if form.known is None:
-        form.known = Known()
-    return form.known
 
 
 class Handling:
@@ -84,8 +74,6 @@ class Handling:
         item = frame.item
         self.count_event(frame, item, event.name)
         candidates = self.takers(frame, item, event.name)
-        if self.owner.quick and not frame.units:
-            self._count_reaction(frame.form, key_of(item, event.name), candidates)
         if candidates:
             fiber = Fiber(frame, local=self.event_scope(event))
             handler = self._select(frame, fiber, item, candidates)
@@ -226,7 +214,7 @@ class Handling:
         """The handlers in scope whose names take an event; a form keeps what has been found."""
         if frame.units:
             return taking(self._in_scope(frame, item), event)
-        kept = known_of(frame.form).taking
+        kept = frame.form.takers
         key = key_of(item, event)
         found = kept.get(key)
         if found is None:
@@ -234,20 +222,6 @@ class Handling:
                 kept.clear()
             found = kept[key] = taking(self._in_scope(frame, item), event)
         return found
-
-    def _count_reaction(self, form: Form, key: Key, candidates: Taking) -> None:
-        """Write what an event does here as a function, once it has happened often."""
-        known = known_of(form)
-        seen = known.seen.get(key, 0) + 1
-        if len(known.seen) >= MOST_KEPT:
-            known.seen.clear()
-            form.reactions = None
-        known.seen[key] = seen
-        if seen == OFTEN:
-            if form.reactions is None:
-                form.reactions = {}
-            form.reactions[key] = reaction_of(self.owner.document, form, candidates)
-            known.taking.pop(key, None)  # it is seldom looked for again
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""

@@ -1,7 +1,7 @@
 """The evaluator of documents whose expressions all need no engine.
 
 An application that has no others (:func:`is_plain`) is evaluated here: each expression is a Python
-function of the scopes that it sees (:mod:`prima.script.compiling`); any other application runs
+function of the scopes that it sees (:mod:`prima.script.compile`); any other application runs
 in an :class:`~prima.script.engine.Engine`.
 """
 
@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from prima.interpreter.elements import Document
-from prima.script.compiling import (
-    FUNCTIONS,
-    Compiled,
-    Function,
-    anywhere,
-    compiled,
-    function_of,
-    quickly,
-)
+from prima.script.compile import Compiled, Function, compiled
 from prima.script.ecmascript import (
     UNDEFINED,
     Named,
@@ -52,8 +44,6 @@ COUNTED = 10
 """As many characters is the work of counting a variable."""
 MOST_PIECES = 50_000
 """Pieces of code that a document may have to be evaluated here."""
-SELDOM = 30
-"""Evaluations after which an expression is compiled to what takes less time."""
 
 
 def is_plain(document: Document) -> bool:
@@ -77,7 +67,7 @@ def _are_plain(codes: Iterable[str]) -> bool:
 
 def weighed(found: Compiled) -> Function:
     """The function of an expression; a long one counts as work."""
-    call, pieces = function_of(found.source), found.pieces
+    call, pieces = found.call, found.pieces
     if pieces <= FEW_PIECES:
         return call
 
@@ -106,23 +96,15 @@ class PlainEngine:
         self._long: WeakValueDictionary[int, Scope] | None = None
         """Scopes in which a long text has been put, by their id()."""
         self._added = 0
+        self._functions: dict[str, Function] = {}
+        """The functions of expressions that have been evaluated, by their code."""
 
     def _call(self, code: str) -> Function:
         found = compiled(code)
         if found is None:
             raise ScriptError(f"SyntaxError: {code} needs an engine")
-        call = weighed(found)
-        left = SELDOM
-
-        def counted(scopes: Scopes) -> Any:
-            nonlocal left
-            left -= 1
-            if left == 0:
-                FUNCTIONS[code] = weighed(quickly(code, "scopes", anywhere) or found)
-            return call(scopes)
-
-        FUNCTIONS[code] = counted
-        return counted
+        call = self._functions[code] = weighed(found)
+        return call
 
     def scope(self, **values: Json) -> Scope:
         """A new scope."""
@@ -174,11 +156,11 @@ class PlainEngine:
 
     def condition(self, code: str, scopes: Scopes) -> bool:
         """Evaluate an expression as a condition."""
-        return truth((FUNCTIONS.get(code) or self._call(code))(scopes))
+        return truth((self._functions.get(code) or self._call(code))(scopes))
 
     def text(self, code: str, scopes: Scopes) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
-        value = (FUNCTIONS.get(code) or self._call(code))(scopes)
+        value = (self._functions.get(code) or self._call(code))(scopes)
         if value is UNDEFINED:
             return "null"
         if isinstance(value, list | dict):
@@ -187,7 +169,7 @@ class PlainEngine:
 
     def value(self, code: str, scopes: Scopes) -> Json:
         """Evaluate an expression and give its value as plain data."""
-        return outward((FUNCTIONS.get(code) or self._call(code))(scopes))
+        return outward((self._functions.get(code) or self._call(code))(scopes))
 
     def get(self, scope: Scope, name: str) -> Json:
         """A variable's value as plain data."""
@@ -199,7 +181,7 @@ class PlainEngine:
         Raises:
             ScriptError: it is no array.
         """
-        array = (FUNCTIONS.get(code) or self._call(code))(scopes)
+        array = (self._functions.get(code) or self._call(code))(scopes)
         if not isinstance(array, list):
             raise ScriptError(f"{code} is not an array")
         if len(array) > most:
@@ -208,7 +190,7 @@ class PlainEngine:
 
     def assign(self, scope: Scope, name: str, code: str, scopes: Scopes) -> None:
         """Evaluate an expression and give its value to a variable of a scope."""
-        self.put(scope, name, (FUNCTIONS.get(code) or self._call(code))(scopes))
+        self.put(scope, name, (self._functions.get(code) or self._call(code))(scopes))
 
     def assign_declared(self, name: str, code: str, scopes: Scopes) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
@@ -217,7 +199,9 @@ class PlainEngine:
             ScriptError: no scope declares it, or the expression fails.
         """
         scope = holder_of(name, scopes)
-        self.put(scope, name.rpartition(".")[2], (FUNCTIONS.get(code) or self._call(code))(scopes))
+        self.put(
+            scope, name.rpartition(".")[2], (self._functions.get(code) or self._call(code))(scopes)
+        )
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the values that there are here.

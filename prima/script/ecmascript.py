@@ -145,6 +145,8 @@ def work(scopes: Scopes, value: Any) -> None:
 
 def equal(first: Any, second: Any, scopes: Scopes) -> bool:
     """``==``, with the work counted."""
+    if type(first) is float and type(second) is float:
+        return first == second
     work(scopes, first)
     work(scopes, second)
     return alike(first, second)
@@ -167,6 +169,8 @@ def numeric(value: Any, scopes: Scopes) -> float:
 
 def add(first: Any, second: Any, scopes: Scopes) -> Any:
     """``+``, which joins texts as well."""
+    if type(first) is float and type(second) is float:
+        return first + second
     first, second = primitive(first), primitive(second)
     if not isinstance(first, str) and not isinstance(second, str):
         return number(first) + number(second)
@@ -195,6 +199,8 @@ def _arithmetic(act: Callable[[float, float], float]) -> Operation:
 
 def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
     def compare(first: Any, second: Any, scopes: Scopes) -> bool:
+        if type(first) is float and type(second) is float:
+            return act(first, second)
         first, second = primitive(first), primitive(second)
         if isinstance(first, str) and isinstance(second, str):
             if first.isascii() and second.isascii():
@@ -434,12 +440,7 @@ def outward(value: Any) -> Json:
     return plain_number(value)
 
 
-HELPERS: dict[str, Any] = {
-    "infinity": math.inf, "undefined": UNDEFINED, "sought": sought, "found": found, "member": member, "truth": truth,
-    "kind_of": kind_of, "equal": equal, "identical": identical, "numeric": numeric, "add": add,
-    "subtract": _arithmetic(operator.sub), "multiply": _arithmetic(operator.mul),
-    "divided": _arithmetic(divide), "remaining": _arithmetic(remainder),
-    "less": _comparison(operator.lt), "more": _comparison(operator.gt),
-    "at_most": _comparison(operator.le), "at_least": _comparison(operator.ge),
-}  # fmt: skip
-"""What expressions in Python know."""
+subtract, multiply = _arithmetic(operator.sub), _arithmetic(operator.mul)
+divided, remaining = _arithmetic(divide), _arithmetic(remainder)
+less, more = _comparison(operator.lt), _comparison(operator.gt)
+at_most, at_least = _comparison(operator.le), _comparison(operator.ge)

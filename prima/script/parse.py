@@ -9,17 +9,25 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import Literal
 
 import tree_sitter_javascript
 from tree_sitter import Language, Node, Parser, Tree
 
 __all__ = ["MOST_CODE", "Code", "Node", "parse_expression", "parse_script"]
 
-MOST_CODE = 1_000_000
+MOST_CODE = 300_000
 """Characters of code beyond which none is parsed."""
-MOST_LOOKING = 100_000_000
-"""Bound of the work in looking for the ends of regular expressions: the parser may read on from
-each stroke to the end of its line."""
+DEEPEST = 1_000
+"""Brackets inside each other beyond which code is not parsed: the parser calls itself for each."""
+CHUNK = 1_024
+"""Bytes that the parser is given at once."""
+MOST_READ = 8
+"""How often the parser may read code on average: of code with many faults it reads the same pieces
+again and again in looking for the ends of texts, comments and regular expressions."""
+MOST_STEPS = 0.1
+"""Hundreds of steps that the parser may take for each byte; code without faults takes half as many."""
+BRACKET = re.compile(r"[()\[\]{}]")
 ASTRAL = re.compile("[\U00010000-\U0010ffff]")
 LETTER = "\u2135"
 """A letter of 16 bits that is parsed in place of a longer one, so that offsets count characters."""
@@ -105,16 +113,49 @@ def inner(code: Code) -> Node | None:
 
 
 def _parse(code: str, parsed: str, before: int) -> Code | None:
-    if len(code) > MOST_CODE or _looking(code) > MOST_LOOKING:
+    if len(code) > MOST_CODE or _depth(code) > DEEPEST:
         return None
     if parsed.isascii():
-        return Code(code, Parser(_language()).parse(parsed.encode()), before, 1)
+        tree = _Reading(parsed.encode()).tree("utf8")
+        return None if tree is None else Code(code, tree, before, 1)
     data = ASTRAL.sub(LETTER, parsed).encode("utf-16-le", "surrogatepass")
-    return Code(code, Parser(_language()).parse(data, encoding="utf16le"), before, 2)
+    tree = _Reading(data).tree("utf16le")
+    return None if tree is None else Code(code, tree, before, 2)
 
 
-def _looking(code: str) -> int:
-    """How many characters may be read in looking for the ends of regular expressions."""
-    if len(code) < 10_000:
+class _Reading:
+    """Gives the parser code, and counts its work, which the same code always takes."""
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        self.reads = MOST_READ * (len(data) // CHUNK + 8)
+        self.steps = MOST_STEPS * len(data) + 100
+        """How many more there may be."""
+
+    def tree(self, encoding: Literal["utf8", "utf16le"]) -> Tree | None:
+        """The tree of the code; None if it takes too much work."""
+        parser = Parser(_language())
+        try:
+            made = parser.parse(self._read, encoding=encoding, progress_callback=self._stops)
+        except ValueError:  # it was stopped
+            return None
+        return made if self.reads >= 0 else None
+
+    def _read(self, at: int, _point: object) -> bytes:
+        self.reads -= 1
+        return self.data[at : at + CHUNK] if self.reads >= 0 else b""
+
+    def _stops(self, _at: int, _error: bool) -> bool:
+        self.steps -= 1
+        return self.steps < 0 or self.reads < 0
+
+
+def _depth(code: str) -> int:
+    """How deep brackets are at most inside each other, those in texts and comments counted too."""
+    if len(code) <= DEEPEST:
         return 0
-    return sum(line.count("/") * len(line) for line in code.split("\n"))
+    depth = deepest = 0
+    for bracket in BRACKET.findall(code):
+        depth = depth + 1 if bracket in "([{" else max(depth - 1, 0)
+        deepest = max(deepest, depth)
+    return deepest

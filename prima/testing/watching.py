@@ -95,7 +95,7 @@ def watching(states: States, marks: Marks | None) -> Iterator[None]:
 
 def _states(app: Interpreter, states: States) -> None:
     """Note every form that is begun, and what is active after one is left."""
-    begin, leave, app.quick = app.begin, app.leave, False
+    begin, leave = app.begin, app.leave
 
     def begun(frame: Any, setup: bool = True) -> Any:
         states.note(app.name, app.now, frame.form.id)

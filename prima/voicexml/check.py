@@ -16,7 +16,7 @@ from prima.interpreter.checks import given_to
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
-from prima.script.compiling import compiled
+from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.globals import IDENTIFIER, RESERVED
 from prima.script.isolated import IsolatedSyntax, syntax

@@ -1,0 +1,525 @@
+"""Expressions that need no engine, as functions of Python: names, members, literals and operators.
+
+Most expressions of documents are of this kind. Whatever could mean more (calls, functions,
+assignments, members that prototypes have) is left to the engine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from prima.script.ecmascript import (
+    CONSTANTS,
+    UNDEFINED,
+    Operation,
+    Scopes,
+    add,
+    at_least,
+    at_most,
+    divided,
+    equal,
+    found,
+    identical,
+    index_of,
+    kind_of,
+    less,
+    member,
+    more,
+    multiply,
+    number_text,
+    numeric,
+    remaining,
+    sought,
+    subtract,
+    truth,
+)
+from prima.script.globals import GLOBALS, RESERVED
+from prima.script.parse import Code, Node, inner, parse_expression
+
+Function = Callable[[Scopes], Any]
+
+MOST_CODE = 1_000
+"""Characters that code compiled here may have."""
+MOST_PIECES = 200
+"""Pieces of code beyond which an expression is left to the engine."""
+DEEPEST = 100
+"""Operators, members and brackets that may stand inside each other."""
+AS_LONG = 200
+"""Characters of kept code that is beyond all this which count for one piece more."""
+MOST_KEPT = 100_000
+"""Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
+VARIABLES = frozenset(
+    ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
+)
+"""Variables that the language itself declares."""
+WORDS = {"true": True, "false": False, "null": None}
+INHERITED = frozenset(
+    [
+        "constructor",
+        "toString",
+        "toLocaleString",
+        "valueOf",
+        "hasOwnProperty",
+        "isPrototypeOf",
+        "propertyIsEnumerable",
+        "__proto__",
+        "__defineGetter__",
+        "__defineSetter__",
+        "__lookupGetter__",
+        "__lookupSetter__",
+    ]
+)
+"""Names that every object has from its prototype, scopes included."""
+METHODS = frozenset(
+    [
+        "at",
+        "concat",
+        "copyWithin",
+        "fill",
+        "find",
+        "findIndex",
+        "findLast",
+        "findLastIndex",
+        "lastIndexOf",
+        "pop",
+        "push",
+        "reverse",
+        "shift",
+        "unshift",
+        "slice",
+        "sort",
+        "splice",
+        "includes",
+        "indexOf",
+        "join",
+        "keys",
+        "entries",
+        "values",
+        "forEach",
+        "filter",
+        "flat",
+        "flatMap",
+        "map",
+        "every",
+        "some",
+        "reduce",
+        "reduceRight",
+        "toReversed",
+        "toSorted",
+        "toSpliced",
+        "with",
+        "charCodeAt",
+        "charAt",
+        "codePointAt",
+        "endsWith",
+        "isWellFormed",
+        "toWellFormed",
+        "localeCompare",
+        "match",
+        "matchAll",
+        "normalize",
+        "padEnd",
+        "padStart",
+        "repeat",
+        "replace",
+        "replaceAll",
+        "search",
+        "split",
+        "startsWith",
+        "substr",
+        "substring",
+        "toLowerCase",
+        "toLocaleLowerCase",
+        "toUpperCase",
+        "toLocaleUpperCase",
+        "trim",
+        "trimEnd",
+        "trimStart",
+        "trimLeft",
+        "trimRight",
+        "anchor",
+        "big",
+        "blink",
+        "bold",
+        "fixed",
+        "fontcolor",
+        "fontsize",
+        "italics",
+        "link",
+        "small",
+        "strike",
+        "sub",
+        "sup",
+        "toExponential",
+        "toFixed",
+        "toPrecision",
+    ]
+)
+"""Members that texts, numbers and arrays have from theirs."""
+BUILT_IN = (GLOBALS - VARIABLES - CONSTANTS.keys()) | {
+    *("AsyncDisposableStack", "DisposableStack", "InternalError", "SuppressedError"),
+    *("atob", "btoa"),
+}
+"""Names of the engine's own."""
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
+OPERATIONS: dict[str, Operation] = {
+    "==": equal, "===": identical, "<": less, ">": more, "<=": at_most, ">=": at_least,
+    "+": add, "-": subtract, "*": multiply, "/": divided, "%": remaining,
+    "!=": lambda first, second, scopes: not equal(first, second, scopes),
+    "!==": lambda first, second, scopes: not identical(first, second, scopes),
+}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Compiled:
+    """An expression as a function of the scopes that it sees."""
+
+    call: Function
+    pieces: int
+    """Of about how many pieces of code it was made."""
+
+
+class _Kept:
+    expressions: dict[str, Compiled | None] = {}  # noqa: RUF012
+    """What has been compiled lately, by its code."""
+    pieces = 0
+    """Of all that is kept."""
+
+
+def compiled(code: str) -> Compiled | None:
+    """An expression as a function of the scopes it sees, or None if it needs an engine."""
+    if len(code) > MOST_CODE:
+        return None
+    if code not in _Kept.expressions:
+        made = _compile(code)
+        _Kept.pieces += made.pieces if made else 1 + len(code) // AS_LONG
+        if _Kept.pieces > MOST_KEPT:
+            _Kept.pieces = 0
+            _Kept.expressions.clear()
+        _Kept.expressions[code] = made
+        return made
+    return _Kept.expressions[code]
+
+
+def _compile(code: str) -> Compiled | None:
+    parsed = parse_expression(code)
+    node = inner(parsed) if parsed is not None else None
+    if parsed is None or node is None:
+        return None
+    pieces = 1 + node.descendant_count // 2
+    if pieces > MOST_PIECES:
+        return None
+    try:
+        return Compiled(_Builder(parsed).build(node, 0).call, pieces)
+    except _Beyond:
+        return None
+
+
+class _Beyond(Exception):
+    """The code is none of what is compiled here."""
+
+
+@dataclass(slots=True)
+class _Piece:
+    """Part of an expression."""
+
+    call: Function
+    place: tuple[int, int] | None = None
+    """Line and column of the last operator or name in it: an error of a member of it is told there,
+    as the engine tells it."""
+    optional: bool = False
+    """Whether it is a chain in which ``?.`` stands: its value may be :data:`CUT`."""
+
+
+CUT = object()
+"""The value of a chain that ``?.`` has ended."""
+
+
+def _constant(value: Any) -> Function:
+    return lambda _scopes: value
+
+
+class _Builder:
+    """Makes functions of the nodes of an expression's tree."""
+
+    def __init__(self, code: Code) -> None:
+        self.code = code
+
+    def build(self, node: Node, depth: int) -> _Piece:
+        """The function of an expression.
+
+        Raises:
+            _Beyond: it needs an engine.
+        """
+        make = MAKERS.get(node.type)
+        if make is None or depth > DEEPEST:
+            raise _Beyond
+        return make(self, node, depth + 1)
+
+    def part(self, node: Node, name: str, depth: int) -> _Piece:
+        """The function of an expression in an expression."""
+        held = node.child_by_field_name(name)
+        if held is None:
+            raise _Beyond
+        return self.build(held, depth)
+
+    def place(self, node: Node) -> tuple[int, int]:
+        """Line and column of a node."""
+        before = self.code.text[: self.code.start(node)]
+        return before.count("\n") + 1, len(before) - before.rfind("\n")
+
+    # Literals and names -----------------------------------------------------------------------
+
+    def number(self, node: Node, _depth: int) -> _Piece:
+        """A number, written in decimals."""
+        return _Piece(_constant(self._number(node)))
+
+    def _number(self, node: Node) -> float:
+        text = self.code.of(node)
+        whole = text.partition(".")[0]
+        if not set(text) <= NUMBER or (len(whole) > 1 and whole[0] == "0" and whole.isdigit()):
+            raise _Beyond
+        return float(text)
+
+    def text(self, node: Node, _depth: int) -> _Piece:
+        """A text in quotes."""
+        return _Piece(_constant(self._text(node)))
+
+    def _text(self, node: Node) -> str:
+        pieces = []
+        for part in node.named_children:
+            text = self.code.of(part)
+            if part.type == "escape_sequence":
+                if text[1] in UNCOMMON:
+                    raise _Beyond
+                text = ESCAPES.get(text[1:], text[1:])
+            pieces.append(text)
+        return "".join(pieces)
+
+    def word(self, node: Node, _depth: int) -> _Piece:
+        """``true``, ``false`` or ``null``."""
+        return _Piece(_constant(WORDS[self.code.of(node)]))
+
+    def name(self, node: Node, _depth: int) -> _Piece:
+        """A variable, looked for from the innermost scope."""
+        name = self._name(node)
+        line, column = place = self.place(node)
+
+        def call(scopes: Scopes) -> Any:
+            _, document, dialog, local = scopes
+            if name in local:
+                return local[name]
+            if name in dialog:
+                return dialog[name]
+            if name in document:
+                return document[name]
+            return sought(name, line, column, scopes)
+
+        return _Piece(call, place)
+
+    def _name(self, node: Node) -> str:
+        name = self.code.of(node)
+        if not name.isascii() or "\\" in name or name in BEYOND:
+            raise _Beyond
+        return name
+
+    def array(self, node: Node, _depth: int) -> _Piece:
+        """An array of literals: a new one at every evaluation."""
+        if any(one.type == "," for one in _doubled(node)):
+            raise _Beyond
+        values = [self._literal(one) for one in node.named_children]
+        return _Piece(lambda _scopes: values.copy())
+
+    def object(self, node: Node, _depth: int) -> _Piece:
+        """An object of literals: a new one at every evaluation."""
+        values: dict[str, Any] = {}
+        for pair in node.named_children:
+            key, value = pair.child_by_field_name("key"), pair.child_by_field_name("value")
+            if pair.type != "pair" or key is None or value is None:
+                raise _Beyond
+            if key.type not in ("property_identifier", "string"):
+                raise _Beyond
+            name = self._text(key) if key.type == "string" else self.code.of(key)
+            if name.isdigit() or name == "__proto__" or "\\" in name or not name.isascii():
+                raise _Beyond
+            values[name] = self._literal(value)
+        return _Piece(lambda _scopes: values.copy())
+
+    def _literal(self, node: Node) -> Any:
+        """A number, text or word in an array or object: nothing that is computed."""
+        if node.type == "unary_expression" and node.children[0].type == "-":
+            operand = node.children[1]
+            if operand.type == "number":
+                return -self._number(operand)
+        if node.type == "number":
+            return self._number(node)
+        if node.type == "string":
+            return self._text(node)
+        if node.type in WORDS:
+            return WORDS[node.type]
+        raise _Beyond
+
+    # Operators --------------------------------------------------------------------------------
+
+    def brackets(self, node: Node, depth: int) -> _Piece:
+        """An expression in brackets: ``?.`` in it ends no chain outside of it."""
+        held = node.named_children
+        if len(held) != 1:
+            raise _Beyond
+        piece = self.build(held[0], depth)
+        return _Piece(piece.call, piece.place)
+
+    def conditional(self, node: Node, depth: int) -> _Piece:
+        """``a ? b : c``."""
+        test, first, second = (
+            self.part(node, name, depth) for name in ("condition", "consequence", "alternative")
+        )
+        asks, one, other = test.call, first.call, second.call
+        return _Piece(
+            lambda scopes: one(scopes) if truth(asks(scopes)) else other(scopes),
+            second.place or first.place or test.place,
+        )
+
+    def binary(self, node: Node, depth: int) -> _Piece:
+        """``a + b`` and the like."""
+        operator = node.child_by_field_name("operator")
+        left, right = self.part(node, "left", depth), self.part(node, "right", depth)
+        if operator is None:
+            raise _Beyond
+        if operator.type in ("&&", "||"):
+            return self._logical(operator.type, left, right)
+        if operator.type not in OPERATIONS:
+            raise _Beyond
+        act, first, second = OPERATIONS[operator.type], left.call, right.call
+        return _Piece(
+            lambda scopes: act(first(scopes), second(scopes), scopes), self.place(operator)
+        )
+
+    @staticmethod
+    def _logical(mark: str, left: _Piece, right: _Piece) -> _Piece:
+        """``a && b`` or ``a || b``: one of the two values."""
+        first, second = left.call, right.call
+
+        def both(scopes: Scopes) -> Any:
+            value = first(scopes)
+            return second(scopes) if truth(value) else value
+
+        def either(scopes: Scopes) -> Any:
+            value = first(scopes)
+            return value if truth(value) else second(scopes)
+
+        return _Piece(both if mark == "&&" else either, right.place or left.place)
+
+    def unary(self, node: Node, depth: int) -> _Piece:
+        """``!a``, ``-a``, ``+a`` and ``typeof a``."""
+        operator = node.children[0].type
+        operand = node.child_by_field_name("argument")
+        while operator == "typeof" and operand is not None and operand.type == BRACKETS:
+            operand = operand.named_children[0]
+        if operator == "typeof" and operand is not None and operand.type == "identifier":
+            name = self._name(operand)  # one that nothing declares is no error here
+            return _Piece(lambda scopes: kind_of(found(name, scopes)))
+        piece = self.part(node, "argument", depth)
+        call = piece.call
+        made: dict[str, Function] = {
+            "!": lambda scopes: not truth(call(scopes)),
+            "-": lambda scopes: -numeric(call(scopes), scopes),
+            "+": lambda scopes: numeric(call(scopes), scopes),
+            "typeof": lambda scopes: kind_of(call(scopes)),
+        }
+        if operator not in made:
+            raise _Beyond
+        return _Piece(made[operator], piece.place)
+
+    # Members ----------------------------------------------------------------------------------
+
+    def member(self, node: Node, depth: int) -> _Piece:
+        """``a.b``, ``a["b"]`` and ``a?.b``; which member it is must be written out."""
+        piece = self._chain(node, depth)
+        if not piece.optional:
+            return piece
+        call = piece.call
+
+        def whole(scopes: Scopes) -> Any:
+            value = call(scopes)
+            return UNDEFINED if value is CUT else value
+
+        return _Piece(whole, piece.place)
+
+    def _chain(self, node: Node, depth: int) -> _Piece:
+        """A chain of members; ``?.`` ends it where there is no value."""
+        holder, key = node.child_by_field_name("object"), self._key(node)
+        if holder is None or depth > DEEPEST:
+            raise _Beyond
+        inside = self._chain if holder.type in MEMBERS else self.build
+        value = inside(holder, depth + 1)
+        index, (line, column) = index_of(key), value.place or self.place(node)
+        asks, cuts = node.child_by_field_name("optional_chain") is not None, value.optional
+        call = value.call
+
+        def look(scopes: Scopes) -> Any:
+            held = call(scopes)
+            if type(held) is dict and key in held:
+                return held[key]
+            return member(held, key, index, line, column, scopes)
+
+        def look_on(scopes: Scopes) -> Any:
+            held = call(scopes)
+            if held is CUT or (asks and (held is None or held is UNDEFINED)):
+                return CUT
+            return member(held, key, index, line, column, scopes)
+
+        return _Piece(look_on if asks or cuts else look, value.place, asks or cuts)
+
+    def _key(self, node: Node) -> str:
+        """The name of the member."""
+        part = node.child_by_field_name("property") or node.child_by_field_name("index")
+        if part is None:
+            raise _Beyond
+        if part.type == "number":
+            key = number_text(self._number(part))
+        elif part.type == "string":
+            key = self._text(part)
+        elif part.type == "property_identifier":
+            key = self.code.of(part)
+        else:
+            raise _Beyond
+        if key in INHERITED or key in METHODS or "\\" in key:
+            raise _Beyond
+        return key
+
+
+def _doubled(node: Node) -> list[Node]:
+    """The commas of an array behind which, or before which, no element stands."""
+    children = node.children
+    pairs = pairwise(children)
+    return [after for before, after in pairs if before.type in ("[", ",") and after.type == ","]
+
+
+NUMBER = frozenset("0123456789.eE+-")
+UNCOMMON = frozenset("ux0123456789\n\r\u2028\u2029")
+"""Behind a backslash: what is not the character itself, or a white space."""
+BEYOND = RESERVED | INHERITED | BUILT_IN
+BRACKETS = "parenthesized_expression"
+MEMBERS = ("member_expression", "subscript_expression")
+MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
+    "number": _Builder.number,
+    "string": _Builder.text,
+    "true": _Builder.word,
+    "false": _Builder.word,
+    "null": _Builder.word,
+    "identifier": _Builder.name,
+    "undefined": _Builder.name,
+    "array": _Builder.array,
+    "object": _Builder.object,
+    BRACKETS: _Builder.brackets,
+    "ternary_expression": _Builder.conditional,
+    "binary_expression": _Builder.binary,
+    "unary_expression": _Builder.unary,
+    "member_expression": _Builder.member,
+    "subscript_expression": _Builder.member,
+}
+"""What is made of a node of each type."""
