@@ -23,8 +23,8 @@ check: $(VENV)/.dev
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/python -m prima.reference --check
-	$(BIN)/python -m prima.pictures --check
+	$(BIN)/python -m tools.reference --check
+	$(BIN)/python -m tools.pictures --check
 	$(BIN)/python -m release.licences --check
 
 bench: $(VENV)/.dev
@@ -35,8 +35,8 @@ attack: $(VENV)/.dev
 	$(BIN)/python -m bench.attack
 
 schemas: $(VENV)/.dev
-	$(BIN)/python -m prima.reference
-	$(BIN)/python -m prima.pictures
+	$(BIN)/python -m tools.reference
+	$(BIN)/python -m tools.pictures
 
 build: $(VENV)/.dev
 	$(BIN)/python -m build --wheel --no-isolation

@@ -159,7 +159,7 @@ def situations(seconds: float = 0.5) -> dict[str, float]:
         seconds: how long each is run again and again; the median run counts.
     """
     from prima import api
-    from prima.study import situations as ten
+    from prima.experiments.study import situations as ten
 
     found: dict[str, float] = {}
     for path in ten():

@@ -37,8 +37,8 @@ class Prima:
     """The ring in a session of its own, with its records kept (the trace)."""
 
     def __init__(self, text: str) -> None:
-        from prima.commands import TABLE_4_2
         from prima.interpreter.reader import read_document
+        from prima.language.commands import TABLE_4_2
         from prima.messages import Loaded
         from prima.scheduler.selection import policy_named
         from prima.session import Session

@@ -24,7 +24,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     and a selection with its records and orders. All Commands are requested before; the clock
     stands still while an application whose Commands have all been done asks for new ones.
     """
-    from prima.commands import TABLE_4_2
+    from prima.language.commands import TABLE_4_2
     from prima.messages import Command, Request, Step
     from prima.scheduler.chronicle import Chronicle
     from prima.scheduler.mediator import Mediator

@@ -34,7 +34,7 @@ def situation(number: int, seconds: float) -> float:
     It has to go as its author expects: see the table beside it. Records are made and dropped.
     """
     from prima import api
-    from prima.study import situations
+    from prima.experiments.study import situations
     from prima.transcript.table import read_table
 
     path = situations()[number - 1]

@@ -254,7 +254,7 @@ def _lxml() -> Callable[[bytes], None]:
 
 
 def _prima_voice(data: bytes) -> None:
-    from prima.commands import TABLE_4_2
+    from prima.language.commands import TABLE_4_2
     from prima.loading import read_application
     from prima.messages import Loaded
     from prima.scheduler.selection import policy_named

@@ -13,10 +13,11 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from prima.codes import CODES
-from prima.commands import ABSENCE_MS, PATIENCE_MS
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
+from prima.errors.codes import CODES
 from prima.interpreter.elements import Document
+from prima.language.commands import ABSENCE_MS, PATIENCE_MS
+from prima.language.values import LONGEST_MS
 from prima.loading import (
     FAVOURITE,
     Loaded,
@@ -28,7 +29,6 @@ from prima.loading import (
     validate,
 )
 from prima.messages import Record
-from prima.values import LONGEST_MS
 
 if TYPE_CHECKING:
     from prima.export import Exported
@@ -248,7 +248,7 @@ def fetcher(hosts: list[str], applications: int) -> Web | None:
     """What fetches from hosts for some applications; the network's modules are loaded only then."""
     if not hosts:
         return None
-    from prima.web import Hosts
+    from prima.loading.web import Hosts
 
     for host in hosts:
         if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
@@ -352,7 +352,7 @@ def export(
         if path.exists() and Path(name).exists() and path.samefile(name):
             raise UsageError(f"{output}: this is the transcript itself: name another file.")
         made.parts()  # may be refused: before a file is overwritten
-        from prima.writing import whole
+        from prima.loading.writing import whole
 
         with whole(path) as stream:
             write(to, made, records([]), tags, VERSION, stream)
@@ -367,7 +367,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
         UsageError: the scenario's files are not those of the transcript.
         DocumentError: documents are wrong.
     """
-    from prima.journal import replay_records
+    from prima.replay import replay_records
     from prima.transcript.lines import finished
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)

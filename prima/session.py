@@ -15,10 +15,11 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from prima.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.frame import GoOut
+from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
+from prima.language.values import moment
 from prima.messages import (
     PROMOTED,
     Action,
@@ -55,7 +56,6 @@ from prima.messages import (
     Unloaded,
     line_of,
 )
-from prima.prelude import START
 from prima.scheduler.behavior import WAITING, Behavior, Stream
 from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
@@ -63,7 +63,7 @@ from prima.scheduler.mediator import Mediator
 from prima.scheduler.selection import Policy
 from prima.script.evaluation import EngineLost
 from prima.script.isolated import Engines
-from prima.values import moment
+from prima.script.prelude import START
 
 if TYPE_CHECKING:
     from prima.voicexml.application import VoiceInterpreter

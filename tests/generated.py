@@ -20,9 +20,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from prima.commands import PATIENCE_MS, TABLE_4_2, CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.reader import read_document
+from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType
 from prima.messages import (
     CloseUnit,
     Command,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from prima.commands import TABLE_4_2
 from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
+from prima.language.commands import TABLE_4_2
 from prima.messages import Ended, Failed, Heard, Inbound, Listening, Loaded, Occurred, Order, Record
 from prima.scheduler.selection import policy_named
 from prima.session import Session

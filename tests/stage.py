@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from prima.commands import PATIENCE_MS, TABLE_4_2, CommandType
+from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType
 from prima.messages import (
     CloseUnit,
     Command,

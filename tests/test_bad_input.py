@@ -24,7 +24,7 @@ from typing import Any
 import pytest
 
 from prima import api, cli
-from prima.commands import DEVICES
+from prima.language.commands import DEVICES
 from prima.sim import rehearsal
 
 DOCUMENTS = api.documents_folder()

@@ -20,8 +20,18 @@ import pytest
 
 from bench import batch as bench
 from prima import cli, pool
-from prima.batch import Inputs, Job, Options, Plan, Row, format_row, run_batch, run_job, stem_of
 from prima.errors import RunError, UsageError
+from prima.experiments.batch import (
+    Inputs,
+    Job,
+    Options,
+    Plan,
+    Row,
+    format_row,
+    run_batch,
+    run_job,
+    stem_of,
+)
 from prima.pool import Died, spread
 
 ROOT = Path(__file__).parent.parent
@@ -392,7 +402,7 @@ def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.Mon
     def mock(_function: object, items: Plan, *_: object) -> Iterator[tuple[Job, Row | Died]]:
         yield from zip(items, fates, strict=True)
 
-    monkeypatch.setattr("prima.batch.spread", mock)
+    monkeypatch.setattr("prima.experiments.batch.spread", mock)
     rows = list(run_batch(Plan(["a", "b/one.xml"]), Options()))
     assert [row.exit for row in rows] == [3, 3, 3, 0]
     assert [row.messages for row in rows[:3]] == [

@@ -22,9 +22,9 @@ from prima.certificate import (
     certify,
     format_certificate,
 )
+from prima.checks.prices import Price, commands, outline, prices
 from prima.loading import load_scenario, read_application, read_file
 from prima.messages import Record
-from prima.prices import Price, commands, outline, prices
 from prima.sim.scenario import read_robot
 from prima.sim.voice import duration
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE

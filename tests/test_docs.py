@@ -18,10 +18,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
-from prima import api, reference, rulebook
-from prima.codes import CODES
+from prima import api
 from prima.errors import Problem, UsageError
+from prima.errors.codes import CODES
+from prima.explain import rulebook
 from prima.interpreter.vocabulary import DIALOGUE, SPEAKING
+from prima.language.values import KINDS, read_value
 from prima.markup.check import check_tree
 from prima.markup.reader import parse
 from prima.markup.schema import make_schema
@@ -30,7 +32,7 @@ from prima.report import strip
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript.record import PHASES, Record
 from prima.transcript.rules import RULES
-from prima.values import KINDS, read_value
+from tools import reference
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -229,7 +231,7 @@ def test_fragments_are_valid_where_they_belong(page: Path) -> None:
 
 def test_generated_files_are_those_of_the_code() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "prima.reference", "--check"],
+        [sys.executable, "-m", "tools.reference", "--check"],
         cwd=ROOT,
         capture_output=True,
         encoding="utf-8",

@@ -16,7 +16,7 @@ from lxml import etree
 from prima import api, loading
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.rnc import make_rnc
-from prima.reference import VOCABULARIES, voicexml
+from tools.reference import VOCABULARIES, voicexml
 
 ROOT = Path(__file__).parent.parent
 SCHEMAS = ROOT / "schemas"

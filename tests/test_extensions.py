@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import pytest
 
-from prima.commands import PATIENCE_MS, TABLE_4_2, Argument, CommandType
+from prima.language.commands import PATIENCE_MS, TABLE_4_2, Argument, CommandType
 from prima.messages import Command, Group, Step
 from tests.stage import Stage, ask, chain, command, move, say, search
 

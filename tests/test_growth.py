@@ -12,8 +12,8 @@ import pytest
 from bench.large import FAMILIES, Family
 from prima import loading
 from prima.certificate import certificates
+from prima.checks.ignores import Ignores
 from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses
-from prima.ignores import Ignores
 from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.desk import Desk

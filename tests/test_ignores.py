@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.checks.ignores import comments
 from prima.errors import Problem
-from prima.ignores import comments
 from prima.lsp import problems as editor
 from prima.lsp.desk import Desk
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from prima.commands import Argument, check_argument
 from prima.errors import DocumentError, Problem
 from prima.interpreter.reader import read_document
+from prima.language.commands import Argument, check_argument
 from prima.markup.reader import parse
 from prima.script.names import script_names
 from prima.sim.scenario import read_robot, read_scenario, read_world

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 from prima import api
-from prima.codes import CODES
-from prima.diagnostics import TOKEN
 from prima.errors import Problem, UsageError
-from prima.examples import FOLDER, Example, beside, data, examples, shown
+from prima.errors.codes import CODES
+from prima.errors.rendering import TOKEN
+from prima.explain.examples import FOLDER, Example, beside, data, examples, shown
 
 ROOT = Path(__file__).parent.parent
 MISTAKES = Path(__file__).parent / "mistakes"

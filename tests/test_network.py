@@ -13,7 +13,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from prima import api, web
+from prima import api
+from prima.loading import web
 from prima.voicexml.document import VoiceDocument
 from tests.voice import HEAD, Online, vxml
 

@@ -11,7 +11,7 @@ import pytest
 
 from prima.cli.new import KINDS
 from prima.errors import UsageError
-from prima.new import identifier, write
+from prima.templates import identifier, write
 
 
 def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from prima import api, pictures
+from prima import api
 from prima.messages import Record
-from prima.pictures import Bar
+from tools import pictures
+from tools.pictures import Bar
 
 ROOT = Path(__file__).parent.parent
 NAMED = ("rules", "extensions")

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.errors import UsageError
+from prima.errors.visible import visible
 from prima.report import MOST_ROWS, make
 from prima.report.lanes import make_lanes
 from prima.report.page import json_text, text
@@ -26,7 +27,6 @@ from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines
 from prima.transcript.rules import RULES
 from prima.transcript.table import Row
-from prima.visible import visible
 from tests.generated_report import long_run
 
 ROOT = Path(__file__).parent.parent

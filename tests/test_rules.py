@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from prima.commands import TABLE_4_2
+from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Group, OpenUnit, Step
 from prima.scheduler import rules
 from tests.stage import Stage, ask, chain, command, move, say, search

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from prima.commands import CommandType
 from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
+from prima.language.commands import CommandType
 from prima.messages import Command, Data
 from prima.scheduler import intake, mediator, rules
 from prima.scheduler.behavior import Application, Behavior, Stream

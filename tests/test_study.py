@@ -12,8 +12,8 @@ import pytest
 
 from prima import api, cli
 from prima.errors import UsageError
+from prima.experiments.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.messages import Command, Emergency, Ended, Occurred
-from prima.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.transcript.criteria import Criteria, observe
 from prima.transcript.measures import Measure
 from prima.transcript.table import read_table

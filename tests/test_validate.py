@@ -16,8 +16,8 @@ import jsonschema
 import pytest
 
 from prima import api, loading
-from prima.diagnostics import excerpt, render, sarif
 from prima.errors import DocumentError, Place, Problem, listed
+from prima.errors.rendering import excerpt, render, sarif
 from prima.interpreter.reader import read_document
 
 ROOT = Path(__file__).parent.parent

@@ -16,8 +16,8 @@ from mcap.records import Message
 
 from prima import api
 from prima.cli import COMMANDS
+from prima.errors.visible import HARMFUL, escaped, visible
 from prima.transcript.lines import finished, line
-from prima.visible import HARMFUL, escaped, visible
 from tests.voice import vxml
 
 ROOT = Path(__file__).parent.parent

@@ -403,7 +403,7 @@ def test_without_a_network_modules_of_it_are_not_loaded() -> None:
     code = (
         "import sys; from prima.api import rehearse, stage\n"
         "rehearse(stage([], ['documents/ea/pizza.vxml'], ['x']))\n"
-        "assert 'urllib.request' not in sys.modules and 'prima.web' not in sys.modules"
+        "assert 'urllib.request' not in sys.modules and 'prima.loading.web' not in sys.modules"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=Path(__file__).parent.parent, capture_output=True, text=True

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from prima.errors import UsageError
-from prima.writing import clean_up, parts_folder, whole, write_whole
+from prima.loading.writing import clean_up, parts_folder, whole, write_whole
 
 ROOT = Path(__file__).parent.parent
 HOLDS = """
 import sys, time
-from prima.writing import parts_folder, whole
+from prima.loading.writing import parts_folder, whole
 opened = {"file": whole, "folder": parts_folder}[sys.argv[1]](sys.argv[2])
 with opened as made:
     if sys.argv[1] == "file":

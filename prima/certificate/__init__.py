@@ -8,12 +8,12 @@ from pathlib import Path
 
 from prima.certificate.finding import Delay, Starving, delays, starving
 from prima.certificate.telling import certificate_data, format_certificate
+from prima.checks.prices import Gap, Outline, Price, outline
+from prima.checks.prices.bounds import Busy, busy_at_all
 from prima.errors import DocumentError, Place, UsageError
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
 from prima.loading import documents_folder, read_application, read_file
-from prima.prices import Gap, Outline, Price, outline
-from prima.prices.bounds import Busy, busy_at_all
 from prima.session import AnyDocument
 from prima.sim.scenario import Profile, read_robot
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
+from prima.checks.prices import Gap, Outline, Price, Reaction, worst
+from prima.checks.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
+from prima.checks.prices.model import Loop, State, devices_of
 from prima.errors import Place
 from prima.interpreter.selection import takes
-from prima.prices import Gap, Outline, Price, Reaction, worst
-from prima.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
-from prima.prices.model import Loop, State, devices_of
 
 
 @dataclass(slots=True)

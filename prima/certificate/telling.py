@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from prima.certificate.finding import Delay, Starving
-from prima.commands import PATIENCE_MS
-from prima.prices import Gap, Price
+from prima.checks.prices import Gap, Price
+from prima.language.commands import PATIENCE_MS
 
 if TYPE_CHECKING:
     from prima.certificate import Certificate

@@ -100,7 +100,7 @@ def main() -> None:
     except SystemExit:
         code = 0  # click's way of saying that nobody reads any more
     except DocumentError as error:
-        from prima.diagnostics import render
+        from prima.errors.rendering import render
         from prima.markup.limits import LIMITS
 
         lines = SourceLines()

@@ -13,7 +13,11 @@ from contextlib import closing
 import click
 from click.exceptions import Exit
 
-from prima.batch import (
+from prima.cli import common
+from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
+from prima.errors import UsageError, counted
+from prima.errors.visible import escaped
+from prima.experiments.batch import (
     Options,
     Plan,
     Row,
@@ -23,11 +27,7 @@ from prima.batch import (
     row_data,
     run_batch,
 )
-from prima.cli import common
-from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
-from prima.errors import UsageError, counted
 from prima.pool import warm_up
-from prima.visible import escaped
 
 MOST_LISTED = 50_000_000
 """Bytes that a list of scenarios may have."""
@@ -67,7 +67,7 @@ def run_all(
 
     Raises:
         Exit: the highest exit code of a run is not 0.
-        UsageError: as :func:`prima.batch.run_batch`.
+        UsageError: as :func:`prima.experiments.batch.run_batch`.
         RunError: as there.
     """
     warm_up()

@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 import click
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.visible import escaped, visible
+from prima.errors.visible import escaped, visible
 
 if TYPE_CHECKING:
     from pathlib import Path

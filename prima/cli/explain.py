@@ -19,8 +19,8 @@ def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> 
     """Rules and codes that begin so, or else files."""
     from click.shell_completion import CompletionItem
 
-    from prima.codes import CODES
-    from prima.rulebook import rules
+    from prima.errors.codes import CODES
+    from prima.explain.rulebook import rules
 
     names = [*rules(), *CODES]
     found = [CompletionItem(name) for name in names if begun and name.startswith(begun)]
@@ -44,8 +44,8 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     prima explain undeclared-variable
     prima explain mediated.jsonl 16
     """
-    from prima.codes import CODES
-    from prima.rulebook import named
+    from prima.errors.codes import CODES
+    from prima.explain.rulebook import named
 
     if what is None:
         _list(form)
@@ -75,8 +75,8 @@ def explain(what: str | None, row: int | None, form: str) -> None:
 
 def _list(form: str) -> None:
     """Every rule and every code with the first sentence of its explanation."""
-    from prima.codes import CODES
-    from prima.rulebook import rules
+    from prima.errors.codes import CODES
+    from prima.explain.rulebook import rules
 
     if form == "json":
         listed = [
@@ -103,7 +103,7 @@ def _lines(told: dict[str, str]) -> None:
 
 def _rule(name: str, form: str) -> None:
     """A rule with its example."""
-    from prima.rulebook import data, shown
+    from prima.explain.rulebook import data, shown
 
     if form == "json":
         print_json(data(name))
@@ -117,9 +117,9 @@ def _code(code: str, form: str) -> None:
     Raises:
         UsageError: there is no such code, nor a rule or a file of that name.
     """
-    from prima.codes import CODES
-    from prima.examples import data, shown
-    from prima.rulebook import suggestion
+    from prima.errors.codes import CODES
+    from prima.explain.examples import data, shown
+    from prima.explain.rulebook import suggestion
 
     if code not in CODES:
         hint = suggestion(code) or did_you_mean(code, CODES) or "prima explain lists them all."

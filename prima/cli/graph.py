@@ -71,7 +71,7 @@ def write(made: str, output: str) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    from prima.writing import write_whole
+    from prima.loading.writing import write_whole
 
     write_whole(output, made)
     tell(f"written: {output}")

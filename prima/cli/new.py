@@ -25,7 +25,7 @@ def new(kind: str, name: str) -> None:
     prima new scenario visit
     prima run visit.xml
     """
-    from prima.new import attempt, write
+    from prima.templates import attempt, write
 
     written = write(kind, name)
     for path in written:

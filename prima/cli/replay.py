@@ -21,7 +21,7 @@ def replay(transcript: str, scenario: str, output: str | None) -> None:
     prima replay mediated.jsonl documents/scenarios/follow-during-navigation.xml
     """
     from prima import api
-    from prima.writing import write_whole
+    from prima.loading.writing import write_whole
 
     if output not in (None, "-"):
         check_output(output, "replay", transcript, scenario)

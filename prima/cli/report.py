@@ -114,7 +114,7 @@ def write_page(page: str, output: str | None) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    from prima.writing import write_whole
+    from prima.loading.writing import write_whole
 
     if output is None:
         write_for_programs()

@@ -31,7 +31,7 @@ from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
 if TYPE_CHECKING:
     from prima.api import Transcript
-    from prima.batch import Options
+    from prima.experiments.batch import Options
 
 MOST_WORKERS = 256
 """More processes than this are a slip of the finger."""
@@ -134,7 +134,7 @@ def run(
     prima run documents/scenarios --policy prima --policy fifo -o runs/
     prima run documents/scenarios --policy prima --policy fifo -o runs/ --resume
     """
-    from prima.batch import Options
+    from prima.experiments.batch import Options
 
     raise_limits(limits)
     applications = bool(fas or eas)
@@ -196,7 +196,7 @@ def _milliseconds(text: str | None) -> int | None:
     Raises:
         UsageError: it is none.
     """
-    from prima.values import read_value
+    from prima.language.values import read_value
 
     try:
         return None if text is None else int(read_value("duration", text))
@@ -253,7 +253,7 @@ def _run_one(
     if transcript.defects and "PRIMA_DEBUG" in os.environ:
         raise transcript.defects[0]
     if transcript.failures:
-        from prima.batch import told_failure
+        from prima.experiments.batch import told_failure
 
         for failure in transcript.failures:
             tell(f"prima: {told_failure(failure)}")

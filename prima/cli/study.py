@@ -29,9 +29,9 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
     prima study
     prima study my-scenario.xml --policy prima --policy fifo --format csv
     """
-    from prima.study import POLICIES as ALL
-    from prima.study import format_csv, format_table, result_data, situations
-    from prima.study import study as run_study
+    from prima.experiments.study import POLICIES as ALL
+    from prima.experiments.study import format_csv, format_table, result_data, situations
+    from prima.experiments.study import study as run_study
 
     chosen, results = scenarios or tuple(map(str, situations())), []
     total = len(chosen) * len(policies or ALL)

@@ -28,8 +28,8 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
-from prima.commands import PATIENCE_MS
 from prima.errors import TOO_MUCH, RunError, UsageError
+from prima.language.commands import PATIENCE_MS
 
 if TYPE_CHECKING:
     from prima.loading import Loaded

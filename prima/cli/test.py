@@ -216,8 +216,8 @@ def _under(coverage: Coverage, percent: float) -> bool:
 def _write(
     results: list[Result], coverage: Coverage, junit_file: str | None, coverage_xml: str | None
 ) -> None:
+    from prima.loading.writing import whole
     from prima.testing.junit import cobertura, junit
-    from prima.writing import whole
 
     for path, data in (
         (junit_file, junit(results) if junit_file else b""),

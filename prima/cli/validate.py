@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import click
 from click.exceptions import Exit
 
+from prima.checks.ignores import KINDS, SETTINGS
 from prima.cli.common import (
     Choice,
     SourceLines,
@@ -20,7 +21,6 @@ from prima.cli.common import (
     tell,
 )
 from prima.errors import Problem, UsageError, listed, one_of
-from prima.ignores import KINDS, SETTINGS
 from prima.markup.limits import LIMITS
 
 WATCH_SECONDS = 0.3
@@ -152,7 +152,7 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
 def _show(every: list[Problem], form: str) -> None:
     problems = listed(every, LIMITS.problems)
     if form == "json":
-        from prima.diagnostics import problem_data
+        from prima.errors.rendering import problem_data
 
         told = [problem_data(one) for one in problems]
         if len(every) > LIMITS.problems:
@@ -160,12 +160,12 @@ def _show(every: list[Problem], form: str) -> None:
         print_json(told)
     elif form == "sarif":
         from prima import __version__
-        from prima.codes import CODES
-        from prima.diagnostics import sarif
+        from prima.errors.codes import CODES
+        from prima.errors.rendering import sarif
 
         print_json(sarif(problems, __version__, CODES))
     elif problems and form == "text":
-        from prima.diagnostics import render
+        from prima.errors.rendering import render
 
         lines = SourceLines()
         for problem in problems:

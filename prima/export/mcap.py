@@ -10,9 +10,9 @@ from collections.abc import Iterable, Iterator
 from heapq import merge
 from typing import IO, Any
 
+from prima.errors.visible import escaped
 from prima.export.timeline import COLUMNS, Interval, Timeline, clean, unused
 from prima.messages import Json, Record
-from prima.visible import escaped
 
 ENCODER = json.JSONEncoder(ensure_ascii=False)
 MS = 1_000_000

@@ -16,8 +16,8 @@ from prima.grammar.model import (
     Tag,
     Words,
 )
+from prima.grammar.prefixes import NOTHING, UNKNOWN, Finder, Lead, Leads
 from prima.grammar.text import join
-from prima.leads import NOTHING, UNKNOWN, Finder, Lead, Leads
 
 
 def index_choices(documents: Iterable[Document]) -> None:

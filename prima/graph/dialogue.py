@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 
-from prima.commands import TABLE_4_2
 from prima.graph.model import Graph, Node, clean, settle
 from prima.graph.thrown import Taker, Throws, chosen
 from prima.graph.words import (
@@ -48,6 +47,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import DEFAULTS
 from prima.interpreter.selection import takes
+from prima.language.commands import TABLE_4_2
 
 ANY = ":any"
 """The key of what holds in all states; no form can have it as its id."""

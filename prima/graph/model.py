@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from prima.errors import UsageError
-from prima.visible import visible
+from prima.errors.visible import visible
 
 LONGEST = 300
 """Letters of one text in a picture."""

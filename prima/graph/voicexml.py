@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable, Iterator
 from urllib.parse import urldefrag, urlsplit
 
-from prima.commands import TABLE_4_2
 from prima.errors import DocumentError
 from prima.graph.model import Graph, clean, settle
 from prima.graph.model import Node as Box
@@ -22,6 +21,7 @@ from prima.graph.words import (
     sayings,
 )
 from prima.interpreter.selection import takes
+from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page

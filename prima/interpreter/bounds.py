@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
 
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
+from prima.language.values import moment
 from prima.markup.tree import Node
 from prima.messages import Action, Json, Quit, Say
-from prima.prelude import START
 from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, MAX_SHARE, EngineLost
-from prima.values import moment
+from prima.script.prelude import START
 
 if TYPE_CHECKING:
     from prima.interpreter.plain import PlainEngine

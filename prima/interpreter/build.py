@@ -5,14 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from prima.commands import (
-    TABLE_4_2,
-    CommandType,
-    check_argument,
-    excluding_arguments,
-    missing_argument,
-    too_long,
-)
 from prima.errors import Problem, parted
 from prima.interpreter.elements import (
     Act,
@@ -65,11 +57,19 @@ from prima.interpreter.units import (
     units_of,
 )
 from prima.interpreter.vocabulary import ACTING, DIALOGUE, HANDLERS, PROPERTIES
+from prima.language.commands import (
+    TABLE_4_2,
+    CommandType,
+    check_argument,
+    excluding_arguments,
+    missing_argument,
+    too_long,
+)
+from prima.language.values import XML_SPACE, nearest, outside, read_value, within
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.script.evaluation import SCOPES
 from prima.script.globals import HANDLED, RESERVED
-from prima.values import XML_SPACE, nearest, outside, read_value, within
 
 if TYPE_CHECKING:
     from prima.messages import Json

@@ -9,7 +9,6 @@ from functools import cached_property
 from itertools import chain
 from typing import Any
 
-from prima.commands import TABLE_4_2, Argument, CommandType, check_argument, missing_argument
 from prima.errors import Place, Problem, Severity, did_you_mean, few, parted
 from prima.interpreter.elements import (
     Act,
@@ -57,6 +56,14 @@ from prima.interpreter.units import (
     unit_speaks,
     units_of,
 )
+from prima.language.commands import (
+    TABLE_4_2,
+    Argument,
+    CommandType,
+    check_argument,
+    missing_argument,
+)
+from prima.language.values import nearest, read_value
 from prima.markup.tree import Node
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
@@ -64,7 +71,6 @@ from prima.script.globals import HANDLED
 from prima.script.known import Known, Scope
 from prima.script.names import expression_names, script_names
 from prima.script.parse import parse_expression
-from prima.values import nearest, read_value
 
 MANY_FORMS = 8
 """Of forms that go round, so many are named."""

@@ -42,10 +42,10 @@ from prima.interpreter.frame import (
     Transfer,
 )
 from prima.interpreter.plain import PlainEngine
+from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
 from prima.script.evaluation import RESULT_LIMIT, EngineLost, Scope, ScriptError
-from prima.values import quoted, read_value, shown
 
 if TYPE_CHECKING:
     from prima.interpreter.application import Interpreter

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.commands import DEVICES
 from prima.errors import Place, Problem, guessable
 from prima.interpreter.elements import (
     Acts,
@@ -22,6 +21,7 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
+from prima.language.commands import DEVICES
 from prima.markup.tree import Node
 
 STANDARD = frozenset(

@@ -5,8 +5,8 @@ Beginnings are compared without spaces, so that it does not matter where a scrip
 
 from __future__ import annotations
 
+from prima.grammar.prefixes import NOTHING, UNKNOWN, Finder, Lead, Leads
 from prima.interpreter.grammar import Choice, Grammar, Index, Part, Reference, Sequence, Tag, Words
-from prima.leads import NOTHING, UNKNOWN, Finder, Lead, Leads
 
 
 def index_choices(grammar: Grammar) -> None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.commands import TABLE_4_2, CommandType
 from prima.errors import Problem
 from prima.interpreter.elements import (
     Act,
@@ -33,6 +32,7 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.selection import taking
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
 
 LONGEST_UNIT_MS = 60_000

@@ -7,7 +7,7 @@ SMIL's.
 
 from __future__ import annotations
 
-from prima.commands import TABLE_4_2, CommandType
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
 
 NAMESPACE = "urn:prima:dialogue:1"

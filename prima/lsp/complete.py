@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from prima.commands import DEVICES, TABLE_4_2
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.language.commands import DEVICES, TABLE_4_2
 from prima.lsp.desk import Desk, Found, Text
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.names import dialect

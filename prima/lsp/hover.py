@@ -6,14 +6,14 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from prima.commands import TABLE_4_2
+from prima.language.commands import TABLE_4_2
+from prima.language.values import KINDS
 from prima.lsp.desk import Desk, Found
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import Page, Tag
 from prima.lsp.tables import about, about_attribute, attributes
 from prima.lsp.words import EVENTS, RULES, SESSION, VOICEXML_EVENTS
 from prima.markup.vocabulary import Element
-from prima.values import KINDS
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
 WORD = re.compile(r"[\w$.\-]+")

@@ -6,9 +6,9 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from prima.language.values import read_value
 from prima.lsp.desk import Desk, Found
 from prima.lsp.names import Mark, mark_at
-from prima.values import read_value
 
 RENAMED = {
     "form": "id",

@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable, Sequence
 
 from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of, parted
+from prima.language.values import KINDS, XML_SPACE, read_value
 from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
-from prima.values import KINDS, XML_SPACE, read_value
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 

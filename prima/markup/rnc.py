@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from prima.language.values import KINDS
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
-from prima.values import KINDS
 
 HEAD = """\
-# Made from the tables of elements by python -m prima.reference.
+# Made from the tables of elements by python -m tools.reference.
 default namespace = "{namespace}"
 namespace own = "{namespace}"
 namespace xsi = "http://www.w3.org/2001/XMLSchema-instance"

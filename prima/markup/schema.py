@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from html import escape
 
+from prima.language.values import KINDS
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
-from prima.values import KINDS
 
 XML_SCHEMA = r"""<?xml version="1.0" encoding="UTF-8"?>
 <xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from prima.errors import one_of
+from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
-from prima.values import read_value
 
 UNITS = {
     **dict.fromkeys(("sec", "secs", "second", "seconds"), 1000),

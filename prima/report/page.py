@@ -13,6 +13,7 @@ from string import Template
 from typing import Any
 
 from prima.errors import counted
+from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
 from prima.report.view import View
@@ -21,7 +22,6 @@ from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
 from prima.transcript.rules import RULES
 from prima.transcript.table import Row
-from prima.visible import visible
 
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from prima.errors.visible import visible
 from prima.messages import Record
 from prima.report.lanes import Bar, make_lanes
 from prima.transcript.table import Row
-from prima.visible import visible
 
 STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
 """Seconds from one mark of the axis to the next."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import UsageError
+from prima.errors.visible import visible
 from prima.messages import Json, Record
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import Walk, walk_of
 from prima.transcript.criteria import observe
 from prima.transcript.table import LONGEST_SHOWN, Row, describe
 from prima.transcript.why import Reasons
-from prima.visible import visible
 
 if TYPE_CHECKING:
     from prima.api import Transcript

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from prima.commands import PATIENCE_MS
 from prima.errors import UsageError
+from prima.language.commands import PATIENCE_MS
 from prima.messages import Json, Record
 
 if TYPE_CHECKING:

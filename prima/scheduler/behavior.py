@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Final, Literal
 
-from prima.commands import CommandType
+from prima.language.commands import CommandType
 from prima.messages import Command, Data, Group, Record
 from prima.scheduler.effects import Effects
 

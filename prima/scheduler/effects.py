@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from prima.commands import CommandType
+from prima.language.commands import CommandType
 from prima.messages import Command, Data
 
 FAR = 0.5

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from prima.commands import ABSENCE_MS, PATIENCE_MS
+from prima.language.commands import ABSENCE_MS, PATIENCE_MS
 from prima.messages import Command, Data, Notice, Order
 from prima.scheduler.behavior import (
     GONE,

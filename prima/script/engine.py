@@ -17,18 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.prelude import (
-    CLOCK,
-    DATE,
-    GIVE,
-    GUARD,
-    GUARDS,
-    MEMORY_LIMIT,
-    NAME,
-    PRELUDE,
-    SAFE,
-    STACK_LIMIT,
-)
+from prima.language.values import well_formed, well_formed_json
 from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import (
     MAX_SCRIPT_SECONDS,
@@ -43,8 +32,19 @@ from prima.script.evaluation import (
 from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted, hoisted
 from prima.script.names import script_names
+from prima.script.prelude import (
+    CLOCK,
+    DATE,
+    GIVE,
+    GUARD,
+    GUARDS,
+    MEMORY_LIMIT,
+    NAME,
+    PRELUDE,
+    SAFE,
+    STACK_LIMIT,
+)
 from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
-from prima.values import well_formed, well_formed_json
 
 if TYPE_CHECKING:
     from prima.messages import Json

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.prelude import (
+from prima.language.values import well_formed, well_formed_json
+from prima.script.budget import TIME_LIMIT
+from prima.script.evaluation import ScriptError
+from prima.script.prelude import (
     CLOCK,
     DATE,
     EVALUATE,
@@ -22,9 +25,6 @@ from prima.prelude import (
     STACK_LIMIT,
     reason,
 )
-from prima.script.budget import TIME_LIMIT
-from prima.script.evaluation import ScriptError
-from prima.values import well_formed, well_formed_json
 
 if TYPE_CHECKING:
     from prima.messages import Json

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
@@ -18,10 +17,11 @@ from prima.interpreter.surroundings import (
     nearest,
     texts_of,
 )
+from prima.language.commands import TABLE_4_2
+from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
-from prima.values import read_value
 from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 

@@ -7,18 +7,25 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from prima.commands import ABSENCE_MS, DEVICES, PATIENCE_MS, TABLE_4_2, Argument, CommandType
 from prima.errors import DocumentError, Problem, Severity, did_you_mean, parted
 from prima.interpreter.events import near
 from prima.interpreter.surroundings import nearest as nearest_name
+from prima.language.commands import (
+    ABSENCE_MS,
+    DEVICES,
+    PATIENCE_MS,
+    TABLE_4_2,
+    Argument,
+    CommandType,
+)
+from prima.language.values import nearest, outside, read_value, within
 from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 from prima.messages import Json
-from prima.prelude import START
+from prima.script.prelude import START
 from prima.sim.plan import Plan
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
-from prima.values import nearest, outside, read_value, within
 
 Point = tuple[float, float]
 MAX_AREAS = 256

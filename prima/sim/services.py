@@ -7,9 +7,9 @@ from heapq import heappop, heappush
 from html import escape
 from urllib.parse import urlsplit
 
+from prima.language.values import shown
 from prima.messages import Data, Fetched, Inbound, Occurred, Order
 from prima.sim.scenario import Reply, Service
-from prima.values import shown
 
 SCHEME = "service:"
 """How the URI of a scenario's service begins."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from prima.commands import DEVICES
+from prima.language.commands import DEVICES
 from prima.markup.vocabulary import Element, Vocabulary, attribute
-from prima.prelude import START
+from prima.script.prelude import START
 
 _VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
 _ID = attribute("id", "id", "its name", "required")

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Protocol
 
 from prima.errors import UsageError
+from prima.errors.visible import visible
+from prima.language.values import read_value
+from prima.loading.writing import write_whole
 from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
 from prima.transcript.table import Row, describe
 from prima.transcript.why import Reasons
-from prima.values import read_value
-from prima.visible import visible
-from prima.writing import write_whole
 
 SHOWN = 6
 """Answers to a question that are shown."""

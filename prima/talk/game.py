@@ -9,6 +9,7 @@ from prima.errors import DocumentError, Problem, UsageError, one_of
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.events import Events
+from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, favourite_problem
 from prima.messages import Record
 from prima.scheduler.behavior import Behavior
@@ -22,7 +23,6 @@ from prima.talk.scene import Scene, comment, seconds, when
 from prima.talk.typed import Line, Names
 from prima.transcript.lines import finished
 from prima.transcript.table import Growing, Row
-from prima.values import LONGEST_MS
 
 THINKING_MS = 1000
 """How long the user thinks before he answers a question, where time waits for him."""

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 
+from prima.language.values import NAME
 from prima.markup.tree import Node
-from prima.values import NAME
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 MARK = "Played with prima talk."

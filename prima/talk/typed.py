@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import escape
 
 from prima.errors import UsageError, did_you_mean
-from prima.values import read_value
+from prima.language.values import read_value
 
 LONGEST_LINE = 2000
 """Letters that a line may have."""

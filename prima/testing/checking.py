@@ -10,11 +10,11 @@ from typing import Any
 from prima.errors import Place
 from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes
+from prima.language.values import read_value, shown
 from prima.messages import Record
 from prima.sim.scenario import Expectation, Scenario
 from prima.testing.watching import Change, States
 from prima.transcript.table import Row, describe, format_head, format_row, shape_of
-from prima.values import read_value, shown
 
 AROUND = 2
 """Rows that are shown before and after the one that matters."""

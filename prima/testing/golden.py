@@ -7,9 +7,9 @@ from pathlib import Path
 
 from prima.errors import DocumentError, UsageError
 from prima.loading import read_file
+from prima.loading.writing import write_whole
 from prima.transcript.diff import Difference, compare, format_difference
 from prima.transcript.table import Row, format_rows, read_table, width
-from prima.writing import write_whole
 
 LONGEST_DIFFERENCE = 200
 """Lines of a difference that are shown."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.diagnostics import excerpt
 from prima.errors import DocumentError, UsageError
+from prima.errors.rendering import excerpt
+from prima.errors.visible import visible
 from prima.loading import read_file
 from prima.markup.reader import decode
 from prima.testing.checking import Failure
 from prima.testing.running import Result
-from prima.visible import visible
 
 WORDS = {"passed": "passed", "failed": "FAILED", "error": "ERROR", "invalid": "INVALID"}
 

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Literal
 
+from prima.errors.visible import escaped, visible
 from prima.transcript.measures import Summary
 from prima.transcript.table import Row
-from prima.visible import escaped, visible
 
 DELAY = 0.5
 """Seconds by which a behaviour must come later, beyond what came before it, to count."""

@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterable, Iterator
 
 from prima.errors import UsageError
+from prima.errors.visible import escaped
 from prima.messages import Json, Record
-from prima.visible import escaped
 
 ORDER = [
     "time",

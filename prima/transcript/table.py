@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from prima.commands import TABLE_4_2
 from prima.errors import counted
+from prima.errors.visible import visible
+from prima.language.commands import TABLE_4_2
 from prima.messages import Record
-from prima.visible import visible
 
 LONGEST_SHOWN = 5000
 """Letters of a row that are printed."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TypeVar
 
-from prima.commands import TABLE_4_2
 from prima.errors import Problem, did_you_mean, one_of, parted
 from prima.interpreter.elements import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.language.commands import TABLE_4_2
+from prima.language.values import milliseconds, read_value
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
-from prima.values import milliseconds, read_value
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 ARRANGING = ("par", "seq", "iu")

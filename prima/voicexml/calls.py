@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
-from prima.values import milliseconds
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, Thrown, thrown_outside

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from prima.commands import TABLE_4_2, CommandType, excluding_arguments
 from prima.errors import Problem, did_you_mean, few, one_of
 from prima.interpreter.checks import given_to
+from prima.language.commands import TABLE_4_2, CommandType, excluding_arguments
+from prima.language.values import NUMBER, read_value
 from prima.markup.slips import meant
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
@@ -20,7 +21,6 @@ from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.globals import IDENTIFIER, RESERVED
 from prima.script.isolated import IsolatedSyntax, syntax
-from prima.values import NUMBER, read_value
 from prima.voicexml.arranging import (
     ARRANGING,
     UNIT,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from prima.language.values import LONGEST_MS, read_value
 from prima.messages import Cue
-from prima.values import LONGEST_MS, read_value
 
 PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
 """What a break of each strength takes, in ms (SSML 1.0, 2.2.3)."""

@@ -13,9 +13,9 @@ from urllib.parse import urldefrag
 
 from prima.errors import DocumentError
 from prima.interpreter.content import source
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Fetched, Json
-from prima.values import milliseconds
 from prima.voicexml.document import FetchError, Page, broken, of_web, read_page
 from prima.voicexml.state import Flow, Resume, Thrown
 

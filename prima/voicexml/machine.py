@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
 from prima.script.evaluation import Scope, ScriptError
-from prima.values import milliseconds
 from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
-from prima.commands import TABLE_4_2
 from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
 from prima.interpreter.frame import GoOut
+from prima.language.commands import TABLE_4_2
+from prima.language.values import shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import EngineLost, Scope, ScriptError, statement_place
-from prima.values import shown
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
 from prima.voicexml.cues import (
     MAX_CUES,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Event, Json
-from prima.values import milliseconds
 from prima.voicexml.matching import KEYS
 from prima.voicexml.state import Context, Flow, Heard, Thrown
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 
-from prima.values import LONGEST_MS
+from prima.language.values import LONGEST_MS
 
 HEADER_BYTES = 65_536
 """How much of a file's beginning is looked at."""

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from prima.commands import TABLE_4_2, CommandType
 from prima.errors import Problem
 from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, is_unit
 from prima.voicexml.document import Page, broken

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.commands import TABLE_4_2
+from prima.language.commands import TABLE_4_2
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 
 NAMESPACE = "http://www.w3.org/2001/vxml"

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from prima.errors import Problem, Severity
-from prima.visible import visible
+from prima.errors.visible import visible
 
 WIDEST = 100
 """Columns of a source line that are shown."""

@@ -16,8 +16,8 @@ from fnmatch import fnmatchcase
 from os.path import dirname, isabs, isfile, join, realpath, relpath
 from typing import Any
 
-from prima.codes import CODES
 from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean
+from prima.errors.codes import CODES
 from prima.markup.reader import decode
 from prima.markup.tree import MARKUP, Source
 

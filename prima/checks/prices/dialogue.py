@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from prima.commands import TABLE_4_2
+from prima.checks.prices.commands import command_price, group_price, unit_price
+from prima.checks.prices.contents import (
+    again,
+    contents_of,
+    handlers_of,
+    inside,
+    leads_round,
+    own_contents,
+    sent_by,
+    thrown_by,
+)
+from prima.checks.prices.firsts import Firsts, asks_at_most, is_left
+from prima.checks.prices.model import SPEECH, Gap, Outline, Price, Reaction, State, devices_of
+from prima.checks.prices.texts import Constants, words_of
 from prima.errors import Place
 from prima.interpreter.elements import (
     Act,
@@ -33,20 +46,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import takes
 from prima.interpreter.units import reach_of
-from prima.prices.commands import command_price, group_price, unit_price
-from prima.prices.contents import (
-    again,
-    contents_of,
-    handlers_of,
-    inside,
-    leads_round,
-    own_contents,
-    sent_by,
-    thrown_by,
-)
-from prima.prices.firsts import Firsts, asks_at_most, is_left
-from prima.prices.model import SPEECH, Gap, Outline, Price, Reaction, State, devices_of
-from prima.prices.texts import Constants, words_of
+from prima.language.commands import TABLE_4_2
 from prima.sim.scenario import Profile
 from prima.sim.voice import duration
 

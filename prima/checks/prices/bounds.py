@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from prima.checks.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
 from prima.errors import Place
-from prima.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
 
 MANY_STATES = 8
 """Of states that follow one another, so many are named."""

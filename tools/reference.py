@@ -1,6 +1,6 @@
 """What is generated from the tables in code: schemas, and the tables of the documentation.
 
-``python -m prima.reference`` writes them in place; with ``--check`` it writes
+``python -m tools.reference`` writes them in place; with ``--check`` it writes
 nothing, names what differs and exits with 1. It works in a checkout.
 """
 
@@ -19,10 +19,9 @@ from pathlib import Path
 from typing import Any
 
 import prima
-from prima import examples, prelude
-from prima.codes import CODES
-from prima.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.errors import UsageError
+from prima.errors.codes import CODES
+from prima.explain import examples
 from prima.interpreter import (
     application,
     bounds,
@@ -33,6 +32,8 @@ from prima.interpreter import (
     units,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
+from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
+from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
@@ -45,12 +46,11 @@ from prima.markup.schema import (
 )
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, selector
-from prima.script import budget, evaluation, host, syntax
+from prima.script import budget, evaluation, host, prelude, syntax
 from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
 from prima.transcript.record import Record
-from prima.values import KINDS, LONGEST_MS
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
@@ -679,7 +679,7 @@ def differing(root: Path) -> list[str]:
 def main(arguments: list[str]) -> int:
     """Write what is generated, or with ``--check`` name what differs."""
     if arguments not in ([], ["--check"]):
-        print("usage: python -m prima.reference [--check]", file=sys.stderr)
+        print("usage: python -m tools.reference [--check]", file=sys.stderr)
         return 2
     try:
         names = differing(ROOT)
@@ -689,7 +689,7 @@ def main(arguments: list[str]) -> int:
         return 2
     for name in names:
         if arguments:
-            print(f"{name} differs from the code; run python -m prima.reference", file=sys.stderr)
+            print(f"{name} differs from the code; run python -m tools.reference", file=sys.stderr)
         else:
             (ROOT / name).write_text(made[ROOT / name], encoding="utf-8", newline="\n")
             print(f"written: {name}")

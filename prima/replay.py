@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from prima.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.errors import UsageError
+from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import (
     Emergency,
     Ended,
@@ -23,8 +23,8 @@ from prima.messages import (
     Transferred,
     Unloaded,
 )
-from prima.prelude import START
 from prima.scheduler.selection import policy_named
+from prima.script.prelude import START
 from prima.session import AnyDocument, Session
 
 

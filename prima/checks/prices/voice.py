@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
-from prima.commands import TABLE_4_2
-from prima.interpreter.selection import takes
-from prima.markup.tree import Node
-from prima.prices.commands import command_price, group_price, unit_price
-from prima.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
-from prima.prices.model import Gap, Outline, Price, Reaction, State, devices_of
-from prima.prices.pages import TARGETS, Pages
-from prima.prices.speech import Reader, Said, utterances
-from prima.prices.tags import (
+from prima.checks.prices.commands import command_price, group_price, unit_price
+from prima.checks.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
+from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, devices_of
+from prima.checks.prices.pages import TARGETS, Pages
+from prima.checks.prices.speech import Reader, Said, utterances
+from prima.checks.prices.tags import (
     commands_in,
     holders,
     is_foreign,
@@ -23,9 +20,12 @@ from prima.prices.tags import (
     thrown_by,
     to_item,
 )
+from prima.interpreter.selection import takes
+from prima.language.commands import TABLE_4_2
+from prima.language.values import milliseconds
+from prima.markup.tree import Node
 from prima.sim.scenario import Profile
 from prima.sim.voice import duration
-from prima.values import milliseconds
 from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument

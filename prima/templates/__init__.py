@@ -14,7 +14,7 @@ from prima.markup.reader import parse
 from prima.sim.scenario import read_world
 from prima.sim.vocabulary import ROBOT, WORLD
 
-TEMPLATES = Path(__file__).parent / "templates"
+TEMPLATES = Path(__file__).parent
 ANSWERS = {
     "Would you like something to drink?": "Yes.",
     "Would you like juice or tea?": "Tea.",

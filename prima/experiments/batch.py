@@ -245,7 +245,7 @@ def _parts(output: str) -> Iterator[str]:
     if not output:
         yield ""
         return
-    from prima.writing import parts_folder
+    from prima.loading.writing import parts_folder
 
     with ExitStack() as held:
         try:

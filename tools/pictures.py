@@ -1,7 +1,7 @@
 """The pictures of the documentation, drawn from documents and runs.
 
 Each picture is what a transcript's records say: nothing in it is placed by hand.
-``python -m prima.pictures`` writes them into docs/pictures; with ``--check`` it
+``python -m tools.pictures`` writes them into docs/pictures; with ``--check`` it
 writes nothing, names what differs and exits with 1. It works in a checkout.
 """
 
@@ -14,8 +14,8 @@ from html import escape
 from pathlib import Path
 
 from prima import api, graph
-from prima.commands import TABLE_4_2
 from prima.graph.svg import applications as applications_style
+from prima.language.commands import TABLE_4_2
 from prima.messages import Record
 from prima.transcript.colours import of_run
 
@@ -421,7 +421,7 @@ def outputs(root: Path) -> dict[Path, str]:
 def main(arguments: list[str], root: Path = ROOT) -> int:
     """Write the pictures, or with ``--check`` name those that differ."""
     if arguments not in ([], ["--check"]):
-        print("usage: python -m prima.pictures [--check]", file=sys.stderr)
+        print("usage: python -m tools.pictures [--check]", file=sys.stderr)
         return 2
     code = 0
     for path, made in outputs(root).items():
@@ -429,7 +429,7 @@ def main(arguments: list[str], root: Path = ROOT) -> int:
             continue
         name = path.relative_to(root).as_posix()
         if arguments:
-            print(f"{name} differs from its run; run python -m prima.pictures", file=sys.stderr)
+            print(f"{name} differs from its run; run python -m tools.pictures", file=sys.stderr)
             code = 1
         else:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -252,8 +252,8 @@ EXAMPLES: dict[str, Example] = {
 
 def page() -> Path:
     """The page of the documentation that has the rules; it comes with the package."""
-    inside = Path(__file__).parent / PAGE
-    return inside if inside.is_file() else Path(__file__).parent.parent / "docs" / PAGE
+    inside = Path(__file__).parent.parent / PAGE
+    return inside if inside.is_file() else Path(__file__).parent.parent.parent / "docs" / PAGE
 
 
 @cache

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from prima.commands import TABLE_4_2, Argument, CommandType, check_argument
+from prima.checks.prices.model import Price, devices_of
+from prima.language.commands import TABLE_4_2, Argument, CommandType, check_argument
 from prima.markup.tree import Node
-from prima.prices.model import Price, devices_of
 from prima.sim.robot import BRAKING_MS
 from prima.sim.scenario import POINTING_MS, Profile
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from prima.codes import CODES
 from prima.errors import DocumentError, Problem, UsageError, did_you_mean
+from prima.errors.codes import CODES
 from prima.markup.limits import LIMITS
 
 FOLDER = Path(__file__).parent
@@ -110,7 +110,7 @@ def data(code: str) -> dict[str, Any]:
     Raises:
         UsageError: there is no such code.
     """
-    from prima.diagnostics import problem_data
+    from prima.errors.rendering import problem_data
 
     wrong, right = examples(code)
     return {
@@ -142,7 +142,7 @@ def headline(code: str, word: str) -> str:
 
 def told(example: Example) -> str:
     """The problems of an example as ``prima validate`` tells them."""
-    from prima.diagnostics import render
+    from prima.errors.rendering import render
 
     def lines(name: str) -> list[str]:
         path = FOLDER / name

@@ -6,9 +6,9 @@ the same device waits for the end. The times are those of the simulator's voice 
 
 from __future__ import annotations
 
+from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
 from prima.errors import Problem
 from prima.interpreter.elements import Document
-from prima.prices.model import Gap, Outline, Price, Reaction, State, worst
 from prima.sim.scenario import Profile
 from prima.voicexml.document import VoiceDocument
 
@@ -18,10 +18,10 @@ __all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
     """All that is known of an application of either language, its further documents included."""
     if isinstance(document, Document):
-        from prima.prices import dialogue
+        from prima.checks.prices import dialogue
 
         return dialogue.outline(document, profile)
-    from prima.prices import voice
+    from prima.checks.prices import voice
 
     return voice.outline(document, profile)
 

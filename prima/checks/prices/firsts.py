@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from prima.checks.prices.model import Price
 from prima.interpreter.elements import (
     Act,
     Block,
@@ -25,7 +26,6 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.events import takes
-from prima.prices.model import Price
 
 
 class Firsts:

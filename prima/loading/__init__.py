@@ -16,6 +16,7 @@ from itertools import islice
 from os.path import exists, getsize, isfile, normpath
 from typing import TYPE_CHECKING, TypeVar
 
+from prima.checks.ignores import Ignores
 from prima.errors import (
     DocumentError,
     Place,
@@ -27,7 +28,6 @@ from prima.errors import (
     one_of,
     parted,
 )
-from prima.ignores import Ignores
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
@@ -453,7 +453,7 @@ def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
 
 def _prices(document: Document) -> list[Problem]:
     """What an application's units cost others, on the demo's robot, as notes."""
-    from prima.prices import notes
+    from prima.checks.prices import notes
     from prima.sim.scenario import read_robot
 
     robot = documents_folder() / "robots" / "papero.xml"
@@ -840,11 +840,11 @@ def _digest(data: bytes) -> str:
 
 def schemas_folder() -> Path:
     """The folder of the schemas that come with the package."""
-    inside = _path(__file__).parent / "schemas"
-    return inside if inside.is_dir() else _path(__file__).parent.parent / "schemas"
+    inside = _path(__file__).parent.parent / "schemas"
+    return inside if inside.is_dir() else _path(__file__).parent.parent.parent / "schemas"
 
 
 def documents_folder() -> Path:
     """The folder of the demo documents that come with the package."""
-    inside = _path(__file__).parent / "documents"
-    return inside if inside.is_dir() else _path(__file__).parent.parent / "documents"
+    inside = _path(__file__).parent.parent / "documents"
+    return inside if inside.is_dir() else _path(__file__).parent.parent.parent / "documents"

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from urllib.parse import urldefrag, urlsplit
 
+from prima.checks.prices.model import Gap
 from prima.errors import DocumentError
 from prima.markup.tree import Node
-from prima.prices.model import Gap
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 

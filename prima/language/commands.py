@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from prima.errors import did_you_mean, one_of
-from prima.values import Value, outside, quoted, read_value, within
+from prima.language.values import Value, outside, quoted, read_value, within
 
 DEVICES = (
     "human-detection",

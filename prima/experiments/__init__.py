@@ -1,0 +1,1 @@
+"""Many runs: batches of scenarios, and studies of situations under every policy."""

@@ -1,0 +1,1 @@
+"""The tables of PRIMA's language: Commands and kinds of values."""
