@@ -214,6 +214,7 @@ def limits() -> str:
         ("elements inside each other", f"{LIMITS.depth}", "`too-deep`"),
         ("problems listed", f"{LIMITS.problems:,}", "`more-problems`"),
         ("names that one script declares", f"{syntax.MOST_NAMES:,}", "`bad-expression`"),
+        ("characters of one script", f"{parse.MOST_CODE:,}", "`bad-expression`"),
         ("a time in an attribute", f"{LONGEST_MS // 1000:,} s", "`bad-value`"),
         (
             "one evaluation of an expression or script",

@@ -24,6 +24,7 @@ from prima.script.prelude import (
     PRELUDE,
     STACK_LIMIT,
     reason,
+    source,
 )
 
 if TYPE_CHECKING:
@@ -36,79 +37,9 @@ LEAST_MEMORY = 1024 * 1024
 RESULT_LIMIT = 100_000
 """Characters that a value may have when it leaves the engine."""
 
-HELPERS = r"""
-(function () {
-'use strict';
-const stringify = JSON.stringify, parse = JSON.parse, isArray = Array.isArray;
-const assign = Object.assign, define = Object.defineProperty;
-const hidden = (object, name, value) => define(object, name, { value: value, writable: true });
-const keys = Object.keys, create = Object.create;
-const own = Object.hasOwn, number = Number;
-const apply = Reflect.apply, truth = Boolean.prototype.valueOf;
-const wrapped = [[Number, Number], [String, String], [Boolean, (v) => apply(truth, v, [])]];
-// Rules may have any name; so nothing else is there that looks like one, but for this method.
-const named = create(null);
-hidden(named, 'hasOwnProperty', Object.prototype.hasOwnProperty);
-const strange = '\0';
-// What JSON lacks, as objects that nobody writes:
-const mark = (value) => {
-  if (value === undefined || typeof value === 'function') return { [strange]: 'undefined' };
-  if (typeof value === 'number' && value - value !== 0) return { [strange]: String(value) };
-  if (value === null || typeof value !== 'object') return value;
-  if (typeof value.toJSON === 'function') return value;
-  for (let i = 0; i < wrapped.length; i++)
-    if (value instanceof wrapped[i][0]) return mark(wrapped[i][1](value));
-  const made = isArray(value) ? [] : {};
-  for (const key of keys(value))
-    define(made, key, { value: mark(value[key]), writable: true, configurable: true, enumerable: true });
-  if (isArray(value)) made.length = value.length;
-  return made;
-};
-const unmark = (value) => {
-  if (value === null || typeof value !== 'object') return value;
-  const told = own(value, strange) ? value[strange] : undefined;
-  if (told === 'undefined') return undefined;
-  if (told === 'NaN' || told === 'Infinity' || told === '-Infinity') return number(told);
-  for (const key of keys(value)) value[key] = unmark(value[key]);
-  return value;
-};
-const plain = (value) => value !== null && typeof value === 'object' && !isArray(value);
-return {
-  box: function (text) { return { v: parse(text) }; },
-  json: function (box) { return stringify(box.v); },
-  carry: function (box) {
-    const text = stringify(mark(box.v));
-    return text === undefined ? stringify(mark(undefined)) : text;
-  },
-  take: function (text) { return { v: unmark(parse(text)) }; },
-  environment: function (text, merges) {
-    let last, lastMeta = { text: '', score: 1 }, at = 0;
-    const own = { text: text, score: 1 }, rules = create(named), meta = create(named), waiting = [];
-    hidden(rules, 'latest', function () { return last; });
-    hidden(meta, 'latest', function () { return lastMeta; });
-    hidden(meta, 'current', function () { return own; });
-    return {
-      rules: rules, meta: meta,
-      add: function (name, box, text) { waiting.push([name, box, { text: text, score: 1 }]); },
-      next: function (out) {
-        const [name, box, about] = waiting[at++];
-        last = box.v; lastMeta = about;
-        if (name !== 'latest') rules[name] = last;
-        if (name !== 'latest' && name !== 'current') meta[name] = about;
-        if (merges && plain(out) && plain(last)) assign(out, last);
-      },
-    };
-  },
-}; })()
-"""
+HELPERS = source("tags.js")
 
-CHECK = r"""
-(function (eval) {
-  return function () {
-    try { eval('throw 0;\n' + arguments[0]); } catch (error) { if (error !== 0) throw error; }
-  };
-})(eval)
-"""
+CHECK = source("check.js")
 """Compiles a script by itself, which ends before it begins; it declares nothing outside."""
 
 
