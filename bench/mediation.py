@@ -26,12 +26,12 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     """
     from prima.language.commands import TABLE_4_2
     from prima.messages import Command, Request, Step
-    from prima.scheduler.chronicle import Chronicle
     from prima.scheduler.mediator import Mediator
+    from prima.scheduler.recorder import Recorder
     from prima.scheduler.selection import policy_named
 
-    chronicle = Chronicle()
-    mediator = Mediator(policy_named(policy), TABLE_4_2, chronicle)
+    recorder = Recorder()
+    mediator = Mediator(policy_named(policy), TABLE_4_2, recorder)
     asked = 0
 
     def ask(app: int) -> None:
@@ -45,12 +45,12 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     for app in range(waiting + 1):
         mediator.load(f"a{app}", "ea")
     for app in sorted(times, key=lambda app: times[app]):
-        chronicle.now = times[app]
+        recorder.now = times[app]
         ask(app)
-        chronicle.drain()
-    chronicle.now += 1
+        recorder.drain()
+    recorder.now += 1
     mediator.select()
-    chronicle.drain()
+    recorder.drain()
     (order,) = mediator.drain_orders()
     turns: list[int] = []
     lasted = 0.0
@@ -58,19 +58,19 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
         records: list[Record] = []
         began = perf_counter()
         for _ in range(CHAIN):
-            chronicle.now += 1
+            recorder.now += 1
             mediator.ended(order.behavior, True, {})
             mediator.told.clear()
             mediator.select()
             (order,) = mediator.drain_orders()
-            records += chronicle.drain()
+            records += recorder.drain()
         lasted += perf_counter() - began
         winners = [record["app"] for record in records if record["phase"] == "decision"]
         check(len(winners) == CHAIN, f"{len(winners)} decisions are recorded")
         check(len(set(winners[:-1])) == 1, "an application's next Command does not go on (S2c)")
         turns.append(int(winners[0][1:]))
         ask(turns[-1])
-        chronicle.drain()
+        recorder.drain()
     check(turns == expected_turns(times, len(turns)), "another application had its turn (S2e, S2f)")
     return CHAIN * len(turns) / lasted
 

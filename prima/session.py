@@ -57,9 +57,9 @@ from prima.messages import (
     line_of,
 )
 from prima.scheduler.behavior import WAITING, Behavior, Stream
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.endings import Told
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.recorder import Recorder
 from prima.scheduler.selection import Policy
 from prima.script.evaluation import EngineLost
 from prima.script.isolated import Engines
@@ -102,8 +102,8 @@ class Session:
         own = {name: frozenset(row.arguments) for name, row in commands.items()}
         self.apps = {doc.id: self._made(doc, own) for doc in documents}
         self.order = {name: index for index, name in enumerate(self.apps)}
-        self.chronicle = Chronicle()
-        self.mediator = Mediator(policy, commands, self.chronicle, bound, absence, patience)
+        self.recorder = Recorder()
+        self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
         self.failures: list[str] = []
         self.unheard = ""
         """What the user said last that nobody took."""
@@ -143,7 +143,7 @@ class Session:
         Orders are for the devices, in the order in which they were made; ``send``
         orders are for services.
         """
-        self.chronicle.now = now
+        self.recorder.now = now
         if self._turns:
             self._tell_turns()
         for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
@@ -169,7 +169,7 @@ class Session:
     def deadline(self) -> int | None:
         """The next instant at which :meth:`step` has to be called, if anything is due."""
         if self._turns:
-            return self.chronicle.now + 1
+            return self.recorder.now + 1
         due = min(self._due.values(), default=None)
         late = self.mediator.deadline()
         return late if due is None else due if late is None else min(due, late)
@@ -185,7 +185,7 @@ class Session:
 
     def drain(self) -> list[Record]:
         """Give the records made since the last time."""
-        return self.chronicle.drain()
+        return self.recorder.drain()
 
     @property
     def over(self) -> bool:
@@ -283,7 +283,7 @@ class Session:
         event = Event(name, self._serial, {}, reactive=True, shared=True)
         for app in self._in_order():
             with self._contained(app):
-                app.event(self.chronicle.now, event)
+                app.event(self.recorder.now, event)
             self._act(app)
         self._settle()
 
@@ -301,7 +301,7 @@ class Session:
         app.fail(error)
 
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
-        self.chronicle.add(phase, actor, inbound=True, **fields)
+        self.recorder.add(phase, actor, inbound=True, **fields)
 
     def _load(self, value: Loaded) -> None:
         name = value.app
@@ -318,7 +318,7 @@ class Session:
             app.connection = value.connection
         self.mediator.load(name, app.kind, app.document.lang, self.order[name])
         with self._contained(app):
-            app.start(self.chronicle.now)
+            app.start(self.recorder.now)
         self._act(app)
         if self._sensors:  # what it watches for may be so already
             self._look(app, {})
@@ -327,7 +327,7 @@ class Session:
     def _occurred(self, value: Occurred) -> None:
         name, app, data = value.name, value.app, value.data
         self._serial = serial = self._serial + 1
-        self.chronicle.event(name, value.actor, app, data, serial)
+        self.recorder.event(name, value.actor, app, data, serial)
         if name in SEEING:
             self.mediator.sees_user(name == "human.found")
         elif value.actor == "user":
@@ -338,7 +338,7 @@ class Session:
         event = Event(name, serial, data, True, shared=app is None)
         for one in apps:
             try:
-                one.event(self.chronicle.now, event)
+                one.event(self.recorder.now, event)
             except Exception as error:  # as _contained does, which takes longer
                 self._defect(one, error)
             if one.actions or self._due or one.deadline is not None:
@@ -400,7 +400,7 @@ class Session:
 
     def _breaks_in(self, value: Heard, said: list[Hypothesis]) -> bool:
         """Whether an application takes what the user says while its prompts are being said."""
-        now, memory = self.chronicle.now, self.mediator.memory
+        now, memory = self.recorder.now, self.mediator.memory
         for ab in [*memory.running.values(), *memory.waiting.values()]:
             app = self.apps[ab.app.name]
             if isinstance(app, Interpreter) or ab.command is None or ab.silent:
@@ -428,7 +428,7 @@ class Session:
                 link = app.listens_to(said)
                 if link is not None:
                     taken = True
-                    app.follow(self.chronicle.now, link, event)
+                    app.follow(self.recorder.now, link, event)
             self._act(app)
         return taken
 
@@ -437,7 +437,7 @@ class Session:
         app = self.apps.get(value.app)
         if app is not None and not isinstance(app, Interpreter) and value.app in self._loaded:
             with self._contained(app):
-                app.replied(self.chronicle.now, value)
+                app.replied(self.recorder.now, value)
             self._act(app)
             self._settle()
 
@@ -459,7 +459,7 @@ class Session:
         """C6: an application is told of sensors, and its conditions on them may have turned true."""
         raised: list[str] = []
         with self._contained(app):
-            raised = app.sensed(self.chronicle.now, values)
+            raised = app.sensed(self.recorder.now, values)
         for name in raised:
             self._own_event(app, name, {}, reactive=True)
         self._act(app)
@@ -473,12 +473,12 @@ class Session:
         """Let the application handle its own event; what it wants then is still to be done."""
         serial = self._record_own(app, name, data, "environment")
         with self._contained(app):
-            app.event(self.chronicle.now, Event(name, serial, data, reactive))
+            app.event(self.recorder.now, Event(name, serial, data, reactive))
 
     def _record_own(self, app: App, name: str, data: Data, actor: str) -> int:
         """Record an event that one application alone has defined; gives its serial number."""
         self._serial += 1
-        self.chronicle.add(
+        self.recorder.add(
             "event",
             actor,
             app=app.name,
@@ -518,7 +518,7 @@ class Session:
         self.mediator.open_window(told)
         for notice in told.notices:
             with self._contained(app):
-                app.notice(self.chronicle.now, notice)
+                app.notice(self.recorder.now, notice)
             self._act(app)
         self.mediator.close_window(told)
 
@@ -543,7 +543,7 @@ class Session:
             told = Told(app.name, stream if stream.open else None, [])
             self.mediator.open_window(told)
             with self._contained(app):
-                app.event(self.chronicle.now, Event(name, 0, {}, reactive=False, shared=True))
+                app.event(self.recorder.now, Event(name, 0, {}, reactive=False, shared=True))
             self._act(app)
             self.mediator.close_window(told)
 
@@ -596,7 +596,7 @@ class Session:
 
     def _send(self, app: App, action: Send) -> None:
         data = {"to": action.service, **action.data}
-        self.chronicle.add(
+        self.recorder.add(
             "send",
             "robot",
             app=app.name,
@@ -609,7 +609,7 @@ class Session:
         self._sends.append(order)
 
     def _log(self, app: App, action: Say) -> None:
-        self.chronicle.add(
+        self.recorder.add(
             "log" if action.level == "log" else "error",
             "robot",
             app=app.name,

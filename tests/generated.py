@@ -45,8 +45,8 @@ from prima.messages import (
     Step,
     Unloaded,
 )
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.recorder import Recorder
 from prima.scheduler.selection import EXTENSIONS, policy_named
 from prima.session import Session
 from prima.transcript.lines import line
@@ -742,8 +742,8 @@ class Requester:
 
 def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) -> Run:
     """Run a script; it does what a session does, by rule V3."""
-    chronicle = Chronicle()
-    mediator = Mediator(policy_named(policy), script.world.table, chronicle, patience=patience)
+    recorder = Recorder()
+    mediator = Mediator(policy_named(policy), script.world.table, recorder, patience=patience)
     apps = {
         name: Requester(name, windows) for name, windows in zip(APPS, script.windows, strict=False)
     }
@@ -778,7 +778,7 @@ def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) ->
         if not times and not held:
             break
         steps, now = steps + 1, max(now, min(times, default=now + 1))
-        chronicle.now = now
+        recorder.now = now
         if not times:
             held[0].act(mediator, [Close()])  # U5: a unit is concluded for certain
         values = devices.collect(now)
@@ -789,7 +789,7 @@ def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) ->
                 case Failed():
                     mediator.failed(value.behavior, value.device, value.reason)
                 case Listening():
-                    chronicle.add("listening", "robot", behavior=value.behavior)
+                    recorder.add("listening", "robot", behavior=value.behavior)
                     mediator.listening(value.behavior)
                 case Heard():
                     question = mediator.question()
@@ -801,11 +801,11 @@ def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) ->
                 case Emergency():
                     mediator.emergency(value.pressed, value.resume, len(events) + steps)
                 case Occurred(name="human.found" | "human.lost"):
-                    chronicle.add("event", "environment", event=value.name, inbound=True)
+                    recorder.add("event", "environment", event=value.name, inbound=True)
                     mediator.sees_user(value.name == "human.found")
                 case Occurred():
                     serial = value.data["serial"]
-                    chronicle.add(
+                    recorder.add(
                         "event", "environment", event="message", serial=serial, inbound=True
                     )
                     for app, deeds in zip(apps.values(), events[serial][1], strict=False):
@@ -816,7 +816,7 @@ def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) ->
         mediator.select()
         for order in mediator.drain_orders():
             devices.order(now, order)
-        records += chronicle.drain()
+        records += recorder.drain()
     run = Run(records, steps < STEPS, _orders_match(records, devices.starts))
     if run.complete and not mediator.halted:
         run.problems += [

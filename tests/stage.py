@@ -18,8 +18,8 @@ from prima.messages import (
     Request,
     Step,
 )
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.recorder import Recorder
 from prima.scheduler.selection import policy_named
 
 MOVE = Command("topological-move", {"to": "room"})
@@ -62,9 +62,9 @@ class Stage:
         bound: int | None = None,
         patience: int = PATIENCE_MS,
     ) -> None:
-        self.chronicle = Chronicle()
+        self.recorder = Recorder()
         chosen = policy_named(policy)
-        self.mediator = Mediator(chosen, table, self.chronicle, bound, patience=patience)
+        self.mediator = Mediator(chosen, table, self.recorder, bound, patience=patience)
         for name, kind in ({"fa": "fa", "ea": "ea"} if apps is None else apps).items():
             self.mediator.load(name, kind)
         self.runs = 0
@@ -103,7 +103,7 @@ class Stage:
     # What happens ---------------------------------------------------------------
 
     def at(self, time: int) -> Stage:
-        self.chronicle.now = time
+        self.recorder.now = time
         return self
 
     def end(self, behavior: str, goal: bool = True, then: Any = None, **data: Any) -> None:
@@ -126,7 +126,7 @@ class Stage:
         self.settle()
         self.mediator.select()
         self.orders += self.mediator.drain_orders()
-        made = self.chronicle.drain()
+        made = self.recorder.drain()
         self.records += made
         return [record["behavior"] for record in made if record["phase"] == "start"]
 

@@ -35,7 +35,7 @@ INSIDE = {
     "scheduler": [
         {"effects"},
         {"behavior"},
-        {"chronicle", "memory", "intake"},
+        {"recorder", "memory", "intake"},
         {"rules"},
         {"patience", "selection"},
         {"selector"},

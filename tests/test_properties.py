@@ -82,7 +82,7 @@ def test_records_tell_what_was_when_they_were_made_however_late_they_are_drained
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Session, "drain", undrained)
         perform(play, policy)
-    assert sessions[0].chronicle.drain() == records
+    assert sessions[0].recorder.drain() == records
 
 
 @given(plays(), scripts(), st.sampled_from([0, 5, 30, 200]), st.one_of(st.just("prima"), extended))

@@ -1015,7 +1015,7 @@ def test_e6_who_is_kept_from_the_speaker_has_a_turn_at_last() -> None:
         stage.end(f"ea#{number}", then=lambda: stage.request("ea", say("On.")))
         if (started := stage.select()) != [f"ea#{number + 1}"]:
             break
-    assert started == ["fa#1"] and stage.chronicle.now == 6000
+    assert started == ["fa#1"] and stage.recorder.now == 6000
     assert stage.rule("fa#1") == "E6" and stage.losers("fa#1") == ["ea#7"]
     assert stage.floor == [], "no reaction, so that nobody is suspended"
     assert [(r["time"], r["rule"]) for r in stage.phases("starve")] == [(6000, "E6")]

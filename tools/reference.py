@@ -46,7 +46,7 @@ from prima.markup.schema import (
 )
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, selector
-from prima.script import budget, evaluation, host, prelude, syntax
+from prima.script import budget, evaluation, host, parse, prelude, syntax
 from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines

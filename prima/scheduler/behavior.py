@@ -208,7 +208,7 @@ class Behavior:
     late: int | None = None
     """When it will have run for longer than it may (U5, E1), once it has started."""
     told: Record | None = None
-    """What its records have in common: see :mod:`prima.scheduler.chronicle`."""
+    """What its records have in common: see :mod:`prima.scheduler.recorder`."""
 
     def __post_init__(self) -> None:
         self.id = self.name

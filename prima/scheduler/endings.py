@@ -16,9 +16,9 @@ from prima.scheduler.behavior import (
     Run,
     Stream,
 )
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.intake import Maker, Table
 from prima.scheduler.memory import Memory
+from prima.scheduler.recorder import Recorder
 from prima.scheduler.selection import Policy
 from prima.scheduler.selector import Selector
 
@@ -41,7 +41,7 @@ class Endings:
         self,
         policy: Policy,
         table: Table,
-        chronicle: Chronicle,
+        recorder: Recorder,
         bound: int | None = None,
         absence: int = ABSENCE_MS,
         patience: int = PATIENCE_MS,
@@ -51,18 +51,18 @@ class Endings:
         Args:
             policy: what decides.
             table: the robot's Commands.
-            chronicle: takes the records.
+            recorder: takes the records.
             bound: after how many loops of another a waiting AB counts as a reaction (E4).
             absence: after how long (ms) without being sensed the user is absent (K1).
             patience: how long (ms) others may keep an AB from the speaker (E6); 0 for ever.
         """
         self._absence = absence
-        self.chronicle = chronicle
-        chronicle.extensions = policy.extensions
+        self.recorder = recorder
+        recorder.extensions = policy.extensions
         self.memory = Memory()
         self.told: deque[Told] = deque()
         self._maker = Maker(table)
-        self._selector = Selector(self.memory, policy, self._maker, chronicle, bound, patience)
+        self._selector = Selector(self.memory, policy, self._maker, recorder, bound, patience)
         self.holds: dict[str, int] = {}
         """Until when streams are held (X3)."""
         self._restoring = policy.has("x1")
@@ -95,7 +95,7 @@ class Endings:
         return turns
 
     def _now(self) -> int:
-        return self.chronicle.now
+        return self.recorder.now
 
     def _cancel(self, behaviors: list[Behavior], devices: frozenset[str]) -> None:
         """O2: delete ABs; one that runs on the devices is cut short, others finish."""
@@ -142,7 +142,7 @@ class Endings:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
             if ab.feedback and "locomotion" in ab.devices:
                 self._rolling = ab
-        self.chronicle.behavior("cancel", ab, rule=rule, outcome=ab.state)
+        self.recorder.behavior("cancel", ab, rule=rule, outcome=ab.state)
         self._remove(ab)
 
     def _remove(self, ab: Behavior) -> None:
@@ -186,7 +186,7 @@ class Endings:
         name = behavior.partition(".")[0]
         ab = self.memory.behaviors.get(name)
         unit = self._selector.halting.pop(name, None)
-        self.chronicle.add(
+        self.recorder.add(
             "halted",
             "robot",
             app=ab.app.name if ab else unit[0].app.name if unit else None,
@@ -216,7 +216,7 @@ class Endings:
         outcome = "done" if ending else "again"
         if data and ending and "outcome" in data:
             outcome = str(data["outcome"])
-        self.chronicle.end(ab, outcome, goal, data, inbound)
+        self.recorder.end(ab, outcome, goal, data, inbound)
         if ab.feedback and not goal and "locomotion" in ab.devices:
             self._rolling = ab
         if self._restoring and ab.type is not None and ab.command is not None:
@@ -251,7 +251,7 @@ class Endings:
         """End a unit when its Commands have ended, or what was left to run in it has."""
         if unit.state is not RUNNING or unit.inner or unit.open:
             return
-        self.chronicle.end(unit, "done", True, {}, inbound=False)
+        self.recorder.end(unit, "done", True, {}, inbound=False)
         self._finish(unit, {})
 
     def _close_unit(self, app: Application, number: int) -> None:

@@ -25,7 +25,7 @@ class Failures(Endings):
             self._fail(ab, f"error.device.{device}", reason, inbound=True)
 
     def _fail(self, ab: Behavior, event: str, reason: str, inbound: bool = False) -> None:
-        self.chronicle.behavior(
+        self.recorder.behavior(
             "fail",
             ab,
             rule="E1",
@@ -45,7 +45,7 @@ class Failures(Endings):
             unit.open = True  # so that it does not settle as done
             self._remove(ab)
             ab = unit
-            self.chronicle.behavior("fail", ab, rule="E1", event=event, message=reason)
+            self.recorder.behavior("fail", ab, rule="E1", event=event, message=reason)
         stream, run, unit_of, silent = ab.stream, ab.run, ab.unit, ab.silent
         self._remove(ab)
         if ab.inserted:
@@ -109,10 +109,10 @@ class Failures(Endings):
         stream.hold = stream.held_until = None
         del self.holds[stream.name]
         self._touched[stream.name] = stream
-        self.chronicle.stream("held", stream, "X3", outcome=outcome)
+        self.recorder.stream("held", stream, "X3", outcome=outcome)
 
     def _unit_timeout(self, unit: Behavior) -> None:
-        self.chronicle.behavior("fail", unit, rule="U5", event="error.unit.timeout")
+        self.recorder.behavior("fail", unit, rule="U5", event="error.unit.timeout")
         number = next((key for key, ab in unit.app.units.items() if ab is unit), None)
         run = unit.run
         if number is not None:
@@ -140,7 +140,7 @@ class Failures(Endings):
         ``serial`` is that of the event by which applications are told.
         """
         self.changed = True
-        self.chronicle.add(
+        self.recorder.add(
             "emergency",
             "mediator",
             rule="E5",
@@ -182,9 +182,7 @@ class Failures(Endings):
             return
         if ab.command is not None:
             self.orders.append(Order("abort", ab.id, ab.command, app=ab.app.name))
-        self.chronicle.behavior(
-            "cancel", ab, rule="E5", outcome="running" if given_up else "halted"
-        )
+        self.recorder.behavior("cancel", ab, rule="E5", outcome="running" if given_up else "halted")
         if given_up:
             self._remove(ab)
         else:

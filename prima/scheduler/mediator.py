@@ -3,7 +3,7 @@
 It has no clock, devices or documents. Whoever drives it calls, at one instant,
 first what has ended, then what has happened, then :meth:`Mediator.select` once
 (rule V3), and drains ``orders`` (for the devices), ``notices`` (for the
-applications) and the chronicle's records.
+applications) and the recorder's records.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Mediator(Failures):
         if order is None:
             order = before.order if before is not None else len(self.memory.apps)
         self.memory.apps[name] = Application(name, kind, order)
-        self.chronicle.add(
+        self.recorder.add(
             "load", "mediator", app=name, data={"kind": kind, **({"lang": lang} if lang else {})}
         )
 
@@ -52,7 +52,7 @@ class Mediator(Failures):
         self._drop_hints(app, None)
         for number in list(app.units):
             self._close_unit(app, number)
-        self.chronicle.add("unload", "mediator", app=name, rule="E2", outcome=reason)
+        self.recorder.add("unload", "mediator", app=name, rule="E2", outcome=reason)
 
     def sees_user(self, yes: bool) -> None:
         """V4: the camera has come to see the user, or has lost them (for X4 and K1)."""
@@ -71,7 +71,7 @@ class Mediator(Failures):
         app = self.memory.apps[name]
         if self._selector.policy.has("x6"):
             for command, lacking in substitute(asked.steps, self._maker.table):
-                self.chronicle.add(
+                self.recorder.add(
                     "substitute",
                     "mediator",
                     app=name,
@@ -102,7 +102,7 @@ class Mediator(Failures):
             if unit is not None:
                 unit.inner[ab.name] = ab
             self.memory.add(ab)
-            self.chronicle.request(ab)
+            self.recorder.request(ab)
         (app if unit is None else unit).latest = made[-1]
 
     def open_unit(self, name: str, asked: OpenUnit) -> None:
@@ -118,7 +118,7 @@ class Mediator(Failures):
         self._root(unit, parent, asked.cause)
         unit.connect = asked.connect
         self.memory.add(unit)
-        self.chronicle.request(unit)
+        self.recorder.request(unit)
         app.latest = unit
 
     def _devices_of(self, types: tuple[str, ...]) -> frozenset[str]:
@@ -141,7 +141,7 @@ class Mediator(Failures):
         """O3: the state's Commands that have not started are deleted, its loops end."""
         self.changed = True
         app = self.memory.apps[name]
-        self.chronicle.add("leave", "mediator", app=name, rule="O3", state=asked.state)
+        self.recorder.add("leave", "mediator", app=name, rule="O3", state=asked.state)
         self._drop_hints(app, asked.state)
         state = [ab for ab in self.memory.of_app(app) if ab.document_state == asked.state]
         if not state:
@@ -174,7 +174,7 @@ class Mediator(Failures):
 
     def _refuse(self, app: Application, asked: Request, refused: Refused) -> None:
         command = refused.command
-        self.chronicle.add(
+        self.recorder.add(
             "fail",
             "mediator",
             app=app.name,
@@ -265,7 +265,7 @@ class Mediator(Failures):
         stream = told.stream
         self.memory.apps[told.app].window = stream
         if stream is not None:
-            self.chronicle.stream("window", stream, "C3", outcome="open")
+            self.recorder.stream("window", stream, "C3", outcome="open")
 
     def close_window(self, told: Told) -> None:
         """The application has gone to wait for something else."""
@@ -274,7 +274,7 @@ class Mediator(Failures):
         self.memory.apps[told.app].window = None
         if stream is not None:
             self._touched[stream.name] = stream
-            self.chronicle.stream("window", stream, "C3", outcome="closed")
+            self.recorder.stream("window", stream, "C3", outcome="closed")
 
     def select(self) -> None:
         """Start everything that may start, then stop what rolls on for nobody (F5)."""
@@ -298,7 +298,7 @@ class Mediator(Failures):
         """F5: stop a body that gets no next loop, unless something else takes the wheels."""
         if "locomotion" not in self.memory.occupied:
             self.orders.append(Order("stop", ab.id, ab.command, app=ab.app.name))
-            self.chronicle.behavior("stop", ab, rule="F5")
+            self.recorder.behavior("stop", ab, rule="F5")
 
     def _close_streams(self) -> None:
         """C1, F3: streams that nothing keeps open end, and hold no floor then."""
@@ -311,11 +311,11 @@ class Mediator(Failures):
                 kept.append(stream)  # after those that end have given the floor back
                 continue
             self.memory.end(stream)
-            self.chronicle.stream("stream-end", stream, "C1")
+            self.recorder.stream("stream-end", stream, "C1")
             floor = self.memory.floor
             if stream in floor:
                 floor.remove(stream)
-                self.chronicle.stream(
+                self.recorder.stream(
                     "floor", stream, "F3", outcome="returned", floor=[held.name for held in floor]
                 )
 
@@ -326,7 +326,7 @@ class Mediator(Failures):
         """X3: the stream stays open, with the floor unless another has it, and waits."""
         assert stream.hold is not None
         until = self.holds[stream.name] = stream.held_until = self._now() + stream.hold
-        self.chronicle.stream("held", stream, "X3", outcome="begun", data={"until": until / 1000})
+        self.recorder.stream("held", stream, "X3", outcome="begun", data={"until": until / 1000})
         if not self.memory.floor:
             self._selector.take_floor(stream, "X3")
 

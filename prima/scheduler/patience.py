@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from prima.scheduler import rules
 from prima.scheduler.behavior import Behavior
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.memory import Memory
+from prima.scheduler.recorder import Recorder
 
 
 class Patience:
     """Watches the waiting ABs of a run; ``most`` (ms) is how long each has to bear it, 0 for ever."""
 
-    def __init__(self, memory: Memory, chronicle: Chronicle, most: int) -> None:
+    def __init__(self, memory: Memory, recorder: Recorder, most: int) -> None:
         self._memory = memory
-        self._chronicle = chronicle
+        self._chronicle = recorder
         self._most = most
         self.due: int | None = None
         """When the next AB will have waited for so long (ms), if any waits."""

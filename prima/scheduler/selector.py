@@ -7,11 +7,11 @@ from typing import Final
 from prima.messages import Command, Group, Order
 from prima.scheduler import rules
 from prima.scheduler.behavior import RUNNING, WAITING, Behavior, Stream
-from prima.scheduler.chronicle import Chronicle
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
 from prima.scheduler.patience import Patience
+from prima.scheduler.recorder import Recorder
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.selection import Policy
 
@@ -33,13 +33,13 @@ class Selector:
         memory: Memory,
         policy: Policy,
         maker: Maker,
-        chronicle: Chronicle,
+        recorder: Recorder,
         bound: int | None,
         patience: int,
     ) -> None:
         self.memory = memory
         self.policy = policy
-        self.chronicle = chronicle
+        self.recorder = recorder
         self.bound = bound
         self._preparing = policy.has("x1") or policy.has("x4")
         self._composing = policy.has("x5")
@@ -56,7 +56,7 @@ class Selector:
         """Streams that were ``suspended`` or have ``resumed``, for their applications to hear."""
         self._suspensions = 0
         self._starved = 0
-        self.patience = Patience(memory, chronicle, patience if policy.floor else 0)
+        self.patience = Patience(memory, recorder, patience if policy.floor else 0)
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
@@ -172,7 +172,7 @@ class Selector:
         return True
 
     def _interrupt(self, ab: Behavior, reaction: Behavior) -> None:
-        self.chronicle.behavior("interrupt", ab, rule="X2", by=reaction.id)
+        self.recorder.behavior("interrupt", ab, rule="X2", by=reaction.id)
         self._remember_parts(ab)
         self._empty(ab)
         if ab.command is not None:
@@ -208,7 +208,7 @@ class Selector:
             self._empty(inner)
             if inner.state is RUNNING and inner.command is not None:
                 self._stop_device(inner)
-            self.chronicle.behavior("cancel", inner, rule="X2", outcome=inner.state)
+            self.recorder.behavior("cancel", inner, rule="X2", outcome=inner.state)
             self.memory.remove(inner)
 
     def _stop_device(self, ab: Behavior) -> None:
@@ -245,7 +245,7 @@ class Selector:
             else:
                 link(before, made)
             self.memory.add(made)
-            self.chronicle.request(made, before=ab.id)
+            self.recorder.request(made, before=ab.id)
             before = made
         if before is None:
             return False
@@ -274,7 +274,7 @@ class Selector:
         changed = ab.blocked[0] != rule or "." not in by
         ab.blocked = refusal
         if changed:  # the next loop of the same feedback Command is no news
-            self.chronicle.hold(ab, rule, by)
+            self.recorder.hold(ab, rule, by)
 
     def _start(self, rank: Rank, ab: Behavior, lower: list[Ranked], held: Held, now: int) -> bool:
         """Start an AB and record why; true when others rank otherwise now.
@@ -297,8 +297,8 @@ class Selector:
         changed = self._take_floor(ab, reaction, beside)
         losers = self._outdone(rivals, ab, lower, held)
         rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
-        self.chronicle.decision(ab, rule, [loser.id for _, loser in losers])
-        self.chronicle.start(ab, rule, reaction)
+        self.recorder.decision(ab, rule, [loser.id for _, loser in losers])
+        self.recorder.start(ab, rule, reaction)
         if ab.inner:
             self._advance(ab, now)
         if ab.feedback and ab.loop > 1:
@@ -363,7 +363,7 @@ class Selector:
         for device in ab.in_order:
             other = self.memory.occupied.get(device)
             if other is not None and other is not ab and other is not ab.unit:
-                self.chronicle.behavior("collision", other, rule="none", by=ab.id, device=device)
+                self.recorder.behavior("collision", other, rule="none", by=ab.id, device=device)
 
     def _take_floor(self, ab: Behavior, reaction: int | None, beside: bool) -> bool:
         """F1, F3: a reaction, or what starts by F2, takes the floor; the loser stays beneath."""
@@ -382,7 +382,7 @@ class Selector:
         """Put a stream on top of the floors; the others' streams are suspended (C2)."""
         floor = self.memory.floor
         floor.append(stream)
-        self.chronicle.stream(
+        self.recorder.stream(
             "floor", stream, rule, outcome="taken", floor=[held.name for held in floor]
         )
         self._suspend_others(stream)
@@ -399,13 +399,13 @@ class Selector:
             if not other.suspended:
                 other.suspended, other.place = True, self._suspensions
                 self.turns.append(("suspended", other))
-                self.chronicle.stream("suspend", other, "C2", by=stream.name)
+                self.recorder.stream("suspend", other, "C2", by=stream.name)
 
     def _resume(self, stream: Stream, ab: Behavior) -> None:
         """C2: a suspended stream goes on with an AB."""
         stream.suspended = False
         self.turns.append(("resumed", stream))
-        self.chronicle.stream("resume", stream, "C2", behavior=ab.id)
+        self.recorder.stream("resume", stream, "C2", behavior=ab.id)
 
     def _count_starving(self, ab: Behavior, now: int) -> bool:
         """E4: count the loops that other applications' equal ABs have waited.
@@ -418,7 +418,7 @@ class Selector:
                 continue
             other.waited_loops += 1
             if other.waited_loops == STARVING_LOOPS:
-                self.chronicle.add(
+                self.recorder.add(
                     "starve",
                     "mediator",
                     app=other.app.name,
@@ -452,7 +452,7 @@ class Selector:
             made.append(ab)
             unit.inner[ab.name] = ab
             self.memory.add(ab)
-            self.chronicle.request(ab)
+            self.recorder.request(ab)
 
     def _advance(self, unit: Behavior, now: int) -> None:
         """Start the unit's own ABs in their order, where their devices are free (U4, U5)."""
@@ -460,7 +460,7 @@ class Selector:
             if ab.state is WAITING and not (self.policy.exclusive and self.memory.conflict(ab)):
                 reaction, ab.reaction = ab.reaction, None
                 self._run(ab, now)
-                self.chronicle.start(ab, "U5" if unit.spans else "U4", reaction)
+                self.recorder.start(ab, "U5" if unit.spans else "U4", reaction)
                 if ab.inner:
                     self._advance(ab, now)
 

@@ -209,8 +209,8 @@ class Rehearsal:
             self.outcome = "quiet" if due is None else "until"
         if self.outcome == "until":
             self.now = until
-        self.session.chronicle.now = self.now
-        self.session.chronicle.add("over", "mediator", outcome=self.outcome)
+        self.session.recorder.now = self.now
+        self.session.recorder.add("over", "mediator", outcome=self.outcome)
         self.session.close()
         return self.session.drain()
 

@@ -12,7 +12,7 @@ from prima.voicexml.calls import Calls
 from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
-from prima.voicexml.recorder import Recorder
+from prima.voicexml.recorder import Recordings
 from prima.voicexml.results import RESULTS, shadow
 from prima.voicexml.state import (
     MAX_DEPTH,
@@ -38,7 +38,7 @@ class Items:
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
         self.engine = owner.engine
-        self.recorder = Recorder(owner)
+        self.recorder = Recordings(owner)
         self.calls = Calls(owner)
 
     # What the user said ---------------------------------------------------------------

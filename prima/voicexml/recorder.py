@@ -25,7 +25,7 @@ MAX_KNOWN = 1000
 """Recordings that are known as such when they are played back."""
 
 
-class Recorder:
+class Recordings:
     """Fills the record items of one application."""
 
     def __init__(self, owner: Machine) -> None:

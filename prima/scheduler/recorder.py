@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 from prima.messages import Cue, Data, Json, Record, line_of
 from prima.scheduler.behavior import Behavior, Stream
@@ -11,60 +11,72 @@ LOSERS_NAMED: Final = 8
 """How many losers of a decision are named; all are counted."""
 
 
-Kept = tuple[Any, ...]
-"""What will be a record: its phase, the instant, and what :func:`recorded` makes of the rest. Most
-records are kept so, as a tuple costs next to nothing, until they are drained."""
-
-
-class Chronicle:
+class Recorder:
     """Collects the records of a run; ``now`` is the instant, in milliseconds."""
 
     def __init__(self) -> None:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
         """Which of X1 to X6 are on: what they rest on is recorded with a request."""
-        self.records: list[Record | Kept] = []
+        self.records: list[Record] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
         """Record something. Fields that are None are left out when it is written."""
-        fields["time"] = self.now
-        fields["phase"] = phase
-        fields["actor"] = actor
-        self.records.append(fields)
+        self.records.append({"time": self.now, "phase": phase, "actor": actor, **fields})
 
     def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
         """Record an event that has come in."""
-        held = dict(data) if data else None
-        self.records.append(("event", self.now, actor, app, name, held, serial))
+        self.records.append(
+            {
+                "time": self.now,
+                "phase": "event",
+                "actor": actor,
+                "app": app,
+                "event": name,
+                "data": dict(data) if data else None,
+                "serial": serial,
+                "inbound": True,
+            }
+        )
 
     def drain(self) -> list[Record]:
         """Give what was recorded since the last time."""
         records, self.records = self.records, []
-        return [one if isinstance(one, dict) else recorded(one) for one in records]
+        return records
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        record = of_behavior(phase, self.now, ab.told or describe(ab), ab.id)
+        record = (ab.told or describe(ab)).copy()
+        record["time"] = self.now
+        record["phase"] = phase
+        record["behavior"] = ab.id
         record.update(fields)
         self.records.append(record)
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
-        told, held = ab.told or describe(ab), dict(data) if data else None
-        reached = goal if ab.feedback else None
-        self.records.append(("end", self.now, told, ab.id, outcome, reached, held, inbound or None))
+        fields: Record = {"outcome": outcome, "inbound": inbound or None}
+        if ab.feedback:
+            fields["goal"] = goal
+        if data:
+            fields["data"] = dict(data)
+        self.behavior("end", ab, **fields)
 
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
-        told, since = ab.told or describe(ab), (True, ab.since) if ab.resumed else None
-        parent = ab.parent if ab.feedback else None
-        self.records.append(
-            ("start", self.now, told, ab.id, ab.in_order, rule, parent, reaction, since)
-        )
+        fields: Record = {"devices": [*ab.in_order], "rule": rule}
+        if ab.feedback and ab.parent is not None:
+            fields["parent"] = ab.parent
+        if reaction is not None:
+            fields["reactive"] = True
+            fields["cause"] = reaction if reaction > 0 else None
+        if ab.resumed:
+            fields["resumed"], fields["data"] = True, ab.since
+        self.behavior("start", ab, **fields)
 
     def hold(self, ab: Behavior, rule: str, by: str) -> None:
         """Record that a waiting AB may not start, and because of what."""
-        self.records.append(("hold", self.now, ab.app.name, ab.id, rule, by))
+        self.add("hold", "mediator", app=ab.app.name, behavior=ab.id, rule=rule, by=by)
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
@@ -101,8 +113,15 @@ class Chronicle:
 
     def decision(self, winner: Behavior, rule: str, losers: list[str]) -> None:
         """Record a selection: the rule, who won, who lost, and how many did."""
-        named, count = losers[:LOSERS_NAMED], len(losers)
-        self.records.append(("decision", self.now, winner.app.name, winner.id, rule, named, count))
+        self.add(
+            "decision",
+            "mediator",
+            app=winner.app.name,
+            winner=winner.id,
+            rule=rule,
+            losers=losers[:LOSERS_NAMED],
+            losers_count=len(losers),
+        )
 
 
 def describe(ab: Behavior) -> Record:
@@ -123,89 +142,6 @@ def describe(ab: Behavior) -> Record:
         "inbound": None,
     }
     return ab.told
-
-
-HOLD: Final[Record] = {
-    "time": 0,
-    "phase": "hold",
-    "actor": "mediator",
-    "app": "",
-    "behavior": "",
-    "rule": "",
-    "by": "",
-}
-DECISION: Final[Record] = {
-    "time": 0,
-    "phase": "decision",
-    "actor": "mediator",
-    "app": "",
-    "winner": "",
-    "rule": "",
-    "losers": None,
-    "losers_count": 0,
-}
-
-
-def of_behavior(phase: str, time: int, told: Record, behavior: str) -> Record:
-    """What all records of an AB have; ``told`` is :func:`describe`'s."""
-    record = told.copy()
-    record["time"] = time
-    record["phase"] = phase
-    record["behavior"] = behavior
-    return record
-
-
-def recorded(kept: Kept) -> Record:
-    """Make a record of what was kept."""
-    phase: str = kept[0]
-    if phase == "end":
-        _, time, told, behavior, outcome, goal, data, inbound = kept
-        record = of_behavior(phase, time, told, behavior)
-        record["outcome"] = outcome
-        record["inbound"] = inbound
-        if goal is not None:
-            record["goal"] = goal
-        if data is not None:
-            record["data"] = data
-    elif phase == "start":
-        _, time, told, behavior, devices, rule, parent, reaction, since = kept
-        record = of_behavior(phase, time, told, behavior)
-        record["devices"] = [*devices]
-        record["rule"] = rule
-        if parent is not None:
-            record["parent"] = parent
-        if reaction is not None:
-            record["reactive"] = True
-            record["cause"] = reaction if reaction > 0 else None
-        if since is not None:
-            record["resumed"], record["data"] = since
-    elif phase == "decision":
-        record = DECISION.copy()
-        (
-            _,
-            record["time"],
-            record["app"],
-            record["winner"],
-            record["rule"],
-            record["losers"],
-            record["losers_count"],
-        ) = kept
-    elif phase == "hold":
-        record = HOLD.copy()
-        _, record["time"], record["app"], record["behavior"], record["rule"], record["by"] = kept
-    else:
-        _, time, actor, app, event, data, serial = kept
-        record = {
-            "time": time,
-            "phase": phase,
-            "actor": actor,
-            "app": app,
-            "event": event,
-            "data": data,
-            "serial": serial,
-            "inbound": True,
-        }
-    return record
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
