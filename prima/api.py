@@ -32,6 +32,7 @@ from prima.messages import Record
 
 if TYPE_CHECKING:
     from prima.export import Exported
+    from prima.interpreter.bounds import Visit
     from prima.scheduler.behavior import Application
     from prima.sim.rehearsal import Rehearsal
     from prima.sim.services import Web
@@ -61,6 +62,8 @@ class Transcript:
     """Of a run stopped at ``until``, what each application does that has not ended."""
     cut: str = ""
     """What is wrong with the line at which a partial transcript ends."""
+    visits: list[Visit] = field(default_factory=list)
+    """What its applications came to in their documents, where a run was told to keep it."""
     measure: Measure | None = None
     """What was counted while the run went on."""
 
@@ -142,6 +145,7 @@ def rehearse(
     hosts: Iterable[str] = (),
     isolate: str = "ea",
     patience: int | None = None,
+    visits: bool = False,
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -159,6 +163,7 @@ def rehearse(
             a script that escapes the engine's limits).
         patience: rule E6's bound (ms) on how long an application may keep others from the
             speaker, 0 for ever; by default the scenario's own.
+        visits: whether to keep what the applications came to in their documents.
 
     Raises:
         DocumentError: documents are wrong.
@@ -208,6 +213,8 @@ def rehearse(
                 made.records.append(finished(record))
             if sink is not None:
                 sink(line(record))
+        if visits:
+            made.visits += rehearsal.visits
     made.failures = list(rehearsal.session.failures)
     made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome

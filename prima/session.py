@@ -10,12 +10,13 @@ the inbound values is a journal, and feeding them again a replay.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
 from prima.interpreter.application import Interpreter
+from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
 from prima.interpreter.frame import GoOut
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
@@ -75,8 +76,6 @@ App: TypeAlias = "Interpreter | VoiceInterpreter"
 
 SEEING = frozenset(["human.found", "human.lost"])
 """Events by which the camera tells whether it sees the user (V4)."""
-watchers: list[Callable[[App], None]] = []
-"""Told of every interpreter that is made: what tests are covered by is seen from here."""
 
 
 class Session:
@@ -134,6 +133,14 @@ class Session:
             return make()
         except EngineLost as error:
             return self._engines.without(error, make)
+
+    def drain_visits(self) -> list[Visit]:
+        """What each application came to since the last time, one application after the other."""
+        found: list[Visit] = []
+        for app in self.apps.values():
+            found += app.visits
+            app.visits.clear()
+        return found
 
     # Driving ------------------------------------------------------------------
 
@@ -310,7 +317,9 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            app = self.apps[name] = self._made(app.document, app.arguments)
+            before, app = app, self._made(app.document, app.arguments)
+            app.visits[:0] = before.visits
+            self.apps[name] = app
         self._loaded.add(name)
         self._alive = None
         app.sensors.update(self._sensors)
@@ -639,8 +648,6 @@ def interpreter_of(
 
         app = VoiceInterpreter(document, arguments, engines)
     app.began = began
-    for watch in watchers:
-        watch(app)
     return app
 
 

@@ -113,7 +113,7 @@ INSIDE = {
     ],
     "report": [{"lanes", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
     "testing": [
-        {"watching", "golden"},
+        {"tracing", "golden"},
         {"checking", "coverage", "finding"},
         {"running"},
         {"telling"},

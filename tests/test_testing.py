@@ -19,7 +19,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from prima import api, session
+from prima import api
 from prima.errors import DocumentError, RunError, UsageError
 from prima.sim.person import PHASES, Person
 from prima.sim.scenario import When, read_scenario
@@ -30,7 +30,7 @@ from prima.testing.golden import difference
 from prima.testing.junit import cobertura, junit
 from prima.testing.running import Choice, Result, run_all, run_one
 from prima.testing.telling import format_result
-from prima.testing.watching import Marks, States, watching
+from prima.testing.tracing import States, states_of
 from prima.transcript.table import format_rows
 
 ROOT = Path(__file__).parent.parent
@@ -338,19 +338,17 @@ def test_what_a_run_has_said_is_what_it_is_expected_to_say(path: Path, tmp_path:
 
 
 def test_states_of_subdialogs_and_of_applications_that_end() -> None:
-    states = States()
-    with watching(states, None):
-        transcript = api.rehearse(ROOT / "documents" / "scenarios" / "museum-alone.xml")
+    scenario = ROOT / "documents" / "scenarios" / "museum-alone.xml"
+    transcript = api.rehearse(scenario, visits=True)
+    states = states_of(transcript.visits)
     names = [change.state for change in states.changes["museum"]]
     assert names[:6] == ["welcome", "go", "explain", "find", "explain", "find"]
     assert not transcript.failures
-    assert session.watchers == []
 
 
 def test_states_of_voicexml() -> None:
-    states = States()
-    with watching(states, None):
-        api.rehearse(ROOT / "documents" / "scenarios" / "pizza-and-follow.xml")
+    scenario = ROOT / "documents" / "scenarios" / "pizza-and-follow.xml"
+    states = states_of(api.rehearse(scenario, visits=True).visits)
     assert [change.state for change in states.changes["pizza"]] == ["order", ""]
     assert [change.state for change in states.changes["follow"]][-1] == "sleep"
 
@@ -732,13 +730,6 @@ def test_documents_that_no_run_loads_are_counted(tmp_path: Path) -> None:
     )
     found = run_one(str(path), Choice(coverage=True)).coverage
     assert found[str(tmp_path / "desk.xml")].reached == set()
-
-
-def test_looking_changes_nothing() -> None:
-    for path in DEMOS[::4]:
-        plain = api.rehearse(path).dumps()
-        with watching(States(), Marks()):
-            assert api.rehearse(path).dumps() == plain
 
 
 # pytest ----------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from prima.interpreter.bounds import Bounds
+from prima.interpreter.bounds import Bounds, Visit
 from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
@@ -89,6 +89,7 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self.arguments = arguments or {}
         super().__init__(evaluator_of(document, engines or Engines()))
         self.application = self.engine.named("application")
+        self.visits.append(Visit(self.name, 0, "document", document.node, document.file))
         self.execute = Executor(self)
         self.handling = Handling(self)
         self.algorithm = Algorithm(self)
@@ -209,6 +210,7 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
     def follow(self, now: int, link: Link, event: Event) -> None:
         """The user has said what a link listens for."""
         self._tick(now)
+        self.note(link.node)
         if link.event:
             self.event(now, Event(link.event, event.serial, event.data))
             return
@@ -491,6 +493,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
 
     def leave(self, frame: Frame) -> None:
         """O3: the state's content ends, its units are concluded, its Commands are given up."""
+        outer = frame.caller.form if frame.caller is not None and not self.over else None
+        name = outer.id if outer is not None else ""
+        self.visits.append(
+            Visit(self.name, self.now, "leave", outer.node if outer is not None else None, name)
+        )
         if frame.fibers:
             for fiber in frame.fibers:
                 self.forget(fiber)
@@ -541,7 +548,9 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
 
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
-        self.frame = frame
+        self.frame, form = frame, frame.form
+        self.visits.append(Visit(self.name, self.now, "enter", form.node, form.id))
+        self.note(form.node)
         if frame.form.bare and not (frame.fresh or frame.called_by):
             return None
         frame.stalled = frame.entering = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, NoReturn, TypeVar
 
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
@@ -32,13 +32,34 @@ BRIEF_MS, MOST_BRIEF = 50, 1_000
 """How long a wait must last (ms), or how many may be shorter in a row."""
 
 
+class Visit(NamedTuple):
+    """An application came to an element of a document."""
+
+    app: str
+    time: int
+    """The instant (ms)."""
+    what: Literal["document", "enter", "leave", "in", "true", "false", "heard"]
+    """``document``: the element is the root of one that is there now; ``enter`` and ``leave``: the
+    state ``name`` is active now; ``in``: it is gone through; ``true`` and ``false``: its condition
+    was; ``heard``: the user said what it listens for."""
+    node: Node | None
+    """The element; None where an application is in no state any more."""
+    name: str = ""
+    """The state that is active now; the path of a document."""
+
+
 class Bounds(Generic[Evaluator]):
     """Counts what an application does; interpreters of both languages are such."""
+
+    name: str
+    """The application's."""
 
     def __init__(self, engine: Evaluator) -> None:
         self.engine = engine
         self.actions: list[Action] = []
         """What the application wants, for the session to carry out."""
+        self.visits: list[Visit] = []
+        """What it came to, until the session drains it."""
         self.over = False
         self.deadline: int | None = None
         """When the application wants to be called, if ever (ms)."""
@@ -67,6 +88,10 @@ class Bounds(Generic[Evaluator]):
         """Actions that the session has carried out."""
         self.exhausted = ""
         """Why the application may go on no more."""
+
+    def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
+        """An element is gone through, or its condition has been evaluated."""
+        self.visits.append(Visit(self.name, self.now, what, node))
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""

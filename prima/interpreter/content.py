@@ -104,9 +104,11 @@ class Executor:
     def condition(self, expr: Expression, fiber: Fiber) -> bool:
         """An expression as a condition."""
         try:
-            return self.engine.condition(expr.code, self.scopes(fiber))
+            holds = self.engine.condition(expr.code, self.scopes(fiber))
         except ScriptError as error:
             raise self.failure(error, expr) from None
+        self.owner.note(expr.node, "true" if holds else "false")
+        return holds
 
     def speech(self, parts: Text, fiber: Fiber, after: str = "") -> tuple[str, tuple[Cue, ...]]:
         """What is said behind other text, with its values filled in, and its pauses as cues."""

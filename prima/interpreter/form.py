@@ -100,13 +100,16 @@ class Algorithm:
                     isinstance(item, Unit) and wanted in {one.name for one in item.items}
                 ):
                     target = item
-            if target is not None and target.name == wanted:
-                frame.next_item = ""
+            if target is not None:
+                self.owner.note(target.node)
+                if target.name == wanted:
+                    frame.next_item = ""
             return target
         for item in items:
             if not self.owner.engine.defined(frame.dialog, item.name) and (
                 item.cond is None or self.owner.execute.condition(item.cond, fiber)
             ):
+                self.owner.note(item.node)
                 return item
         return None
 
@@ -178,6 +181,7 @@ class Algorithm:
         """Run the filled elements that an answer has satisfied (VoiceXML 2.4)."""
         for filled in own:
             fiber.local = None
+            self.owner.note(filled.node)
             yield from self.owner.execute.run(filled.content, fiber)
         inputs = [
             one.name for one in all_items(frame.form.items) if isinstance(one, Field | Subdialog)
@@ -190,6 +194,7 @@ class Algorithm:
                 self.owner.engine.defined(frame.dialog, name) for name in names
             ):
                 fiber.local = None
+                self.owner.note(filled.node)
                 yield from self.owner.execute.run(filled.content, fiber)
 
     def _call(self, frame: Frame, fiber: Fiber, item: Subdialog) -> Content:

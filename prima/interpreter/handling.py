@@ -60,6 +60,7 @@ class Handling:
         fiber.commands = ()
         if handler.reactive is not None:  # else a throw keeps what it has (C5)
             self.allow_reaction(handler, event)
+        self.owner.note(handler.node)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
         except (Thrown, ScriptError) as error:
@@ -115,6 +116,7 @@ class Handling:
     def _run_at_once(self, fiber: Fiber, handler: Handler) -> None:
         """Run a handler that waits for nothing: no coroutine is needed."""
         frame, owner = fiber.frame, self.owner
+        owner.note(handler.node)
         try:
             transfer = owner.execute.run_at_once(handler.content, fiber)
         except (Thrown, ScriptError) as error:
@@ -135,6 +137,7 @@ class Handling:
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
         frame = fiber.frame
+        self.owner.note(handler.node)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
         except (Thrown, ScriptError) as error:

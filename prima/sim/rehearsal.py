@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from prima.errors import DocumentError, Problem
+from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.interpreter.surroundings import nearest
@@ -169,6 +170,8 @@ class Rehearsal:
         """Whether every application has ended, likewise."""
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+        self.visits: list[Visit] = []
+        """What applications came to in the latest instant."""
         self.made = 0
         self._full = False
         """Whether the run has made as much as it may."""
@@ -211,6 +214,7 @@ class Rehearsal:
             self.now = until
         self.session.recorder.now = self.now
         self.session.recorder.add("over", "mediator", outcome=self.outcome)
+        self.visits = self.session.drain_visits()
         self.session.close()
         return self.session.drain()
 
@@ -221,7 +225,7 @@ class Rehearsal:
 
     def step(self, now: int) -> list[Record]:
         """One instant. Where a body only moved on, nobody is told and nothing is decided."""
-        self.now = now
+        self.now, self.visits = now, []
         self.world.advance(now)
         inbound, said = self._happened(now)
         if not inbound and (self._deadline is None or now < self._deadline):
@@ -232,7 +236,7 @@ class Rehearsal:
         self._deadline, self._ended = session.deadline(), session.over
         if said:
             self.robot.listen_on()
-        records = session.drain()
+        records, self.visits = session.drain(), session.drain_visits()
         self.made += len(records)
         self._full = self.made > MAX_RECORDS or session.written > MAX_WRITTEN
         self.person.observe(now, records)

@@ -13,7 +13,7 @@ from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
 from prima.messages import Record
 from prima.sim.scenario import Expectation, Scenario
-from prima.testing.watching import Change, States
+from prima.testing.tracing import Change, States
 from prima.transcript.table import Row, describe, format_head, format_row, shape_of
 
 AROUND = 2

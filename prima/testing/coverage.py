@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from prima.markup.tree import Node
-from prima.testing.watching import Mark, Marks
+from prima.testing.tracing import Mark, Marks
 
 FORMS = frozenset({"form", "menu"})
 ITEMS = frozenset({"block", "field", "initial", "object", "record", "subdialog", "transfer", "iu"})

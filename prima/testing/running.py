@@ -17,7 +17,7 @@ from prima.pool import Died, spread
 from prima.testing.checking import Failure, check, make_run
 from prima.testing.coverage import Coverage, covered
 from prima.testing.golden import difference, golden_of, read_golden
-from prima.testing.watching import Marks, States, watching
+from prima.testing.tracing import marks_of, states_of
 from prima.transcript.table import Row
 
 Status = Literal["passed", "failed", "error", "invalid"]
@@ -91,11 +91,10 @@ def run_one(path: str, choice: Choice) -> Result:
 def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
     scenario = loaded.cast.scenario
     made.name, made.expectations = scenario.id, len(scenario.expectations)
-    states, marks = States(), Marks() if choice.coverage else None
-    with watching(states, marks):
-        transcript = api.rehearse(loaded, choice.policy)
-    if marks is not None:
-        made.coverage = covered(marks)
+    transcript = api.rehearse(loaded, choice.policy, visits=True)
+    if choice.coverage:
+        made.coverage = covered(marks_of(transcript.visits))
+    states = states_of(transcript.visits)
     made.simulated = transcript.records[-1]["time"]
     rows = transcript.rows()
     made.failures = check(scenario, make_run(transcript.records, rows, states))

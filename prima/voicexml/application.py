@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Generator, Mapping, Sequence
 from itertools import count, pairwise
+from pathlib import PurePath
 
-from prima.interpreter.bounds import Bounds
+from prima.interpreter.bounds import Bounds, Visit
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
 from prima.interpreter.units import Reach
@@ -32,7 +33,7 @@ from prima.messages import (
 from prima.messages import Heard as Spoken
 from prima.script.isolated import AnyEngine, Engines
 from prima.voicexml.arranging import Queued, steps_of
-from prima.voicexml.document import VoiceDocument
+from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.machine import Machine
 from prima.voicexml.state import (
     SCOPES,
@@ -64,6 +65,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         super().__init__((engines or Engines()).engine(document.id, document.kind, SCOPES))
         self.sensors: dict[str, Json] = {}
         self.heard: Heard | None = None
+        self.note_document(document.page)
         self._machine = Machine(self)
         self._flow: Flow | None = None
         self._runs = count(1)
@@ -107,6 +109,12 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         self._tick(now)
         self._flow = self._machine.start()
         self._drive(None)
+
+    def note_document(self, page: Page) -> None:
+        """A document is there, whatever becomes of it; its path is relative to the first one's."""
+        first, file = self.document.page, self.document.file
+        path = file if page is first else str(PurePath(file).parent / page.root.source.file)
+        self.visits.append(Visit(self.name, max(self.now, 0), "document", page.root, path))
 
     def takes(self, name: str) -> bool:
         """Whether a handler in scope takes an event of the robot."""

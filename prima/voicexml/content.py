@@ -47,6 +47,7 @@ class Content(Speaker):
 
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
+        self.owner.owner.note(node)
         yield from self.run_all(node.content, context, local)
 
     def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:

@@ -46,6 +46,7 @@ class Items:
     def process(self, context: Context, heard: Heard) -> Flow:
         """What the user said goes to the item, form, link or choice that has taken it."""
         owner = heard.owner
+        self.owner.owner.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
         self.remember(context, heard)
         dialog = _dialog_of(heard.page, owner)
         if dialog is not None and dialog is not context.form:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING
 
+from prima.interpreter.bounds import Visit
 from prima.interpreter.content import source
 from prima.interpreter.frame import GoOut
 from prima.language.values import milliseconds
@@ -70,6 +71,8 @@ class Machine:
         self.events = Events(self)
         self.units = Units(self)
         self.context: Context | None = None
+        self.state = ""
+        """The dialog that is active, by its name."""
 
     # What content needs -------------------------------------------------------------
 
@@ -246,7 +249,23 @@ class Machine:
     # Dialogs --------------------------------------------------------------------------
 
     def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
-        """One form or menu: initialise, then select, collect, process (appendix C)."""
+        """One form or menu, the state that is active until it is left."""
+        outer, owner = self.state, self.owner
+        for page in (context.page, context.root):
+            if page is not None:
+                owner.note_document(page)
+        named = context.page.dialogs.items()
+        self.state = next((name for name, one in named if one is form), "")
+        owner.visits.append(Visit(owner.name, owner.now, "enter", form, self.state))
+        owner.note(form)
+        try:
+            yield from self._interpret(context, form, heard)
+        finally:
+            self.state = outer
+            owner.visits.append(Visit(owner.name, owner.now, "leave", None, outer))
+
+    def _interpret(self, context: Context, form: Node, heard: Heard | None) -> Flow:
+        """Initialise, then select, collect, process (appendix C)."""
         self.owner.count_step(form, DIALOG_STEPS)
         context.form, context.item, context.unit = form, None, None
         context.counters, context.prompts, context.visited = {}, {}, set()
@@ -374,6 +393,7 @@ class Machine:
 
     def visit(self, context: Context, item: Node, wanted: str = "") -> Flow:
         """Collect: prompts, then what the item waits for; in a unit perhaps an item that is wanted."""
+        self.owner.note(item)
         if is_unit(item):
             inner = wanted if item.get("name") != wanted else ""
             yield from self.units.span(context, item, inner)

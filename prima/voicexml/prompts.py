@@ -174,9 +174,11 @@ class Speaker:
         if "cond" not in node.attributes:
             return True
         try:
-            return self.engine.condition(node.get("cond"), context.scopes(local))
+            found = self.engine.condition(node.get("cond"), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, "cond") from None
+        self.owner.owner.note(node, "true" if found else "false")
+        return found
 
     def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
         """An attribute, or its ``expr`` form, as a word.

@@ -1,0 +1,81 @@
+"""Which state each application of a run was in, and what of its documents it went through."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from prima.interpreter.bounds import Visit
+    from prima.markup.tree import Node
+
+Mark = tuple[int, str]
+"""An element, by its number in its document, and what became of it: in, true, false or heard."""
+
+
+@dataclass(slots=True)
+class Change:
+    """An application comes into a state at a time (ms); without a name it is in none."""
+
+    time: int
+    state: str
+    passing: bool = False
+    """Whether another change in the same instant takes its place."""
+
+
+@dataclass(slots=True)
+class States:
+    """Which form each application was in."""
+
+    changes: dict[str, list[Change]] = field(default_factory=dict)
+
+    def note(self, app: str, time: int, state: str, passing: bool = False) -> None:
+        """An application is in a state from now on."""
+        held = self.changes.setdefault(app, [])
+        if held and held[-1].passing and held[-1].time == time:
+            held.pop()
+        held.append(Change(time, state, passing))
+
+
+@dataclass(slots=True)
+class Marks:
+    """What was gone through, by the path of the document."""
+
+    roots: dict[str, Node] = field(default_factory=dict)
+    """The root elements of the documents that were there."""
+    marks: dict[str, set[Mark]] = field(default_factory=dict)
+
+
+def states_of(visits: Iterable[Visit]) -> States:
+    """The states that applications were in, in the order of a run."""
+    states = States()
+    for visit in visits:
+        if visit.what in ("enter", "leave"):
+            states.note(visit.app, visit.time, visit.name, passing=visit.what == "leave")
+    return states
+
+
+def marks_of(visits: Iterable[Visit]) -> Marks:
+    """What was gone through of documents that are files; answers of services are left out."""
+    marks = Marks()
+    paths: dict[int, str] = {}
+    """The paths of documents, by the identity of what all elements of one share."""
+    for visit in visits:
+        if visit.node is None or visit.what in ("enter", "leave"):
+            continue
+        source = visit.node.source
+        if visit.what != "document":
+            if id(source) in paths:
+                marks.marks[paths[id(source)]].add((visit.node.index, visit.what))
+        elif id(source) not in paths and _is_file(visit):
+            paths[id(source)] = visit.name
+            marks.roots.setdefault(visit.name, visit.node)
+            marks.marks.setdefault(visit.name, set())
+    return marks
+
+
+def _is_file(visit: Visit) -> bool:
+    assert visit.node is not None
+    return "://" not in visit.node.source.file and Path(visit.name).is_file()
