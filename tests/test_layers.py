@@ -59,7 +59,7 @@ INSIDE = {
     "script": [
         {"prelude"},
         {"budget", "evaluation", "globals", "parse", "wire"},
-        {"ecmascript", "known", "names"},
+        {"choices", "ecmascript", "known", "names"},
         {"hoisting", "syntax"},
         {"compile", "engine", "sandbox"},
         {"host"},
