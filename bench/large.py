@@ -107,6 +107,28 @@ FAMILIES: dict[str, Family] = {
         lambda i, n: f'<form id="f{i}"><block><speak>A</speak><exit/></block></form>'
         f'<on event="touch.s{i}"><goto next="#f{i}"/></on>\n'
     ),
+    "forms with handlers that go on anywhere": _ours(
+        lambda i, n: f'<form id="f{i}"><block><speak>A</speak><goto next-expr="v{i}"/></block>'
+        f'<on event="touch.head"><goto next-expr="w{i}"/></on></form>\n'
+    ),
+    "forms with handlers that go on to any of many": _ours(
+        lambda i, n: f'<form id="f{i}"><block><speak>A</speak></block>'
+        f"""<on event="touch.head"><goto next-expr="'f{i // 10}' + v"/></on></form>\n"""
+    ),
+    "forms with handlers that go on by subdialogs": _ours(
+        lambda i, n: f'<form id="f{i}"><subdialog name="s" src="#f{min(i + 1, n - 1)}"/><block><speak>A</speak><return/></block>'
+        f'<on event="touch.head"><goto next="#f{min(i + 1, n - 1)}"/></on></form>\n', after='<form id="last"><block><return/></block></form>'
+    ),
+    "handlers that go to items": _inside("form", lambda i, n: f'<block name="b{i}"/>'
+        f'<on event="touch.s{i}"><clear namelist="b{n - 1 - i}"/><goto nextitem="b{i}"/></on>\n'
+    ),
+    "handlers of the document that go to items": _ours(
+        lambda i, n: f'<form id="f{i}"><block name="b"/></form>'
+        f'<on event="touch.s{i}"><clear/><goto nextitem="b"/></on>\n'
+    ),
+    "items with subdialogs": _inside("form", lambda i, n: f'<subdialog name="s{i}" src="#last"/><filled namelist="s{i}"><log>A</log></filled>\n',
+        '<on event="touch"><goto next="#f"/></on>' + FORM.replace("exit", "return")
+    ),
     "subdialogs": _ours(
         lambda i, n: f'<form id="f{i}"><subdialog name="s" src="#f{(i * 7 + 1) % n}"/><block><return/></block></form>\n'
     ),
@@ -172,6 +194,10 @@ FAMILIES: dict[str, Family] = {
     ),
     "VoiceXML gotos to files": _voice(
         lambda i, n: f'<form id="f{i}"><block><goto next="g{i}.vxml"/></block></form>\n'
+    ),
+    "VoiceXML dialogs with handlers that go on anywhere": _voice(
+        lambda i, n: f'<form id="f{i}"><block>A<goto expr="v{i}"/></block>'
+        f'<catch event="touch.head"><goto expr="w{i}"/></catch></form>\n'
     ),
     "VoiceXML subdialogs": _voice(
         lambda i, n: f'<form id="f{i}"><subdialog name="s" src="#f{(i * 7 + 1) % n}"><param name="p" expr="{i}"/></subdialog></form>\n'

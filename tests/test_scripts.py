@@ -6,6 +6,7 @@ import contextlib
 
 import pytest
 
+from prima.script.choices import choices
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
 from prima.script.hoisting import hoisted
@@ -155,3 +156,23 @@ def test_thousands_of_variables_are_no_reason_to_end() -> None:
     scopes = Scopes()
     scopes.run("\n".join(f"v{n} = {n};" for n in range(6000)))
     assert scopes.value("v5999") == 5999
+
+
+@pytest.mark.parametrize(
+    ("code", "texts"),
+    [
+        ("'#a'", ["#a"]),
+        ("( '#a' )", ["#a"]),
+        ("x ? '#a' : (y ? '#b' : '#c')", ["#a", "#b", "#c"]),
+        ("x ? y ? '#a' : '#b' : '#a'", ["#a", "#b"]),
+        ("f('?')['x'] ? '#a' : next", ["#a", "..."]),
+        ("'#s' + n.x[1] + 'a'", ["#s..."]),
+        ("x ? '#a' : '#s' + (n ? 1 : 2)", ["#a", "#s..."]),
+        *((one, ["..."]) for one in ("", "next", "f('a')", "'a' == b", "'a' + b == c", "x || 'a'")),
+        *((one, ["..."]) for one in ("a ? 'b' :", "'x'.length", "('a', 'b')", "var a = 1; 'x'")),
+        *((one, ["..."]) for one in (r"'\u0061'", "(x ? 'a' : 'b') + 'c'", "`a${b}`")),
+        ("x ? " * 300 + "'a'" + " : 'b'" * 300, ["a", "b"]),
+    ],
+)
+def test_the_texts_that_an_expression_may_give(code: str, texts: list[str]) -> None:
+    assert [one.text + "..." * (not one.whole) for one in choices(code)] == texts

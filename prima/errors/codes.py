@@ -113,9 +113,12 @@ CODES: dict[str, str] = {
     "leaves-question": "The robot drives away from the user in the middle of a question, and then asks it"
     " again where he is not (thesis 3.3, the Communication Channel).",
     "told-twice": "An event may come while a state says or asks something, and its handler leads back"
-    " to the beginning of that state, at once or by way of others: the same is told a second time"
-    " (rule O3). Where a question is asked on the way back, or the handler keeps what the event tells,"
-    " that is meant.",
+    " to the beginning of that state, at once or by way of others, of subdialogs that ask nothing and"
+    " of further VoiceXML documents, or it goes to an item of that state which then is visited again:"
+    " the same is told a second time (rule O3). Where a question is asked on the way back, or the"
+    " handler keeps what the event tells, that is meant. A target that an expression names is known"
+    " where the expression is a text or chooses between texts; else any state whose name begins as"
+    " the expression does may be next, and the warning says that the same may be told twice.",
     "unknown-event": "A handler names an event that nothing raises, most likely a slip; given a scenario, also"
     " one of a corner that its world does not have. Events of one's own"
     " come from throw, send, link, watch, a return, or a scenario.",

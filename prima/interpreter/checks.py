@@ -46,7 +46,7 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
-from prima.interpreter.repeats import told_twice
+from prima.interpreter.repeats import source_of, told_twice
 from prima.interpreter.units import (
     Finder,
     Reached,
@@ -361,7 +361,7 @@ class Checker:
         self._silence()
         self.problems += Events(self.document, self.acts).problems()
         self._after_goto()
-        self.problems += told_twice(self.document)
+        self.problems += told_twice([source_of(self.document)])
 
     # States -------------------------------------------------------------------
 

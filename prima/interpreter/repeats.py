@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from posixpath import basename
 
 from prima.errors import Problem
 from prima.interpreter.elements import (
     Act,
     Assign,
     Block,
+    Clear,
     Document,
+    Expression,
     Field,
     Form,
     Goto,
     Handler,
-    If,
     Item,
     Run,
     SendOut,
@@ -25,113 +28,241 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
+from prima.interpreter.entering import Source, Target, is_left, is_open
 from prima.interpreter.events import beginnings
+from prima.interpreter.ways import Ways
 from prima.markup.tree import Node
+from prima.script.choices import choices
 
 OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error", "emergency")
 """What begins an event that comes of what the application itself does, or ends everything."""
-
-
-MOST_STEPS = 100_000
-"""Ways that are followed in one document: beyond, only a goto to the form itself is seen."""
-Leaving = tuple[str, list[Goto]]
-"""An event from outside, and the gotos by which its handler leaves."""
+STEPS_OF_AN_ITEM = 20
+"""Steps for which it counts to look at an item."""
 REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
+GUESSED = " If it never leads there, name its targets in the expression: x ? '{0}this' : '{0}that'."
 
 
-def told_twice(
-    document: Document, foreign: Callable[[str], bool] | None = None, remedy: str = REMEDY
-) -> Iterator[Problem]:
+@dataclass(frozen=True, slots=True)
+class _Back:
+    """How something is told twice: by an event that comes meanwhile, and a goto that leads back."""
+
+    form: Form
+    said: Node
+    asks: bool
+    event: str
+    way: Goto
+    certain: bool
+    """Whether it is known without a run where the goto leads, and what it leads to."""
+
+
+def source_of(document: Document) -> Source:
+    """A document of PRIMA's own language."""
+
+    def leads(act: Goto | Subdialog) -> list[Target]:
+        if isinstance(act.form, Expression):
+            named = [(one.text.removeprefix("#"), one.whole) for one in choices(act.form.code)]
+            return [Target(f"{document.file}#{text}", whole) for text, whole in named]
+        return [Target(f"{document.file}#{act.form}")]
+
+    return Source(document, _foreign(document), leads)
+
+
+def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Problem]:
     """Warn of handlers that leave a state and come back to what it says or asks.
 
     An event may come while that is being said. Where the user has been asked something else on
     the way back, or the state waits for another event, telling it again is meant.
 
     Args:
-        document: the document.
-        foreign: whether a handler's event may come from outside; by default, what
-            PRIMA's language has it to be.
+        sources: the documents of an application.
         remedy: what to do about it.
     """
-    ways = _Ways(document, foreign or _foreign(document))
-    for form in document.forms.values():
-        said = _said(form)
-        if said is None:
-            continue
-        for event, way in ways.back(form):
-            yield _problem(form, *said, event, way, remedy)
+    ways = Ways(sources)
+    found = [one for source in sources for one in _Leavings(source, ways).back()]
+    told: set[int] = set()
+    for one in sorted(found, key=lambda one: not one.certain):
+        if one.certain or id(one.way.node) not in told:  # of a guess one example will do
+            told.add(id(one.way.node))
+            yield _problem(one, remedy)
 
 
-class _Ways:
-    """Where handlers lead, and what that leads to; each is looked at once."""
+class _Leavings:
+    """The handlers of a document by which an event from outside makes it leave what it says."""
 
-    def __init__(self, document: Document, from_outside: Callable[[str], bool]) -> None:
-        self._document = document
-        self._from_outside = from_outside
-        self._onward: dict[str, list[str]] = {}
-        self._reached: dict[str, set[str]] = {}
-        self._left = MOST_STEPS
-        self._shared: dict[str, list[tuple[str, Goto]]] = {}
-        """Where the document's own handlers lead back, by forms."""
-        for event, gotos in self._of(document.handlers, document.handlers):
-            ways = {name: way for way in reversed(gotos) for name in self._leads(way)}
-            for name, way in ways.items():
-                self._shared.setdefault(name, []).append((event, way))
+    def __init__(self, source: Source, ways: Ways) -> None:
+        self._source = source
+        self._ways = ways
+        document = source.document
+        self._handlers = [*self._leaving(document.handlers, document.handlers)]
+        """The document's own."""
+        self._to_any = [one for one in self._handlers if any(way.item for way in one.gotos)]
+        """Those that go to items, of whatever form."""
+        self._shared: dict[Target, list[tuple[_Leaving, Goto, bool]]] = {}
+        """Where these lead back to, by the forms."""
+        for one in self._handlers:
+            for form, way in self._led(one).items():
+                self._shared.setdefault(form, []).append((one, *way))
 
-    def back(self, form: Form) -> Iterator[tuple[str, Goto]]:
-        """The events that may come while a form says something, and the gotos back to it."""
-        yield from self._shared.get(form.id, ())
-        own = [form.handlers, *(item.handlers for item in all_items(form.items))]
-        scope = [*form.handlers, *self._document.handlers]
-        for event, gotos in (one for handlers in own for one in self._of(handlers, scope)):
-            way = next((one for one in gotos if form.id in self._leads(one)), None)
-            if way is not None:
-                yield event, way
+    def back(self) -> Iterator[_Back]:
+        """All that is told twice."""
+        for form in self._source.document.forms.values():
+            own = [*self._own(form)]
+            said = said_first(form)
+            if said is not None:
+                for leaving, way, certain in self._to_form(form, own):
+                    yield _Back(form, *said, leaving.event, way, certain)
+            for leaving in own:
+                yield from self._to_items(form, leaving)
+            for leaving in self._to_any:
+                if not leaving.hidden(form):
+                    yield from self._to_items(form, leaving)
 
-    def _of(self, handlers: Iterable[Handler], scope: Sequence[Handler]) -> Iterator[Leaving]:
+    def _own(self, form: Form) -> Iterator[_Leaving]:
+        """The leaving handlers of a form and its items."""
+        scope = [*form.handlers, *self._source.document.handlers]
+        yield from self._leaving(form.handlers, scope)
+        for item in all_items(form.items):
+            yield from self._leaving(item.handlers, scope, item)
+
+    def _leaving(
+        self, handlers: Iterable[Handler], scope: Sequence[Handler], item: Item | None = None
+    ) -> Iterator[_Leaving]:
         for handler in handlers:
-            gotos = self._gotos(handler, scope, ())
-            event = next(filter(self._from_outside, handler.events), "") if gotos else ""
-            if event and not _brings_news(handler):
-                yield event, gotos
+            event = next(filter(self._source.foreign, handler.events), "")
+            if not event or _brings_news(handler):
+                continue
+            acts = self._ways.contents.acts(handler.content, lambda: scope)
+            gotos = [act for act in acts if isinstance(act, Goto)]
+            if gotos:
+                yield _Leaving(event, handler.count, gotos, _cleared(acts), item)
 
-    def _gotos(
-        self, handler: Handler, scope: Sequence[Handler], before: tuple[Handler, ...]
-    ) -> list[Goto]:
-        """The gotos of a handler, and of those of a scope that take what it throws."""
-        gotos = [act for act in _gotos(handler.content) if isinstance(act.form, str)]
-        before = (*before, handler)
-        for act in all_acts(handler.content):
-            if isinstance(act, Throw) and isinstance(act.event, str) and self._left > 0:
-                self._left -= len(scope)
-                names = set(beginnings(act.event))
-                taker = next((one for one in scope if not names.isdisjoint(one.events)), None)
-                if taker is not None and taker not in before:
-                    gotos += self._gotos(taker, scope, before)
-        return gotos
+    # Back to a form's beginning -----------------------------------------------------------
 
-    def _leads(self, way: Goto) -> set[str]:
-        """The forms to which a goto leads, at once or by way of others."""
-        name = str(way.form)
-        if self._left < 0:
-            return {name}
-        if name not in self._reached:
-            self._reached[name] = self._reach(name)
-        self._left -= len(self._reached[name])
-        return self._reached[name]
-
-    def _reach(self, name: str) -> set[str]:
-        """The forms that entering one leads to, without a question and without a wait for events."""
-        found: set[str] = set()
-        left = [name]
-        while left:
-            name = left.pop()
-            if name in self._document.forms and name not in found:
-                found.add(name)
-                if name not in self._onward:
-                    self._onward[name] = [*_onward(self._document.forms[name].items)]
-                left += self._onward[name]
+    def _led(self, leaving: _Leaving) -> dict[Target, tuple[Goto, bool]]:
+        """The forms to which a document's handler leads, by which goto, and whether certainly."""
+        found: dict[Target, tuple[Goto, bool]] = {}
+        for certain in (True, False):
+            for way in leaving.gotos if self._ways.contents.left > 0 or certain else ():
+                targets = self._source.leads(way) if way.item is None else ()
+                for target in targets:
+                    forms = self._ways.reached(target, guess=not certain)
+                    self._ways.contents.left -= len(forms)
+                    found |= {one: (way, certain) for one in forms if one not in found}
         return found
+
+    def _to_form(self, form: Form, own: list[_Leaving]) -> Iterator[tuple[_Leaving, Goto, bool]]:
+        """The handlers that may run while a form says something, and the gotos back to it."""
+        goal = self._source.target(form)
+        yield from (one for one in self._shared.get(goal, ()) if not one[0].hidden(form))
+        for leaving in own:
+            for certain in (True, False):
+                way = next((one for one in leaving.gotos if self._leads(one, goal, certain)), None)
+                if way is not None:
+                    yield leaving, way, certain
+                    break
+
+    def _leads(self, way: Goto, goal: Target, certain: bool) -> bool:
+        targets = self._source.leads(way) if way.item is None else ()
+        return any(self._ways.lead(one, goal, not certain) for one in targets)
+
+    # Back to an item ------------------------------------------------------------------------
+
+    def _to_items(self, form: Form, leaving: _Leaving) -> Iterator[_Back]:
+        """What a handler makes a form tell twice by going to one of its items."""
+        for way in leaving.gotos:
+            self._ways.contents.left -= STEPS_OF_AN_ITEM
+            if way.item is None or self._ways.contents.left < 0:
+                continue
+            for certain in (True, False) if is_open(way) else (True,):
+                said = self._said_again(form, way, leaving, certain)
+                if said is not None:
+                    yield _Back(form, *said, leaving.event, way, certain)
+                    return
+
+    def _said_again(
+        self, form: Form, way: Goto, leaving: _Leaving, certain: bool
+    ) -> tuple[Node, bool] | None:
+        """What is told twice by a goto to an item: to one that it names, or perhaps to any."""
+        if certain:
+            named = self._ways.contents.named(way, form)
+            return next(filter(None, (self._again(form, one, leaving) for one in named)), None)
+        items = self._ways.contents.items(form).values()
+        return next(filter(None, (self._visited_again(one, leaving) for one in items)), None)
+
+    def _again(self, form: Form, item: Item, leaving: _Leaving) -> tuple[Node, bool] | None:
+        """What is told twice where a handler goes to an item: by that, or by those behind it."""
+        said = self._visited_again(item, leaving)
+        if said is not None or not _goes_by(item):
+            return said
+        for one in self._behind(form, leaving):
+            self._ways.contents.left -= STEPS_OF_AN_ITEM
+            if one is item:
+                continue
+            if one.cond is None and one.expr is None and self._heard(one, leaving):
+                said = leaving.repeated(one)
+            if said is not None or not _goes_by(one) or self._ways.contents.left < 0:
+                return said
+        return None
+
+    def _behind(self, form: Form, leaving: _Leaving) -> Iterable[Item]:
+        """What is visited after the item that a handler goes to: what was asked, and what it clears."""
+        items = self._ways.contents.items(form)
+        if leaving.cleared is None:
+            return items.values()
+        found = [items[name] for name in leaving.cleared if name in items]
+        asked = leaving.item or self._ways.contents.asked(form)
+        if isinstance(asked, Field) and asked.name not in leaving.cleared:
+            found.append(asked)
+        return sorted(found, key=lambda one: one.node.index)
+
+    def _visited_again(self, item: Item, leaving: _Leaving) -> tuple[Node, bool] | None:
+        """What an item says when a handler goes to it while it says that."""
+        quiet = self._source.queues and isinstance(item, Field)
+        return leaving.repeated(item) if not quiet and self._heard(item, leaving) else None
+
+    def _heard(self, item: Item, leaving: _Leaving) -> bool:
+        """Whether a handler takes events while an item speaks: its own, or that of a form."""
+        queued = self._source.queues and isinstance(item, Block)
+        return leaving.item is None or leaving.item is item or queued
+
+
+@dataclass(frozen=True, slots=True)
+class _Leaving:
+    """A handler of an event from outside that leaves, or goes to an item of its form."""
+
+    event: str
+    count: int
+    gotos: list[Goto]
+    cleared: dict[str, None] | None
+    """The names of items that are visited again then; None for all."""
+    item: Item | None
+    """The item whose handler it is, if it is one's."""
+
+    def hidden(self, form: Form) -> bool:
+        """Whether a form has a handler of its own that takes the event in its stead."""
+        names = set(beginnings(self.event)) if form.handlers and self.count <= 1 else set[str]()
+        return any(
+            one.cond is None and one.count <= 1 and not names.isdisjoint(one.events)
+            for one in form.handlers
+        )
+
+    def repeated(self, item: Item) -> tuple[Node, bool] | None:
+        """What an item says first, and again when it is visited once more."""
+        cleared = self.cleared is None or item.name in self.cleared
+        counts = {one.count for one in item.prompts} if isinstance(item, Field) else set[int]()
+        return _said_by(item) if cleared or 2 not in counts else None  # it has other words then
+
+
+def _cleared(acts: Iterable[Act]) -> dict[str, None] | None:
+    cleared = [act.names for act in acts if isinstance(act, Clear)]
+    if not all(cleared):
+        return None
+    return dict.fromkeys(name for names in cleared for name in names)
+
+
+def _goes_by(item: Item) -> bool:
+    """Whether an item neither waits for anything nor leaves the form."""
+    return isinstance(item, Block) and not is_left(item.content)
 
 
 def _brings_news(handler: Handler) -> bool:
@@ -140,17 +271,31 @@ def _brings_news(handler: Handler) -> bool:
     return any("event." in act.expr.code for act in assigned)
 
 
-def _problem(form: Form, said: Node, asks: bool, event: str, way: Goto, remedy: str) -> Problem:
-    what = "asks" if asks else "says"
-    it = f"{form.node.tag} {form.id}" if form.id[:1] == "#" else f'{form.node.tag} "{form.id}"'
+def _problem(back: _Back, remedy: str) -> Problem:
+    form, place, way = back.form, back.said.place, back.way.node.place
+    tag = form.node.tag
+    it = f"{tag} {form.id}" if form.id[:1] == "#" else f'{tag} "{form.id}"'
+    line = f"line {place.line}" + ("" if place.file == way.file else f" of {basename(place.file)}")
     message = (
-        f'If "{event}" comes while the {it} {what} this (line {said.place.line}), it is told'
-        f" twice: this leads back to the {form.node.tag}'s beginning."
+        f'If "{back.event}" comes while the {it} {"asks" if back.asks else "says"} this ({line}),'
+        f" it {'is' if back.certain else 'may be'} told twice: {_why(back)}"
     )
-    return Problem(way.node.place, "warning", "told-twice", message, remedy)
+    more = "" if back.certain else GUESSED.format("#" if back.way.item is None else "")
+    return Problem(way, "warning", "told-twice", message, remedy + more)
 
 
-def _said(form: Form) -> tuple[Node, bool] | None:
+def _why(back: _Back) -> str:
+    if back.way.item is None:
+        beginning = f"the {back.form.node.tag}'s beginning."
+        if back.certain:
+            return f"this leads back to {beginning}"
+        return f"where this leads depends on an expression, and may be {beginning}"
+    if back.certain:
+        return f"the {back.form.node.tag} visits it again after this."
+    return "which item is next depends on an expression, and may be this one."
+
+
+def said_first(form: Form) -> tuple[Node, bool] | None:
     """The first thing that a form says whenever it is entered, and whether it asks that."""
     for item in form.items:
         if item.cond is not None or item.expr is not None:
@@ -165,7 +310,7 @@ def _said_by(item: Item) -> tuple[Node, bool] | None:
     if isinstance(item, Unit):
         return next((said for one in item.items if (said := _said_by(one))), None)
     if isinstance(item, Field):
-        asked = (one.node for one in item.prompts if one.cond is None and one.text)
+        asked = (one.node for one in item.prompts if not one.cond and one.count <= 1 and one.text)
         return next(((node, True) for node in asked), None)
     for act in item.content if isinstance(item, Block) else ():
         for command in run_commands(act.steps) if isinstance(act, Run) else ():
@@ -189,30 +334,3 @@ def _chosen(document: Document) -> set[str]:
                 found.add(act.event)
     links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
     return found | {link.event for link in links if link.event}
-
-
-def _gotos(content: Sequence[Act]) -> list[Goto]:
-    return [act for act in all_acts(content) if isinstance(act, Goto)]
-
-
-def _onward(items: Iterable[Item]) -> Iterator[str]:
-    """Where the items of a form lead before one of them asks or calls another form."""
-    for item in items:
-        if isinstance(item, Field | Subdialog | Unit):
-            return
-        for act in _gotos(item.content) if isinstance(item, Block) else ():
-            if isinstance(act.form, str):
-                yield act.form
-        if isinstance(item, Block) and item.cond is None and _left(item.content):
-            return
-
-
-def _left(content: Sequence[Act]) -> bool:
-    """Whether content always goes elsewhere."""
-    for act in content:
-        if isinstance(act, Goto):
-            return True
-        complete = isinstance(act, If) and act.branches[-1][0] is None
-        if isinstance(act, If) and complete and all(_left(one) for _, one in act.branches):
-            return True
-    return False

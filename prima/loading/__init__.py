@@ -347,7 +347,7 @@ def _voicexml_problems(
     for page in pages:
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
         yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
-        yield from check_sketched(page, pages.root(page))
+    yield from check_sketched((page, pages.root(page)) for page in pages)
     yield from (*pages.problems, *pages.between())
 
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from urllib.parse import urldefrag
+from urllib.parse import urldefrag, urlsplit
 
 from prima.interpreter.elements import (
     Act,
     Assign,
     Block,
+    Clear,
     CommandTemplate,
     Document,
     Exit,
@@ -29,6 +30,7 @@ from prima.interpreter.elements import (
     Item,
     Pause,
     Prompt,
+    Return,
     Run,
     StepTemplate,
     Subdialog,
@@ -36,9 +38,11 @@ from prima.interpreter.elements import (
     Throw,
     Unit,
 )
+from prima.interpreter.entering import Target
 from prima.interpreter.units import Finder, Reach, thrown_by
 from prima.markup.tree import Node
 from prima.messages import Json
+from prima.script.choices import Choice, choices
 from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
 from prima.voicexml.content import ITEMS
 from prima.voicexml.cues import break_ms
@@ -50,6 +54,7 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data", "script")
 """Elements of content while whose fetch something may be played."""
+LEADING = ("goto", "submit", "subdialog")
 LEAVING = ("exit", "return", "disconnect")
 FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")
 """What a question's grammars, and what is fetched, may throw beside what PRIMA's language has."""
@@ -146,7 +151,10 @@ class Sketch:
         """Content of an element as acts; what is said without an element of its own is its."""
         made: list[Act] = []
         for pieces, node in _spoken(content):
-            if pieces:
+            cond = _code(node, "cond") if pieces and node is not None else None
+            if pieces and cond is not None:
+                made.append(If(((cond, tuple(self._saying(pieces, node or holder))),), holder))
+            elif pieces:
                 made += self._saying(pieces, node or holder)
             elif node is not None:
                 made += self._act(node)
@@ -187,8 +195,12 @@ class Sketch:
                 event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
                 yield Throw(event, "", node)
             case "goto" | "submit":
-                item = node.get("nextitem") or _code(node, "expritem")
-                yield Goto(None if item else self._target(node), item, node)
+                yield Goto(None, node.get("nextitem") or _code(node, "expritem"), node)
+            case "clear":
+                names = (one.removeprefix("dialog.") for one in node.get("namelist").split())
+                yield Clear(tuple(names), node)
+            case "return" if not node.get("eventexpr"):
+                yield Return(tuple(node.get("namelist").split()), node.get("event"), node)
             case tag if tag in LEAVING:
                 yield Exit(node)
 
@@ -203,17 +215,29 @@ class Sketch:
         properties = (one for wider in self._wider for one in wider.walk() if one.key == "property")
         return any(one.get("name") == "fetchaudio" for one in properties)
 
-    def _target(self, node: Node) -> str | Expression | None:
-        """The dialog of this document that an element leads to, if it leads to one."""
-        if "expr" in node.attributes:
-            return Expression(node.get("expr"), node)
-        uri = node.get("next").strip()
-        if uri[:1] == "#":
-            return uri[1:]
-        base, name = urldefrag(self.page.resolve(uri, node) if uri else "")
-        if base.startswith("service:") and name in self.page.dialogs:
-            return name
-        return name or next(iter(self.page.dialogs), "") if base == self.page.uri else None
+    def leads(self, act: Goto | Subdialog) -> list[Target]:
+        """The dialogs that an element leads to, of this document or of others."""
+        node, where = act.node, "src" if isinstance(act, Subdialog) else "next"
+        if node.tag not in LEADING:
+            return []  # somebody else's number, or an object
+        if where in node.attributes:
+            return self._targets(node, Choice(node.get(where).strip(), True))
+        found = choices(node.get("srcexpr" if where == "src" else "expr"))
+        return [target for one in found for target in self._targets(node, one)]
+
+    def _targets(self, node: Node, uri: Choice) -> list[Target]:
+        """The dialog of a URI, or those of all URIs that begin so."""
+        own = self.page.uri
+        if uri.text[:1] == "#" or (not uri.text and not uri.whole):
+            return [Target(f"{own}#{uri.text[1:]}", uri.whole)]
+        base, name = urldefrag(self.page.resolve(uri.text, node) if uri.text else "")
+        parts = urlsplit(base)
+        if parts.scheme == "service" and name:
+            return [Target(f"{own}#{name}", uri.whole)]
+        if not parts.path or parts.scheme or parts.netloc:
+            return []
+        mark = "#" if uri.whole or "#" in uri.text else ""
+        return [Target(f"{parts.path}{mark}{name}", uri.whole)]
 
     # Events -------------------------------------------------------------------------------
 

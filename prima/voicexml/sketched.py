@@ -5,9 +5,10 @@ Units around form items and what they reach (U4, U5), how long units speak, what
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from prima.errors import Problem
+from prima.interpreter.entering import Source
 from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
@@ -29,11 +30,23 @@ def unit_errors(page: Page) -> list[Problem]:
     return list(_unit_problems(Sketch(page, None)))
 
 
-def check_sketched(page: Page, root: Page | None) -> Iterator[Problem]:
-    """What is no error of a document, but that its author wants to know."""
-    if broken(page) is not None:
-        return  # what is to be found in it is told once it can be run
-    sketch = Sketch(page, root)
+def check_sketched(pages: Iterable[tuple[Page, Page | None]]) -> Iterator[Problem]:
+    """What is no error of an application's documents, but that their author wants to know.
+
+    Args:
+        pages: the documents, each with its application root document.
+    """
+    sources = []
+    for page, root in pages:
+        if broken(page) is None:  # else what is to be found in it is told once it can be run
+            sketch = Sketch(page, root)
+            yield from _check_units(sketch, root)
+            sources.append(_source(sketch, root))
+    yield from told_twice(sources, REMEDY)
+
+
+def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
+    page = sketch.page
     told = {one.place for one in page.problems}
     for problem in _unit_problems(sketch) if root is not None else ():
         if problem.place not in told:  # a handler of the root's, which is another's document
@@ -43,8 +56,16 @@ def check_sketched(page: Page, root: Page | None) -> Iterator[Problem]:
     for node in page.root.walk():
         if is_unit(node) and node.key != UNIT:
             yield from long_unit(node, speak(commands_in(node), page.lang))
-    own = {*OWN, *_thrown_in(page.root), *(_thrown_in(root.root) if root is not None else ())}
-    yield from told_twice(sketch.document, lambda name: _is_foreign(name, own), REMEDY)
+
+
+def _source(sketch: Sketch, root: Page | None) -> Source:
+    """A document as what is told twice is looked for in it."""
+    own = {
+        *OWN,
+        *_thrown_in(sketch.page.root),
+        *(_thrown_in(root.root) if root is not None else ()),
+    }
+    return Source(sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True)
 
 
 def added_in_units(page: Page, commands: Mapping[str, CommandType]) -> Iterator[Problem]:

@@ -1,0 +1,286 @@
+"""What a form does by itself once it is entered: before a question, or a wait for events."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from prima.interpreter.elements import (
+    Act,
+    Block,
+    Document,
+    Exit,
+    Expression,
+    Field,
+    Filled,
+    Form,
+    Goto,
+    Handler,
+    If,
+    Item,
+    Return,
+    Subdialog,
+    Throw,
+    all_acts,
+    all_items,
+)
+from prima.interpreter.events import beginnings
+from prima.script.choices import choices
+
+MOST_STEPS = 100_000
+"""Ways that are followed in one application: beyond, only a goto to the form itself is seen."""
+
+
+class Target(NamedTuple):
+    """The full name of a form, or how those begin that an expression may name.
+
+    A full name that ends with ``#`` is that of the document's first form.
+    """
+
+    name: str
+    known: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A document, and what its language means by it."""
+
+    document: Document
+    foreign: Callable[[str], bool]
+    """Whether an event that a handler names may come from outside, and is no answer to it."""
+    leads: Callable[[Goto | Subdialog], list[Target]]
+    """The forms that a goto or the call of a subdialog leads to."""
+    queues: bool = False
+    """Whether what blocks say is said with the next question, and a question is not asked again
+    because a handler goes to it (VoiceXML 4.1.8, 5.3.6)."""
+
+    def target(self, form: Form) -> Target:
+        """One of its forms, by its full name."""
+        return Target(f"{self.document.file}#{form.id}")
+
+
+class Contents:
+    """What is looked at of an application's content, and how much more of it is."""
+
+    def __init__(self) -> None:
+        self.left = MOST_STEPS
+        self._items: dict[int, dict[str, Item]] = {}
+        self._asked: dict[int, Field | None] = {}
+
+    def acts(self, content: Sequence[Act], scope: Callable[[], Sequence[Handler]]) -> list[Act]:
+        """What content does, and the handlers of its scope that take what it throws."""
+        found: list[Act] = []
+        contents, taken = [content], set[int]()
+        while contents:
+            for act in all_acts(contents.pop()):
+                found.append(act)
+                thrown = act.event if isinstance(act, Throw) else None
+                taker = self.taker(thrown, scope()) if isinstance(thrown, str) else None
+                if taker is not None and id(taker) not in taken:
+                    taken.add(id(taker))
+                    contents.append(taker.content)
+        return found
+
+    def taker(self, event: str, scope: Sequence[Handler]) -> Handler | None:
+        """The first handler of a scope that takes an event that is thrown."""
+        if self.left <= 0:
+            return None
+        self.left -= len(scope)
+        names = set(beginnings(event))
+        return next((one for one in scope if not names.isdisjoint(one.events)), None)
+
+    def items(self, form: Form) -> dict[str, Item]:
+        """The items of a form by their names."""
+        if id(form) not in self._items:
+            self._items[id(form)] = {one.name: one for one in all_items(form.items)}
+        return self._items[id(form)]
+
+    def asked(self, form: Form) -> Field | None:
+        """The first question of a form."""
+        if id(form) not in self._asked:
+            fields = (one for one in form.items if isinstance(one, Field))
+            self._asked[id(form)] = next(fields, None)
+        return self._asked[id(form)]
+
+    def named(self, act: Goto, form: Form) -> list[Item]:
+        """The items of a form that a goto certainly names."""
+        items = self.items(form)
+        return [items[name] for name in _named(act) if name in items]
+
+
+@dataclass(slots=True)
+class _Entry:
+    """A form as far as entering it gets by itself: up to a question, or a call that asks one."""
+
+    source: Source
+    form: Form
+    todo: list[Item]
+    """The items that come next, the last one first."""
+    seen: set[int] = field(default_factory=set)
+    called: set[str] = field(default_factory=set)
+    """The subdialogs that have been called, by their names, and those that have returned."""
+    returned: set[str] = field(default_factory=set)
+    leads: dict[Target, None] = field(default_factory=dict)
+    waiting: dict[str, list[tuple[set[str], Filled]]] | None = None
+    """What the form does with answers, by the names of the items, once somebody has looked."""
+
+    @property
+    def name(self) -> Target:
+        """The form as a target."""
+        return self.source.target(self.form)
+
+    def scope(self, item: Item) -> Callable[[], list[Handler]]:
+        """The handlers that may take what is thrown in an item."""
+        return lambda: [*item.handlers, *self.form.handlers, *self.source.document.handlers]
+
+
+class Entering:
+    """Enters every form; one that waits for a subdialog goes on once that is known to return."""
+
+    def __init__(self, sources: Sequence[Source], contents: Contents) -> None:
+        self._contents = contents
+        self._entries = [
+            _Entry(source, form, [*reversed(form.items)])
+            for source in sources
+            for form in source.document.forms.values()
+        ]
+        self._firsts = {f"{one.source.document.file}#": one for one in reversed(self._entries)}
+        """The first forms of documents."""
+        self._before: dict[Target, list[Target]] = defaultdict(list)
+        """The forms with a goto to one."""
+        self._callers: dict[Target, list[tuple[_Entry, Subdialog]]] = defaultdict(list)
+        self._returns: dict[Target, set[str]] = defaultdict(set)
+        """How a form returns where it is called: without an event, or with which ones."""
+        self._told: list[tuple[Target, str]] = []
+        """Forms that return, and how, which is still to be told."""
+
+    def exact(self, target: Target) -> Target:
+        """A target by the name of its form, also where that is its document's first one."""
+        first = self._firsts.get(target.name) if target.known else None
+        return first.name if first is not None else target
+
+    def onward(self) -> dict[Target, list[Target]]:
+        """Where each form leads to by itself."""
+        for entry in self._entries:
+            self._advance(entry)
+        while self._told:
+            self._tell(*self._told.pop())
+        return {one.name: [*one.leads] for one in self._entries}
+
+    def _tell(self, name: Target, event: str) -> None:
+        """A form returns: so do those that go to it, and who calls it goes on."""
+        if event in self._returns[name]:
+            return
+        self._returns[name].add(event)
+        self._told += [(one, event) for one in self._before[name]]
+        for entry, item in self._callers[name]:
+            self._come_back(entry, item, event)
+            self._advance(entry)
+
+    def _come_back(self, entry: _Entry, item: Subdialog, event: str) -> None:
+        """A subdialog returns: with an event, which is thrown where it was called, or without."""
+        if not event:
+            entry.returned.add(item.name)
+            return
+        scope = entry.scope(item)
+        taker = self._contents.taker(event, scope())
+        self._take(entry, self._contents.acts(taker.content if taker else (), scope))
+
+    def _advance(self, entry: _Entry) -> None:
+        """Visit the items of a form up to one that waits."""
+        while entry.todo:
+            item = entry.todo[-1]
+            if isinstance(item, Subdialog) and item.expr is None:
+                self._call(entry, item)
+            if not isinstance(item, Block) and item.name not in entry.returned:
+                return
+            entry.todo.pop()
+            if id(item) not in entry.seen and item.expr is None:
+                entry.seen.add(id(item))
+                self._visit(entry, item)
+
+    def _call(self, entry: _Entry, item: Subdialog) -> None:
+        if item.name in entry.called:
+            return
+        entry.called.add(item.name)
+        for target in map(self.exact, entry.source.leads(item)):
+            entry.leads[target] = None
+            self._callers[target].append((entry, item))
+            for event in sorted(self._returns[target]):
+                self._come_back(entry, item, event)
+
+    def _visit(self, entry: _Entry, item: Item) -> None:
+        """Go through an item's content: it may leave the form, or go to another item."""
+        contents = [item.content] if isinstance(item, Block) else [*self._answered(entry, item)]
+        scope = entry.scope(item)
+        acts = [act for content in contents for act in self._contents.acts(content, scope)]
+        left = item.cond is None and any(is_left(content) for content in contents)
+        gone = [
+            one
+            for act in acts
+            if isinstance(act, Goto)
+            for one in self._contents.named(act, entry.form)
+        ]
+        self._take(entry, acts)
+        if left and not gone:
+            entry.todo.clear()
+        entry.todo += [one for one in reversed(gone) if left or isinstance(one, Block)]
+
+    def _answered(self, entry: _Entry, item: Item) -> Iterator[tuple[Act, ...]]:
+        """What is done once a subdialog has returned."""
+        if isinstance(item, Subdialog):
+            yield from (one.content for one in item.filled)
+        if entry.waiting is None:
+            items = self._contents.items(entry.form).values()
+            entry.waiting = _waiting(entry.form, items)
+        for names, filled in entry.waiting.get(item.name, ()) if self._contents.left > 0 else ():
+            self._contents.left -= len(names)
+            if filled.mode == "any" or entry.returned >= names:
+                yield filled.content
+
+    def _take(self, entry: _Entry, acts: Iterable[Act]) -> None:
+        """Note where acts lead."""
+        for act in acts:
+            if isinstance(act, Return):
+                self._told.append((entry.name, act.event))
+            elif isinstance(act, Goto) and act.item is None:
+                for target in map(self.exact, entry.source.leads(act)):
+                    entry.leads[target] = None
+                    self._before[target].append(entry.name)
+                    self._told += [(entry.name, one) for one in sorted(self._returns[target])]
+
+
+def _named(act: Goto) -> list[str]:
+    if act.item is None or isinstance(act.item, str):
+        return [act.item] if act.item else []
+    return [one.text for one in choices(act.item.code) if one.whole]
+
+
+def is_open(act: Goto) -> bool:
+    """Whether only a run tells to which item a goto leads."""
+    item = act.item
+    return isinstance(item, Expression) and not all(one.whole for one in choices(item.code))
+
+
+def is_left(content: Sequence[Act]) -> bool:
+    """Whether content always goes elsewhere."""
+    for act in content:
+        if isinstance(act, Goto | Exit | Return):
+            return True
+        complete = isinstance(act, If) and act.branches[-1][0] is None
+        if isinstance(act, If) and complete and all(is_left(one) for _, one in act.branches):
+            return True
+    return False
+
+
+def _waiting(form: Form, items: Iterable[Item]) -> dict[str, list[tuple[set[str], Filled]]]:
+    """What a form does with answers, by each item that gives one, with all that it waits for."""
+    inputs = {one.name for one in items if isinstance(one, Field | Subdialog)}
+    found: dict[str, list[tuple[set[str], Filled]]] = defaultdict(list)
+    for filled in form.filled:
+        names = set(filled.names) or inputs
+        for name in names:
+            found[name].append((names, filled))
+    return found

@@ -1,0 +1,53 @@
+"""The texts that an expression may give, as far as the expression itself says so."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from prima.script.parse import Code, Node, inner, parse_expression
+
+
+class Choice(NamedTuple):
+    """A text that an expression may give, or the beginning of one."""
+
+    text: str
+    whole: bool
+
+
+UNKNOWN = Choice("", False)
+"""Any text."""
+
+
+def choices(code: str) -> list[Choice]:
+    """The texts that an expression may give: of literals, and of conditions between them.
+
+    >>> choices("old ? '#ask' : '#step' + number")
+    [Choice(text='#ask', whole=True), Choice(text='#step', whole=False)]
+    """
+    parsed = parse_expression(code)
+    node = inner(parsed) if parsed is not None else None
+    if parsed is None or node is None:
+        return [UNKNOWN]
+    found: list[Choice] = []
+    waiting: list[Node | None] = [node]
+    while waiting:
+        node = waiting.pop()
+        if node is not None and node.type == "ternary_expression":
+            waiting += [node.child_by_field_name(one) for one in ("alternative", "consequence")]
+        elif node is not None and node.type == "parenthesized_expression":
+            waiting += node.named_children
+        else:
+            found.append(_choice(parsed, node))
+    return list(dict.fromkeys(found))
+
+
+def _choice(code: Code, node: Node | None) -> Choice:
+    """The choice of an expression without conditions: a literal, or what begins with one."""
+    whole = True
+    while node is not None and node.type == "binary_expression":
+        operator = node.child_by_field_name("operator")
+        if operator is None or operator.type != "+":
+            return UNKNOWN
+        node, whole = node.child_by_field_name("left"), False
+    text = code.of(node) if node is not None and node.type == "string" else ""
+    return Choice(text[1:-1], whole) if text and "\\" not in text else UNKNOWN
