@@ -399,12 +399,16 @@ GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
         "scenarios/touched-on-the-way.xml",
         lambda path: graph.tree(api.rehearse(path), 5),
     ),
+    "touched": (
+        "scenarios/touched-on-the-way.xml",
+        lambda path: graph.streams(api.rehearse(path)),
+    ),
     "graph-streams": (
         "scenarios/three-applications.xml",
         lambda path: graph.streams(api.rehearse(path)),
     ),
 }
-"""The pictures of docs/graphs.md: each one's document, and how it is drawn."""
+"""The pictures of docs/graphs.md and the README: each one's document, and how it is drawn."""
 
 
 def outputs(root: Path) -> dict[Path, str]:
