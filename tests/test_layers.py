@@ -138,6 +138,7 @@ INSIDE = {
 ALONE = {
     "lxml": {"markup.reader"},
     "pymunk": {"sim.world"},
+    "networkx": {"sim.routes"},
     "lark": {"grammar.abnf"},
     "tree_sitter": {"script.parse"},
     "tree_sitter_javascript": {"script.parse"},

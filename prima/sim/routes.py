@@ -3,26 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from heapq import heappop, heappush
+from functools import cached_property
 from math import inf
+from typing import TYPE_CHECKING
 
 from prima.sim.scenario import Map, Point
 from prima.sim.world import World, distance
 
+if TYPE_CHECKING:
+    from networkx import Graph
+
 
 class Routes:
-    """Shortest ways between places, each looked for once (Dijkstra).
-
-    No graph library: importing one takes longer than the demo's whole run.
-    """
+    """Shortest ways between places, each looked for once."""
 
     def __init__(self, plan: Map) -> None:
         self._map = plan
-        self._ways: dict[str, dict[str, float]] = {name: {} for name in plan.places}
-        for a, b in plan.ways:
-            self._ways[a][b] = self._ways[b][a] = distance(plan.places[a], plan.places[b])
         self._leads: dict[str, dict[str, tuple[float, str]]] = {}
         """By places that have been asked for: how far it is from others (m), and by which."""
+
+    @cached_property
+    def _graph(self) -> Graph[str]:
+        """The places, and the ways between them with their lengths (m)."""
+        from networkx import Graph  # few runs ask for a way, and it takes a tenth of a second
+
+        graph: Graph[str] = Graph()
+        graph.add_nodes_from(self._map.places)
+        for a, b in self._map.ways:
+            length = distance(self._map.places[a], self._map.places[b])
+            graph.add_edge(a, b, weight=length)
+        return graph
 
     def route(self, world: World, to: str) -> list[Point] | None:
         """Points to go through from where the robot is to a place, or None if there is no way."""
@@ -40,16 +50,16 @@ class Routes:
         return [places[name] for name in path]
 
     def _lead_to(self, to: str) -> dict[str, tuple[float, str]]:
-        """How far it is to a place from all those that have a way to it, and which comes next."""
-        found: dict[str, tuple[float, str]] = {}
-        waiting = [(0.0, to, to)]
-        while waiting:
-            length, name, towards = heappop(waiting)
-            if name not in found:
-                found[name] = length, towards
-                for other, way in self._ways[name].items():
-                    heappush(waiting, (length + way, other, name))
-        return found
+        """How far it is to a place from all those that have a way to it, and which comes next.
+
+        Of ways of one length, that by the place first in the alphabet.
+        """
+        from networkx import dijkstra_predecessor_and_distance
+
+        nexts, lengths = dijkstra_predecessor_and_distance(self._graph, to)
+        return {
+            name: (float(length), min(nexts[name], default=to)) for name, length in lengths.items()
+        }
 
     def _first(self, free: Callable[[Point, Point], bool], here: Point, to: str) -> str | None:
         """The place from which the way to another is shortest, of those that are free to go to.
