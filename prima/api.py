@@ -31,7 +31,7 @@ from prima.loading import (
 from prima.messages import Record
 
 if TYPE_CHECKING:
-    from prima.export import Exported
+    from prima.exports import Exported
     from prima.interpreter.bounds import Visit
     from prima.scheduler.behavior import Application
     from prima.sim.rehearsal import Rehearsal
@@ -338,7 +338,7 @@ def export(
     Raises:
         UsageError: no such format, tag or application, or no file to read from or write to.
     """
-    from prima.export import Exported, checked, timeline, write
+    from prima.exports import Exported, checked, timeline, write
 
     tags = checked(to, languages or {})
     held = transcript if isinstance(transcript, Transcript) else None
@@ -374,7 +374,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
         UsageError: the scenario's files are not those of the transcript.
         DocumentError: documents are wrong.
     """
-    from prima.replay import replay_records
+    from prima.journal import replay_records
     from prima.transcript.lines import finished
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)

@@ -21,7 +21,7 @@ from lxml import etree
 from prima import api
 from prima.errors import Problem, UsageError
 from prima.errors.codes import CODES
-from prima.explain import rulebook
+from prima.handbook import rulebook
 from prima.interpreter.vocabulary import DIALOGUE, SPEAKING
 from prima.language.values import KINDS, read_value
 from prima.markup.check import check_tree

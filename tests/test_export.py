@@ -27,8 +27,8 @@ from pympi.Elan import Eaf
 
 from prima import api
 from prima.errors import UsageError
-from prima.export import FORMATS, timeline
-from prima.export.timeline import MOST_TIERS, Timeline
+from prima.exports import FORMATS, timeline
+from prima.exports.timeline import MOST_TIERS, Timeline
 
 ROOT = Path(__file__).parent.parent
 SCENARIOS = ROOT / "documents" / "scenarios"

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import prima
+
 ROOT = Path(__file__).parent.parent / "prima"
 
 LAYERS = [
@@ -20,12 +22,12 @@ LAYERS = [
     {"interpreter", "scheduler"},
     {"voicexml"},
     {"session"},
-    {"sim", "replay"},
+    {"sim", "journal"},
     {"checks"},
-    {"export", "loading", "pool"},
+    {"exports", "loading", "pool"},
     {"api"},
     {"certificate", "graph", "lsp", "report", "talk", "templates", "testing"},
-    {"experiments", "explain"},
+    {"experiments", "handbook"},
     {"cli", "__init__", "pytest_plugin"},
     {"__main__"},
 ]
@@ -55,7 +57,7 @@ INSIDE = {
     "language": [{"values"}, {"commands"}, {"__init__"}],
     "loading": [{"web", "writing"}, {"__init__"}],
     "experiments": [{"batch", "study"}, {"__init__"}],
-    "explain": [{"examples", "rulebook"}, {"__init__"}],
+    "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [
         {"prelude"},
         {"budget", "evaluation", "globals", "parse", "wire"},
@@ -93,7 +95,7 @@ INSIDE = {
         {"application"},
         {"__init__"},
     ],
-    "export": [{"timeline"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
+    "exports": [{"timeline"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
     "lsp": [
         {"words", "text"},
         {"scan"},
@@ -145,7 +147,7 @@ ALONE = {
     "_quickjs": {"script.engine", "script.sandbox", "script.syntax"},
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},
-    "mcap": {"export.mcap"},
+    "mcap": {"exports.mcap"},
     "pygls": {"lsp.server"},
     "lsprotocol": {"lsp.server"},
 }
@@ -281,3 +283,8 @@ def test_validating_an_application_imports_little(
     assert "_quickjs" not in done.stdout.split(), "strangers' code is compiled in another process"
     if not engine:
         assert done.stdout == "\n"
+
+
+def test_no_module_hides_a_function_of_the_interface() -> None:
+    """``prima.export`` would be the module as soon as anything had imported it."""
+    assert not {name.split(".")[0] for name in MODULES} & set(prima.__all__)

@@ -16,7 +16,7 @@ from prima import api
 from prima.errors import Problem, UsageError
 from prima.errors.codes import CODES
 from prima.errors.rendering import TOKEN
-from prima.explain.examples import FOLDER, Example, beside, data, examples, shown
+from prima.handbook.examples import FOLDER, Example, beside, data, examples, shown
 
 ROOT = Path(__file__).parent.parent
 MISTAKES = Path(__file__).parent / "mistakes"

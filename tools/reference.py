@@ -21,7 +21,7 @@ from typing import Any
 import prima
 from prima.errors import UsageError
 from prima.errors.codes import CODES
-from prima.explain import examples
+from prima.handbook import examples
 from prima.interpreter import (
     application,
     bounds,

@@ -20,7 +20,7 @@ def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> 
     from click.shell_completion import CompletionItem
 
     from prima.errors.codes import CODES
-    from prima.explain.rulebook import rules
+    from prima.handbook.rulebook import rules
 
     names = [*rules(), *CODES]
     found = [CompletionItem(name) for name in names if begun and name.startswith(begun)]
@@ -45,7 +45,7 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     prima explain mediated.jsonl 16
     """
     from prima.errors.codes import CODES
-    from prima.explain.rulebook import named
+    from prima.handbook.rulebook import named
 
     if what is None:
         _list(form)
@@ -76,7 +76,7 @@ def explain(what: str | None, row: int | None, form: str) -> None:
 def _list(form: str) -> None:
     """Every rule and every code with the first sentence of its explanation."""
     from prima.errors.codes import CODES
-    from prima.explain.rulebook import rules
+    from prima.handbook.rulebook import rules
 
     if form == "json":
         listed = [
@@ -103,7 +103,7 @@ def _lines(told: dict[str, str]) -> None:
 
 def _rule(name: str, form: str) -> None:
     """A rule with its example."""
-    from prima.explain.rulebook import data, shown
+    from prima.handbook.rulebook import data, shown
 
     if form == "json":
         print_json(data(name))
@@ -118,8 +118,8 @@ def _code(code: str, form: str) -> None:
         UsageError: there is no such code, nor a rule or a file of that name.
     """
     from prima.errors.codes import CODES
-    from prima.explain.examples import data, shown
-    from prima.explain.rulebook import suggestion
+    from prima.handbook.examples import data, shown
+    from prima.handbook.rulebook import suggestion
 
     if code not in CODES:
         hint = suggestion(code) or did_you_mean(code, CODES) or "prima explain lists them all."

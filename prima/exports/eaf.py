@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from xml.sax.saxutils import escape, quoteattr
 
-from prima.export.timeline import KINDS, Part, Timeline, clean, unused
+from prima.exports.timeline import KINDS, Part, Timeline, clean, unused
 
 MARK_MS = 200
 """How long (ms) a point is shown, where the next leaves it the time: EAF has none."""

@@ -11,7 +11,7 @@ from heapq import merge
 from typing import IO, Any
 
 from prima.errors.visible import escaped
-from prima.export.timeline import COLUMNS, Interval, Timeline, clean, unused
+from prima.exports.timeline import COLUMNS, Interval, Timeline, clean, unused
 from prima.messages import Json, Record
 
 ENCODER = json.JSONEncoder(ensure_ascii=False)

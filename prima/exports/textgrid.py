@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from prima.export.timeline import Interval, Part, Tier, Timeline
+from prima.exports.timeline import Interval, Part, Tier, Timeline
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:

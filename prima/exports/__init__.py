@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from typing import IO
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.export.timeline import TAG, Timeline, timeline
+from prima.exports.timeline import TAG, Timeline, timeline
 from prima.messages import Record
 
 FORMATS = {
@@ -74,11 +74,11 @@ def write(
 ) -> None:
     """Write a timeline in a format; ``records`` are the transcript's once more."""
     if name == "mcap":
-        from prima.export import mcap
+        from prima.exports import mcap
 
         mcap.write(made, records, version, out)
         return
-    pieces: Iterator[str] = import_module(f"prima.export.{name}").write(made, languages)
+    pieces: Iterator[str] = import_module(f"prima.exports.{name}").write(made, languages)
     for piece in pieces:
         out.write(piece.encode("utf-8", "replace"))
 

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterator
 
-from prima.export.timeline import COLUMNS, Timeline
+from prima.exports.timeline import COLUMNS, Timeline
 
 HEAD = ("tier", "kind", "start", "end", "text", *COLUMNS)
 NUMBERS = frozenset({"serial", "seconds"})
