@@ -112,11 +112,9 @@ def guessable(word: str, known: Iterable[str]) -> list[str]:
     if len(word) > MANY_LETTERS or (guesses is not None and guesses.left < 0):
         return []
     words = list(islice(known, MANY_WORDS + 1))
-    if len(words) > MANY_WORDS:
-        return []
     if guesses is not None:
         guesses.left -= len(words)
-    return sorted(words)
+    return sorted(words) if len(words) <= MANY_WORDS else []
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -128,6 +126,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
         alike = get_close_matches(word, words, n=1, cutoff=0.6)
     return f'Did you mean "{alike[0]}"?' if alike else ""
+
+
+def in_order(problems: Iterable[Problem]) -> list[Problem]:
+    """Problems once each, in document order."""
+    return sorted(dict.fromkeys(problems))  # a set would mix up what is nearly in order
 
 
 def few(problems: list[Problem], most: int) -> list[Problem]:

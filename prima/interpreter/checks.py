@@ -256,27 +256,13 @@ def _check_code(code: str, script: bool) -> None:
     (syntax().script if script else syntax().expression)(code)
 
 
-def _look_ahead(document: Document) -> None:
+def _look_ahead(codes: list[tuple[str, bool]]) -> None:
     """Let the engine look at all code at once that needs it: each call takes time."""
-    scripts = {id(act.code): act.code for act in _scripts(document)}
-    codes = [(one.code, True) for one in scripts.values()]
-    codes += [
-        (one.code, False)
-        for one in document.expressions
-        if id(one) not in scripts and compiled(one.code) is None
-    ]
     if len(codes) > 1:
         from prima.script.isolated import syntax
 
         with suppress(ScriptError):  # who asks for one of them is told that it cannot be started
             syntax().look_ahead(codes)
-
-
-def _scripts(document: Document) -> Iterator[Script]:
-    holders: list[Document | Form] = [document, *document.forms.values()]
-    yield from (act for one in holders for act in one.setup if isinstance(act, Script))
-    for _, content, _ in document.contents():
-        yield from (act for act in all_acts(content) if isinstance(act, Script))
 
 
 class Leads:
@@ -331,6 +317,8 @@ class Checker:
         """Names by the form whose content declares them; None for the document."""
         self._given: dict[str, Scope] = {}
         """Names that subdialogs give as params, by the form they call."""
+        self._waiting: list[tuple[Expression, Known, bool]] = []
+        """Code that only an engine understands, with the names that it may use, and whether it is a script."""
         self._gather()
         self._common = Scope(self.shared | self._declared.get(None, NONE))
         self._leads = self._led()
@@ -627,7 +615,6 @@ class Checker:
         every = Scope(self.shared.union(*self._declared.values(), *self._given.values()))
         known: dict[str | None, Known] = {form.id: self.known_in(form) for form, _ in self.forms}
         known[None] = Known(every)
-        _look_ahead(self.document)
         self._outside(document, Known(self.shared), known[None])
         for form, items in self.forms:
             self._outside(form, known[form.id], known[form.id])
@@ -641,6 +628,7 @@ class Checker:
                         self._expression(one, names)
         for stands, script in self.acts.of(Script):
             self._script(script, known[stands.id if stands else None])
+        self._compile()
         self._variables(known)
 
     def _outside(self, holder: Document | Form, known: Known, later: Known) -> None:
@@ -710,17 +698,33 @@ class Checker:
         self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
 
     def _expression(self, expr: Expression, known: Known) -> None:
-        if compiled(expr.code) is not None or self._compiles(expr):
-            names = expression_names(expr.code)
-            for name, start in names.free.items():
-                if name not in known:
-                    bare = expr.code.strip() == name and expr.node.tag != "value"
-                    called = CALL.match(expr.code, start + len(name)) is not None
-                    self._undeclared(_place_in(expr, start), name, known, bare, called)
-            for name, start in names.handled.items():
-                if not (name in known or id(expr.node) in self._handling):
-                    self._unhandled(_place_in(expr, start), name)
-            self._assigns(expr)
+        if compiled(expr.code) is None:
+            self._waiting.append((expr, known, False))
+        else:
+            self._used(expr, known)
+
+    def _script(self, act: Script, known: Known) -> None:
+        self._waiting.append((act.code, known, True))
+
+    def _compile(self) -> None:
+        """Check the code that only an engine understands."""
+        _look_ahead([(expr.code, script) for expr, _, script in self._waiting])
+        for expr, known, script in self._waiting:
+            if self._compiles(expr, script):
+                (self._used_by_script if script else self._used)(expr, known)
+
+    def _used(self, expr: Expression, known: Known) -> None:
+        """Note the names that an expression uses and nothing declares."""
+        names = expression_names(expr.code)
+        for name, start in names.free.items():
+            if name not in known:
+                bare = expr.code.strip() == name and expr.node.tag != "value"
+                called = CALL.match(expr.code, start + len(name)) is not None
+                self._undeclared(_place_in(expr, start), name, known, bare, called)
+        for name, start in names.handled.items():
+            if not (name in known or id(expr.node) in self._handling):
+                self._unhandled(_place_in(expr, start), name)
+        self._assigns(expr)
 
     @cached_property
     def _handling(self) -> set[int]:
@@ -746,17 +750,17 @@ class Checker:
                 self.problems.append(problem)
                 return
 
-    def _script(self, act: Script, known: Known) -> None:
-        if self._compiles(act.code, script=True):
-            for name, start in script_names(act.code.code).free.items():
-                if name not in known:
-                    message = f'The script uses "{name}", which nothing declares.'
-                    place = _place_in(act.code, start)
-                    code = "undeclared-variable"
-                    remedy = ABSENT.get(name, "") or did_you_mean(
-                        name, chain(VARIABLES, known.written())
-                    )
-                    self.problems.append(Problem(place, "warning", code, message, remedy))
+    def _used_by_script(self, expr: Expression, known: Known) -> None:
+        """Note the names that a script uses and nothing declares."""
+        for name, start in script_names(expr.code).free.items():
+            if name not in known:
+                message = f'The script uses "{name}", which nothing declares.'
+                place = _place_in(expr, start)
+                code = "undeclared-variable"
+                near = did_you_mean(name, chain(VARIABLES, known.written()))
+                self.problems.append(
+                    Problem(place, "warning", code, message, ABSENT.get(name) or near)
+                )
 
     def _compiles(self, expr: Expression, script: bool = False) -> bool:
         if expr.attribute and expr.attribute not in expr.node.attributes:

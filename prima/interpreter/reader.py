@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-from prima.errors import Problem, few_guesses
+from prima.errors import Problem, few_guesses, in_order
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.limits import LIMITS
 from prima.markup.reader import read_tree
-from prima.markup.tree import Node
 
 WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
 """Codes of what a whole document lacks, which may stand in an element that is not understood."""
@@ -76,22 +74,11 @@ def _read(file: str, data: bytes) -> tuple[Document, tuple[Problem, ...]]:
     builder = Builder(root)
     document = builder.document()
     problems += builder.problems
-    strange = list(_strange(root)) if told else []
+    strange = [node for node in root.walk() if not node.key] if told else []
     named = {text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"}
     found = check_document(document)
     problems += [one for one in found if not (strange and _follows(one, named))]
-    return document, tuple(sorted(set(problems)))
-
-
-def _strange(root: Node) -> Iterator[Node]:
-    """The elements that are not understood, with all that they hold."""
-    stack = [(root, False)]
-    while stack:
-        node, strange = stack.pop()
-        strange = strange or not node.key
-        if strange:
-            yield node
-        stack += [(child, strange) for child in node.nodes]
+    return document, tuple(in_order(problems))
 
 
 def _follows(problem: Problem, named: set[str]) -> bool:

@@ -24,6 +24,7 @@ from prima.errors import (
     UsageError,
     did_you_mean,
     few_guesses,
+    in_order,
     listed,
     one_of,
     parted,
@@ -254,7 +255,10 @@ def validate(paths: Iterable[str | Path]) -> list[Problem]:
 def once(problems: Iterable[Problem]) -> list[Problem]:
     """Problems once each: an error in a file is not repeated as a warning of the documents that name it."""
     found = dict.fromkeys(problems)
-    errors = {(one.place, one.message) for one in found if one.severity == "error"}
+    warned = {one.place for one in found if one.severity != "error"}
+    errors = {
+        (one.place, one.message) for one in found if one.severity == "error" and one.place in warned
+    }
     return [
         one for one in found if one.severity == "error" or (one.place, one.message) not in errors
     ]
@@ -275,11 +279,11 @@ class Validation:
         with few_guesses():
             found = self._ignores.left(_validate_one(str(path)))
         self._ignores.check(str(path))
-        return sorted(set(found))
+        return in_order(found)
 
     def ignored(self) -> list[Problem]:
         """What is wrong with ignores of the documents checked: no reason, or nothing to ignore."""
-        return sorted(set(self._ignores.told()))
+        return in_order(self._ignores.told())
 
 
 def _validate_one(path: str) -> list[Problem]:
@@ -630,11 +634,11 @@ def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     if world is None or robot is None or not complete:
         documents = reading.documents if complete else None
         names = check_names(scenario, world, robot, documents)
-        raise DocumentError(sorted({*reading.problems, *names}))
+        raise DocumentError(in_order([*reading.problems, *names]))
     cast = Cast(scenario, reading.documents, world, robot, offers)
-    problems = sorted({*reading.problems, *check_cast(cast)})
+    problems = in_order([*reading.problems, *check_cast(cast)])
     if not any(problem.severity == "error" for problem in told):
-        problems = sorted({*problems, *check_hearing(cast)})
+        problems = in_order([*problems, *check_hearing(cast)])
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(problems)
     return Loaded(cast, reading.files, problems)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from prima import loading
-from prima.errors import DocumentError, Problem, UsageError
+from prima.errors import DocumentError, Problem, UsageError, in_order
 from prima.lsp.desk import Desk
 from prima.lsp.scan import Page
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
@@ -94,4 +94,4 @@ def spots(desk: Desk, path: Path, problems: list[Problem]) -> list[Spot]:
     text = desk.text(path)
     if text is None:
         return []
-    return [spot(text.lines, problem) for problem in sorted(set(problems))]
+    return [spot(text.lines, problem) for problem in in_order(problems)]

@@ -17,7 +17,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, default_converter
 
 from prima import __version__
-from prima.errors import Problem
+from prima.errors import Problem, in_order
 from prima.lsp import naming
 from prima.lsp.complete import Proposal, complete
 from prima.lsp.desk import Desk, Text, path_of
@@ -514,7 +514,7 @@ def _actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeActio
         server.offset(page.lines, params.range.end),
     )
     made = []
-    for problem in sorted(set(server.problems(path))):
+    for problem in in_order(server.problems(path)):
         one = spot(page.lines, problem)
         if one.end < first or one.start > last:
             continue

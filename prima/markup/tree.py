@@ -191,7 +191,8 @@ class Node:
         while stack:
             node = stack.pop()
             yield node
-            stack += reversed(node.nodes)
+            if node.content:
+                stack += reversed(node.nodes)
 
     def get(self, name: str, default: str = "") -> str:
         """An attribute's text."""

@@ -387,17 +387,14 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     Only validation asks for them: a run is told of what it reaches, as an event.
     """
     problems: list[Problem] = []
-    codes = [(code, not name) for node in root.walk() for name, code in _codes(node)]
+    codes = [(node, name, code) for node in root.walk() for name, code in _codes(node)]
     if len(codes) > 1:
         with suppress(ScriptError):  # who asks for one of them is told that it cannot be started
-            syntax().look_ahead(codes)
+            syntax().look_ahead((code, not name) for _, name, code in codes)
     checker = syntax()
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        stack.extend(node.nodes)
-        for name, code in _codes(node):
-            _compile(node, name, code, problems, checker)
+    for node, name, code in codes:
+        _compile(node, name, code, problems, checker)
+    for node in root.walk():
         if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
             problems += grammar_problems(node, root.get("xml:lang", "en"))
         if node.key == "field" and node.get("type"):

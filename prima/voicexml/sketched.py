@@ -16,6 +16,7 @@ from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, is_unit
 from prima.voicexml.document import Page, broken
+from prima.voicexml.events import HANDLERS
 from prima.voicexml.sketch import Sketch, commands_in
 
 PREFIX = "p:"
@@ -36,12 +37,15 @@ def check_sketched(pages: Iterable[tuple[Page, Page | None]]) -> Iterator[Proble
     Args:
         pages: the documents, each with its application root document.
     """
+    sound = [one for one in pages if broken(one[0]) is None]  # what others hold is told later
+    roots = [one.root for both in sound for one in both if one is not None]
+    if not any(one.tag in HANDLERS or is_unit(one) for root in roots for one in root.walk()):
+        return  # all of it is about units, and about where handlers lead back to
     sources = []
-    for page, root in pages:
-        if broken(page) is None:  # else what is to be found in it is told once it can be run
-            sketch = Sketch(page, root)
-            yield from _check_units(sketch, root)
-            sources.append(_source(sketch, root))
+    for page, root in sound:
+        sketch = Sketch(page, root)
+        yield from _check_units(sketch, root)
+        sources.append(_source(sketch, root))
     yield from told_twice(sources, REMEDY)
 
 
