@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
@@ -266,19 +267,23 @@ def _look_ahead(codes: list[tuple[str, bool]]) -> None:
 
 
 class Leads:
-    """Where a form leads, or the document's own content."""
+    """Where forms lead, by their names, and the document's own content (None)."""
 
-    __slots__ = ("anywhere", "calls", "ends", "exits", "targets")
+    __slots__ = ("anywhere", "calls", "exits", "targets")
 
     def __init__(self) -> None:
-        self.targets: list[str] = []
-        """Forms it goes to."""
-        self.anywhere = False
-        """Whether an expression says where it goes."""
-        self.calls: list[str] = []
-        """Forms it calls as subdialogs."""
-        self.ends = self.exits = False
-        """Whether it can be left otherwise, and whether so by an exit."""
+        self.targets: defaultdict[str | None, list[str]] = defaultdict(list)
+        """Forms they go to."""
+        self.anywhere: set[str | None] = set()
+        """Those of which an expression says where they go."""
+        self.calls: defaultdict[str | None, list[str]] = defaultdict(list)
+        """Forms they call as subdialogs."""
+        self.exits: set[str | None] = set()
+        """Those that an exit may end."""
+
+    def of(self, form: str) -> list[str]:
+        """All that a form goes to or calls."""
+        return [*self.targets.get(form, ()), *self.calls.get(form, ())]
 
 
 def _of_run(run: Run) -> Iterator[object]:
@@ -311,8 +316,6 @@ class Checker:
         self.problems: list[Problem] = []
         self.acts = Acts(document)
         self.shared = Scope(self._setup_names(document.setup))
-        self.forms = [(form, all_items(form.items)) for form in document.forms.values()]
-        """Forms with all their items."""
         self._declared: dict[str | None, Scope] = {}
         """Names by the form whose content declares them; None for the document."""
         self._given: dict[str, Scope] = {}
@@ -322,6 +325,11 @@ class Checker:
         self._gather()
         self._common = Scope(self.shared | self._declared.get(None, NONE))
         self._leads = self._led()
+
+    @property
+    def forms(self) -> Iterator[tuple[Form, Sequence[Item]]]:
+        """Forms with all their items."""
+        return ((form, all_items(form.items)) for form in self.document.forms.values())
 
     def note(
         self,
@@ -391,25 +399,25 @@ class Checker:
         }
         return {**found, None: set().union(*found.values())}
 
-    def _led(self) -> dict[str | None, Leads]:
-        """Where each form leads, and the document's own content (None)."""
-        found: dict[str | None, Leads] = {name: Leads() for name in (None, *self.document.forms)}
+    def _led(self) -> Leads:
+        """Where each form leads, and the document's own content."""
+        found = Leads()
         for form, goto in self.acts.of(Goto):
-            leads = found[form.id if form else None]
+            name = form.id if form else None
             if isinstance(goto.form, str):
-                leads.targets.append(goto.form)
+                found.targets[name].append(goto.form)
             elif goto.form is not None:
-                leads.anywhere = True
-        for kind in (Exit, Return, Throw):
-            for form, _ in self.acts.of(kind):
-                leads = found[form.id if form else None]
-                leads.ends = True
-                leads.exits = leads.exits or kind is Exit
-        found[None].targets += [link.form for link in self.document.links if link.form]
+                found.anywhere.add(name)
+        found.exits = {form.id if form else None for form, _ in self.acts.of(Exit)}
+        holders = [(None, self.document.links), *((form.id, form.links) for form, _ in self.forms)]
+        for name, links in holders:
+            for link in links:
+                if link.form:
+                    found.targets[name].append(link.form)
         for form, items in self.forms:
-            leads = found[form.id]
-            leads.targets += [link.form for link in form.links if link.form]
-            leads.calls += [item.form for item in items if isinstance(item, Subdialog)]
+            for item in items:
+                if isinstance(item, Subdialog):
+                    found.calls[form.id].append(item.form)
         return found
 
     def _reached(self, names: Iterable[str], calls: bool) -> set[str]:
@@ -421,12 +429,9 @@ class Checker:
             if name in reached or name not in self.document.forms:
                 continue
             reached.add(name)
-            leads = self._leads[name]
-            if leads.anywhere:
+            if name in self._leads.anywhere:
                 return set(self.document.forms)
-            waiting += leads.targets
-            if calls:
-                waiting += leads.calls
+            waiting += self._leads.of(name) if calls else self._leads.targets.get(name, ())
         return reached
 
     def _hints(self) -> None:
@@ -479,10 +484,11 @@ class Checker:
         forms = self.document.forms
         if not forms:
             return
-        everywhere = self._leads[None]
-        starts = [*forms] if everywhere.anywhere else [next(iter(forms)), *everywhere.targets]
+        leads = self._leads
+        starts = [next(iter(forms)), *leads.targets.get(None, ())]
+        starts = [*forms] if None in leads.anywhere else starts
         reached = self._reached(starts, calls=True)
-        called = {name for form in forms for name in self._leads[form].calls}
+        called = {name for calls in leads.calls.values() for name in calls}
         inside = self._reached(called, calls=False)
         exiting = self._exiting()
         ways = self._ways()
@@ -496,7 +502,7 @@ class Checker:
                 )  # fmt: skip
             asks = any(isinstance(item, Field) for item in all_items(form.items))
             left = name in ways or None in ways or (asks and "" in ways)
-            left = left or not exiting.isdisjoint(self._leads[name].calls)
+            left = left or not exiting.isdisjoint(leads.calls.get(name, ()))
             if not left and name in reached:
                 remedy = (
                     "To come back from the subdialog, write <return/>."
@@ -531,14 +537,13 @@ class Checker:
     def _exiting(self) -> set[str]:
         """The forms from which an exit can be reached, through gotos and subdialogs."""
         forms = self.document.forms
-        waiting = [name for name in forms if self._leads[name].exits]
+        waiting = [name for name in forms if name in self._leads.exits]
         if not waiting:
             return set()
-        waiting += [name for name in forms if self._leads[name].anywhere]
+        waiting += [name for name in forms if name in self._leads.anywhere]
         leading: dict[str, list[str]] = {}
         for name in forms:
-            leads = self._leads[name]
-            for target in (*leads.targets, *leads.calls):
+            for target in self._leads.of(name):
                 leading.setdefault(target, []).append(name)
         found: set[str] = set()
         while waiting:
@@ -603,8 +608,15 @@ class Checker:
     def _own(self, form: Form | None) -> Scope:
         return self._declared.setdefault(form.id if form else None, Scope())
 
-    def known_in(self, form: Form) -> Known:
-        """All variables that content of a form may see."""
+    @cached_property
+    def _every(self) -> Known:
+        """All variables that there are."""
+        return Known(Scope(self.shared.union(*self._declared.values(), *self._given.values())))
+
+    def known_in(self, form: Form | None) -> Known:
+        """All variables that content of a form may see, or the document's own content (None)."""
+        if form is None:
+            return self._every
         own, given = self._declared.get(form.id), self._given.get(form.id)
         return Known(self._common, *filter(None, (own, given)))
 
@@ -612,24 +624,21 @@ class Checker:
 
     def _expressions(self) -> None:
         document = self.document
-        every = Scope(self.shared.union(*self._declared.values(), *self._given.values()))
-        known: dict[str | None, Known] = {form.id: self.known_in(form) for form, _ in self.forms}
-        known[None] = Known(every)
-        self._outside(document, Known(self.shared), known[None])
+        self._outside(document, Known(self.shared), self.known_in(None))
         for form, items in self.forms:
-            self._outside(form, known[form.id], known[form.id])
+            known = self.known_in(form)
+            self._outside(form, known, known)
             for item in items:
-                self._item(item, known[form.id])
+                self._item(item, known)
         for kind, held in HELD.items():
             for stands, act in self.acts.of(kind):
-                names = known[stands.id if stands else None]
                 for one in held(act):
                     if isinstance(one, Expression):
-                        self._expression(one, names)
+                        self._expression(one, self.known_in(stands))
         for stands, script in self.acts.of(Script):
-            self._script(script, known[stands.id if stands else None])
+            self._script(script, self.known_in(stands))
         self._compile()
-        self._variables(known)
+        self._variables()
 
     def _outside(self, holder: Document | Form, known: Known, later: Known) -> None:
         """Code of a document or form that is in no content; ``later`` is seen by its handlers."""
@@ -660,10 +669,10 @@ class Checker:
             if isinstance(one, Expression):
                 self._expression(one, known)
 
-    def _variables(self, known: Mapping[str | None, Known]) -> None:
+    def _variables(self) -> None:
         """Variables that acts give a value, clear or return."""
         for form, assign in self.acts.of(Assign):
-            names = known[form.id if form else None]
+            names = self.known_in(form)
             head, dot, rest = assign.name.partition(".")
             name = rest.partition(".")[0] if dot and head in SCOPED else head
             if name not in names:
@@ -673,7 +682,7 @@ class Checker:
             *self.acts.of(Return),
         ]
         for form, listing in listed:
-            names = known[form.id if form else None]
+            names = self.known_in(form)
             for name in listing.names:
                 if name not in names:
                     self._undeclared(listing.node.attribute_place("namelist"), name, names)

@@ -425,10 +425,10 @@ class Acts:
         return [act for _, one, _ in contents for act in all_acts(one) if isinstance(act, kinds)]
 
 
-def all_items(items: Sequence[Item]) -> list[Item]:
+def all_items(items: Sequence[Item]) -> Sequence[Item]:
     """Form items, those inside units included, in document order."""
-    if not items:
-        return []
+    if Unit not in map(type, items):
+        return items
     found: list[Item] = []
     for item in items:
         found.append(item)

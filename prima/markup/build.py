@@ -51,8 +51,8 @@ Start = Callable[[str, dict[str, str]], None]
 """Takes a start tag: the element's name and its attributes."""
 
 
-def _starter(source: Source, opened: list[list[Node | str]]) -> Start:
-    """What makes nodes of start tags; ``opened`` are the contents of the elements that are open.
+def _starter(source: Source, opened: list[Node]) -> Start:
+    """What makes nodes of start tags; ``opened`` are the elements that are open.
 
     It is called for every element: hence the variables of this function.
     """
@@ -72,10 +72,9 @@ def _starter(source: Source, opened: list[list[Node | str]]) -> Start:
         if not plain.issuperset(attributes):
             attributes = {attribute_name(key): text for key, text in attributes.items()}
             plain.update(key for key in attributes if ":" not in key and "}" not in key)
-        content: list[Node | str] = []
-        node = Node(known[0], source, count, attributes, content, "", known[1])
-        opened[-1].append(node)
-        opened.append(content)
+        node = Node(known[0], source, count, attributes, (), "", known[1])
+        opened[-1].add(node)
+        opened.append(node)
         count += 1
         if len(attributes) > widest:
             raise TooMuch(node, "attributes")
@@ -101,20 +100,18 @@ def build(source: Source, doctype: bool = False) -> Node:
     if "\0" in source.text:  # by which expat would guess another encoding
         raise Unclear
     data = source.text.encode()
-    top: list[Node | str] = []
+    top = Node("", source, -1, {})
     opened = [top]
     parser = expat.ParserCreate("utf-8", "}")
     parser.buffer_text = True
     parser.buffer_size = max(len(data), 1)
     parser.StartElementHandler = _starter(source, opened)
     parser.EndElementHandler = lambda _: opened.pop()
-    parser.CharacterDataHandler = lambda text: opened[-1].append(text)
+    parser.CharacterDataHandler = lambda text: opened[-1].add(text)
     if not doctype:
         parser.StartDoctypeDeclHandler = _unclear
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         raise Unclear(error.lineno, error.offset + 1) from None
-    root = top[0]
-    assert isinstance(root, Node)
-    return root
+    return top.nodes[0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from prima.errors import Place
 
@@ -142,9 +142,16 @@ class Node:
     source: Source
     index: int
     attributes: dict[str, str]
-    content: list[Node | str] = field(default_factory=list)
+    content: list[Node | str] | tuple[()] = ()
     key: str = ""
     namespace: str = ""
+
+    def add(self, item: Node | str) -> None:
+        """Put an element or text behind all that is in it: many elements hold nothing."""
+        if self.content:
+            self.content.append(item)
+        else:
+            self.content = [item]
 
     @property
     def place(self) -> Place:
