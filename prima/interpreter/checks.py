@@ -600,7 +600,8 @@ class Checker:
             if form.setup:
                 self._own(form).update(self._setup_names(form.setup))
             for item in items:
-                self._own(form).update((item.name, f"{item.name}$"))
+                if item.node.get("name"):
+                    self._own(form).update((item.name, f"{item.name}$"))
                 if isinstance(item, Subdialog):
                     given = self._given.setdefault(item.form, Scope())
                     given |= {name for name, _ in item.params}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -341,6 +341,8 @@ class Form:
         self.bare = not (self.items or self.setup or self.watches)
 
 
+Holder = Handler | Filled | Block
+"""What holds executable content."""
 Content = tuple[Form | None, tuple[Act, ...], Node]
 """A piece of executable content, with its form and the element that holds it."""
 
@@ -372,27 +374,31 @@ class Document:
     """Whether any code may look at the event that is being handled."""
     sensors: tuple[frozenset[str] | None] | None = None
     """Which sensors any code may look at; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
-    _contents: list[Content] | None = field(default=None, repr=False, compare=False)
+    _holders: tuple[list[Form | None], list[Holder]] | None = field(
+        default=None, repr=False, compare=False
+    )
 
-    def contents(self) -> list[Content]:
+    def contents(self) -> Iterator[Content]:
         """Every piece of executable content, with its form and the element that holds it."""
-        if self._contents is None:  # every check asks again; a document does not change
-            self._contents = self._gather()
-        return self._contents
+        if self._holders is None:  # every check asks again; a document does not change
+            self._holders = self._gather()
+        return ((form, one.content, one.node) for form, one in zip(*self._holders, strict=True))
 
-    def _gather(self) -> list[Content]:
-        found: list[Content] = []
-        found += [(None, handler.content, handler.node) for handler in self.handlers]
+    def _gather(self) -> tuple[list[Form | None], list[Holder]]:
+        """What holds content, and beside it the forms in which it stands."""
+        holders: list[Holder] = [*self.handlers]
+        forms: list[Form | None] = [None] * len(holders)
         for form in self.forms.values():
-            found += [(form, handler.content, handler.node) for handler in form.handlers]
-            found += [(form, filled.content, filled.node) for filled in form.filled]
+            held: list[Holder] = [*form.handlers, *form.filled]
             for item in all_items(form.items):
-                found += [(form, handler.content, handler.node) for handler in item.handlers]
+                held += item.handlers
                 if isinstance(item, Block):
-                    found.append((form, item.content, item.node))
+                    held.append(item)
                 elif isinstance(item, Field | Subdialog):
-                    found += [(form, part.content, part.node) for part in item.filled]
-        return found
+                    held += item.filled
+            holders += held
+            forms += [form] * len(held)
+        return forms, holders
 
 
 Kind = TypeVar("Kind", bound=Act)
@@ -403,19 +409,21 @@ class Acts:
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._found: dict[type, list[Any]] = {}
+        self._found: dict[type, tuple[list[Form | None], list[Any]]] = {}
+        """Acts by kinds, and beside them their forms: a pair for each would be many objects."""
         found = self._found
         for form, content, _ in document.contents():
             for act in all_acts(content):
                 kind = type(act)
-                if kind in found:
-                    found[kind].append((form, act))
-                else:
-                    found[kind] = [(form, act)]
+                if kind not in found:
+                    found[kind] = [], []
+                forms, acts = found[kind]
+                forms.append(form)
+                acts.append(act)
 
-    def of(self, kind: type[Kind]) -> list[tuple[Form | None, Kind]]:
+    def of(self, kind: type[Kind]) -> Iterator[tuple[Form | None, Kind]]:
         """All of a kind in document order, each with its form; None stands for the document."""
-        return self._found.get(kind, [])
+        return zip(*self._found.get(kind, ((), ())), strict=True)
 
     def among(self, *kinds: type[Act]) -> list[Act]:
         """All of some kinds, in document order."""
