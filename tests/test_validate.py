@@ -66,6 +66,19 @@ def test_a_list_of_problems_stops_and_says_how_many_there_are_more(tmp_path: Pat
     assert len(everything.stdout.splitlines()) == 1_234
 
 
+def test_very_long_names_are_cut_in_messages(tmp_path: Path) -> None:
+    path, name = tmp_path / "a.xml", "n" * 100_000
+    items = '<block name="a"><goto next="#b"/></block>' * 400
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">'
+        f'<form id="{name}">{items}</form></prima>'
+    )
+    told = api.validate([path])
+    assert max(len(one.message) for one in told) < 500 > max(len(one.remedy) for one in told)
+    twice = next(one for one in told if one.code == "duplicate-name")
+    assert re.fullmatch(r'The form "n+ \[\.\.\.\] n+" has two items named "a"\.', twice.message)
+
+
 def test_errors_are_told_before_warnings_where_not_all_are_told() -> None:
     problems = [
         Problem(Place("a.xml", line), "error" if line % 2 else "warning", "empty", "Empty.")

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from itertools import islice
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Self
 
 TOO_MUCH = (
     "the run made more records, or more text, than a run may."
@@ -29,6 +29,11 @@ MOST_COMPARED = 30_000
 
 MOST_TOLD = 1_000
 """Problems that are listed; the others are counted."""
+
+LONGEST_TEXT = 450
+"""Characters of a message or remedy beyond which its middle is left out."""
+CUT = " [...] "
+"""What is there in place of the middle of a text."""
 
 Severity = Literal["error", "warning", "note"]
 SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
@@ -49,18 +54,39 @@ class Place(NamedTuple):
         return f"{self.file}:{self.line}:{self.column}"
 
 
-class Problem(NamedTuple):
-    """One thing wrong in a document, with what to write instead where that is known."""
-
+class _Problem(NamedTuple):
     place: Place
     severity: Severity
     code: str
     message: str
     remedy: str = ""
 
+
+class Problem(_Problem):
+    """One thing wrong in a document, with what to write instead where that is known.
+
+    A message or remedy that quotes very long names is cut in its middle: a name may be as long as a
+    document, and be in thousands of messages.
+    """
+
+    __slots__ = ()
+
+    def __new__(
+        cls, place: Place, severity: Severity, code: str, message: str, remedy: str = ""
+    ) -> Self:
+        """A problem at a place."""
+        return super().__new__(cls, place, severity, code, _brief(message), _brief(remedy))
+
     def __str__(self) -> str:
         remedy = f" {self.remedy}" if self.remedy else ""
         return f"{self.place}: {self.severity}: {self.message}{remedy} [{self.code}]"
+
+
+def _brief(text: str) -> str:
+    """A text of which, if it is very long, only the beginning and the end are left."""
+    if len(text) <= LONGEST_TEXT:
+        return text
+    return text[: 2 * LONGEST_TEXT // 3] + CUT + text[-LONGEST_TEXT // 3 :]
 
 
 class PrimaError(Exception):
