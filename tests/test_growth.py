@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import sys
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -13,7 +15,8 @@ from bench.large import FAMILIES, Family
 from prima import loading
 from prima.certificate import certificates
 from prima.checks.ignores import Ignores
-from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses
+from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses, in_order
+from prima.interpreter.reader import read_document
 from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.desk import Desk
@@ -23,6 +26,7 @@ from prima.lsp.outline import outline
 from prima.lsp.problems import check, spots
 from prima.lsp.text import Lines
 from prima.markup.tree import Source
+from prima.script.compile import compiled
 
 ROOT = Path(__file__).parent.parent
 SMALL, LARGE = 8_000, 32_000
@@ -89,6 +93,64 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
 def test_a_certificate_grows_with_the_size_of_a_document(name: str, tmp_path: Path) -> None:
     fa = str(ROOT / "documents" / "fa" / "follow.xml")
     assert grown(FAMILIES[name], tmp_path, lambda path: certificates([fa], [str(path)])) < MOST
+
+
+def test_an_expression_is_compiled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: Counter[str] = Counter()
+
+    def counted(code: str) -> object:
+        asked[code] += 1
+        return compiled(code)
+
+    monkeypatch.setattr("prima.interpreter.checks.compiled", counted)
+    monkeypatch.setattr("prima.voicexml.check.compiled", counted)
+    for name in ("undeclared names in expressions", "VoiceXML undeclared names"):
+        path = tmp_path / f"a{FAMILIES[name].suffix}"
+        path.write_text(FAMILIES[name].text(SMALL), encoding="utf-8")
+        asked.clear()
+        loading.validate([path])
+        assert len(asked) > 100 and asked.most_common(1)[0][1] == 1
+
+
+def test_problems_nearly_in_order_are_hardly_compared() -> None:
+    compared = 0
+
+    class Text(str):
+        def __lt__(self, other: str) -> bool:
+            nonlocal compared
+            compared += 1
+            return super().__lt__(other)
+
+    texts = [Text(f"{index:04}") for index in range(1_000)]
+    problems = [Problem(Place("a.xml"), "error", "empty", "Empty.", text) for text in texts]
+    problems = [one._replace(remedy=text) for one, text in zip(problems, texts, strict=True)]
+    assert in_order([*problems, *problems[:10]]) == problems
+    assert compared < 2 * len(problems)
+
+
+def test_a_document_is_few_objects(tmp_path: Path) -> None:
+    """Python looks through all of them whenever they have grown by a quarter."""
+    family = FAMILIES["forms with gotos"]
+    counts = []
+    for size in (SMALL, LARGE):
+        text = family.text(size)
+        gc.collect()
+        before = len(gc.get_objects())
+        document, _ = read_document(str(tmp_path / f"{size}.xml"), text.encode())
+        gc.collect()
+        counts.append((len(gc.get_objects()) - before, len(document.forms)))
+    (few, some), (many, more) = counts
+    assert (many - few) / (more - some) < 10.5  # three elements, with what they hold and mean
+
+
+def test_dialogs_without_handlers_and_units_are_not_sketched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = FAMILIES["VoiceXML dialogs with gotos"]
+    path = tmp_path / "a.vxml"
+    path.write_text(family.text(SMALL), encoding="utf-8")
+    monkeypatch.setattr("prima.voicexml.sketched.Sketch", None)
+    assert loading.validate([path]) == []
 
 
 def test_only_so_many_words_are_compared_for_one_document() -> None:
