@@ -32,6 +32,7 @@ from prima.lsp.scan import Page
 from prima.lsp.tables import VOCABULARIES, resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
 from prima.lsp.words import RULES, VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
+from prima.visible import HARMFUL
 
 ROOT = Path(__file__).parent.parent
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n'
@@ -284,6 +285,41 @@ def test_a_list_of_problems_stops_in_the_editor_too(editor: Editor) -> None:
     found = editor.open("worlds/many.xml", text)
     editor.close("worlds/many.xml")
     assert len(found) == 1_001 and "And 234 more problems" in found[-1].message
+
+
+def test_what_a_document_says_reaches_the_editor_as_text_and_as_nothing_else(
+    editor: Editor,
+) -> None:
+    name = "\u202e\u2066\x9b31m\u200fabc"
+    text = BEGIN + (
+        f'<form id="{name}"><var name="{name}"/><block><goto next="#{name}x"/></block>'
+        '<block cond="abc\u061cd"><exit/></block></form></prima>'
+    )
+    problems = editor.open("fa/x.xml", text)
+    document = lsp.TextDocumentIdentifier(editor.uri("fa/x.xml"))
+    whole = lsp.Range(lsp.Position(0, 0), lsp.Position(9, 0))
+    actions = editor.do(
+        editor.client.text_document_code_action_async(
+            lsp.CodeActionParams(document, whole, lsp.CodeActionContext(problems))
+        )
+    )
+    symbols = editor.do(
+        editor.client.text_document_document_symbol_async(lsp.DocumentSymbolParams(document))
+    )
+    found = editor.do(
+        editor.client.text_document_completion_async(
+            lsp.CompletionParams(
+                document, lsp.Position(1, text.splitlines()[1].index("#\u202e") + 1)
+            )
+        )
+    )
+    editor.close("fa/x.xml")
+    assert isinstance(found, lsp.CompletionList)
+    shown = [one.message for one in problems] + [one.title for one in actions or ()]
+    shown += [one.name for one in symbols or ()]
+    shown += [one.label for one in found.items]
+    assert sum("\ufffd" in one for one in shown) > 4, shown
+    assert not [one for one in shown if HARMFUL.search(one)]
 
 
 def test_columns_count_utf16_units(editor: Editor) -> None:
@@ -706,6 +742,16 @@ def test_quick_fixes(editor: Editor, case: str) -> None:
             made.append(edited(text, list(action.edit.changes[editor.uri(name)])))
     editor.close(name)
     assert any(wanted in one for one in made), made
+
+
+def test_nothing_is_done_about_a_name_that_is_cut() -> None:
+    text = BEGIN + f'<form id="a"><block cond="{"q" * 1_000}"><exit/></block></form></prima>'
+    desk = Desk()
+    desk.put("file:///x.xml", text)
+    path = next(iter(desk.open))
+    (found,) = spots(desk, path, check(desk, path)[path])
+    assert found.problem.code == "undeclared-variable" and "[...]" in found.problem.remedy
+    assert fixes(desk.open[path].page, found) == []
 
 
 # Robustness --------------------------------------------------------------------------------

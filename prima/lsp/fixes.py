@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from prima.errors import Problem
+from prima.errors import CUT, Problem
 from prima.lsp.problems import Spot
 from prima.lsp.scan import Page, Tag
 from prima.lsp.tables import attributes
@@ -51,6 +51,8 @@ def fixes(page: Page, spot: Spot) -> list[Fix]:
 def _found(page: Page, spot: Spot) -> Iterator[Fix]:
     problem, remedy = spot.problem, spot.problem.remedy
     whole = f"{problem.message} {remedy}"
+    if CUT in whole:
+        return  # what it names is not all there
     if meant := MEANT.search(whole):
         changes = _replaced(page, spot, meant[1])
         if changes:

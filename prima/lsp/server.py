@@ -28,6 +28,7 @@ from prima.lsp.outline import Part, links, outline
 from prima.lsp.problems import Spot, check, spot, spots
 from prima.lsp.scan import Page
 from prima.lsp.text import Lines
+from prima.visible import visible
 
 SOON, LATER = 0.005, 0.25
 """Seconds after a change until its document is looked through, and those that it concerns."""
@@ -197,7 +198,7 @@ class Server(LanguageServer):
         problem = one.problem
         return lsp.Diagnostic(
             self.range(lines, one.start, one.end),
-            f"{problem.message} {problem.remedy}".strip(),
+            visible(f"{problem.message} {problem.remedy}".strip(), "\n"),
             SEVERITIES[problem.severity],
             problem.code,
             source="prima",
@@ -383,9 +384,9 @@ def _item(server: Server, page: Page, one: Proposal, number: int) -> lsp.Complet
         server.range(page.lines, one.start, one.end), snippet or one.insert or one.label
     )
     return lsp.CompletionItem(
-        one.label,
+        visible(one.label),
         kind=ITEMS.get(one.kind),
-        detail=one.detail or None,
+        detail=visible(one.detail) or None,
         documentation=lsp.MarkupContent(lsp.MarkupKind.Markdown, one.doc) if one.doc else None,
         sort_text=f"{number:04}",
         filter_text=one.label,
@@ -402,7 +403,7 @@ def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
     if asked is None or found is None:
         return None
     return lsp.Hover(
-        lsp.MarkupContent(lsp.MarkupKind.Markdown, found.text),
+        lsp.MarkupContent(lsp.MarkupKind.Markdown, visible(found.text, "\n")),
         server.range(asked[1].lines, found.start, found.end),
     )
 
@@ -483,11 +484,11 @@ def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.Docum
 
 def _symbol(server: Server, page: Page, part: Part) -> lsp.DocumentSymbol:
     return lsp.DocumentSymbol(
-        part.name,
+        visible(part.name),
         SYMBOLS[part.sort],
         server.range(page.lines, part.start, part.end),
         server.range(page.lines, part.name_start, part.name_end),
-        part.detail or None,
+        visible(part.detail) or None,
         children=[_symbol(server, page, one) for one in part.parts],
     )
 
@@ -525,7 +526,7 @@ def _actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeActio
             ]
             made.append(
                 lsp.CodeAction(
-                    fix.title,
+                    visible(fix.title),
                     lsp.CodeActionKind.QuickFix,
                     [server.diagnostic(page.lines, one)],
                     is_preferred=number == 0,
