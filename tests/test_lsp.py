@@ -20,6 +20,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
 
 from prima import api
+from prima.errors.visible import HARMFUL
 from prima.lsp import naming, server
 from prima.lsp.complete import complete
 from prima.lsp.desk import Desk
@@ -32,7 +33,6 @@ from prima.lsp.scan import Page
 from prima.lsp.tables import VOCABULARIES, resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
 from prima.lsp.words import RULES, VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
-from prima.visible import HARMFUL
 
 ROOT = Path(__file__).parent.parent
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n'

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import prima
-from prima.errors import UsageError
+from prima.errors import LONGEST_TEXT, UsageError
 from prima.errors.codes import CODES
 from prima.handbook import examples
 from prima.interpreter import (
@@ -213,6 +213,7 @@ def limits() -> str:
         ("attributes of an element", f"{LIMITS.attributes}", "`too-large`"),
         ("elements inside each other", f"{LIMITS.depth}", "`too-deep`"),
         ("problems listed", f"{LIMITS.problems:,}", "`more-problems`"),
+        ("a problem's message or remedy", f"{LONGEST_TEXT:,} characters", "its middle is left out"),
         ("names that one script declares", f"{syntax.MOST_NAMES:,}", "`bad-expression`"),
         ("characters of one script", f"{parse.MOST_CODE:,}", "`bad-expression`"),
         ("a time in an attribute", f"{LONGEST_MS // 1000:,} s", "`bad-value`"),
@@ -473,8 +474,9 @@ def _members(thing: type) -> list[str]:
     """Public fields, properties and methods of a class."""
     told = _field_docs(thing)
     rows = [
-        (f"`{name}: {kind}`", told.get(name, ""))
-        for name, kind in inspect.get_annotations(thing).items()
+        (f"`{name}: {getattr(kind, '__forward_arg__', kind)}`", told.get(name, ""))
+        for one in reversed(getattr(thing, "__mro__", (thing,)))
+        for name, kind in inspect.get_annotations(one).items()
         if not name.startswith("_")
     ]
     for name, member in vars(thing).items():

@@ -18,6 +18,7 @@ from pygls.protocol import LanguageServerProtocol, default_converter
 
 from prima import __version__
 from prima.errors import Problem, in_order
+from prima.errors.visible import visible
 from prima.lsp import naming
 from prima.lsp.complete import Proposal, complete
 from prima.lsp.desk import Desk, Text, path_of
@@ -28,7 +29,6 @@ from prima.lsp.outline import Part, links, outline
 from prima.lsp.problems import Spot, check, spot, spots
 from prima.lsp.scan import Page
 from prima.lsp.text import Lines
-from prima.visible import visible
 
 SOON, LATER = 0.005, 0.25
 """Seconds after a change until its document is looked through, and those that it concerns."""
