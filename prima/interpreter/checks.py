@@ -798,7 +798,9 @@ class Checker:
 
         bare = STRINGS.sub("", code)
         wide = [
-            one for one in bare if not one.isascii() and half(one).isascii() and half(one).strip()
+            one
+            for one in ("" if bare.isascii() else bare)
+            if not one.isascii() and half(one).isascii() and half(one).strip()
         ]
         if wide:
             return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
@@ -807,7 +809,7 @@ class Checker:
         if re.search(r"=\s+=", bare):
             return "Write == without a space."
         for word, right in (("and", "&amp;&amp;"), ("or", "||"), ("not", "!")):
-            if re.search(rf"\b{word}\b", bare):
+            if word in bare and re.search(rf"\b{word}\b", bare):
                 return f"Write {right} for {word}."
         return ""
 

@@ -38,8 +38,9 @@ def check_sketched(pages: Iterable[tuple[Page, Page | None]]) -> Iterator[Proble
         pages: the documents, each with its application root document.
     """
     sound = [one for one in pages if broken(one[0]) is None]  # what others hold is told later
-    roots = [one.root for both in sound for one in both if one is not None]
-    if not any(one.tag in HANDLERS or is_unit(one) for root in roots for one in root.walk()):
+    every = {one.uri: one.root for both in sound for one in both if one is not None}
+    nodes = (node for root in every.values() for node in root.walk())
+    if not any(node.tag in HANDLERS or is_unit(node) for node in nodes):
         return  # all of it is about units, and about where handlers lead back to
     sources = []
     for page, root in sound:
