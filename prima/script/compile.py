@@ -37,7 +37,7 @@ from prima.script.ecmascript import (
     truth,
 )
 from prima.script.globals import GLOBALS, RESERVED
-from prima.script.parse import Code, Node, inner, parse_expression
+from prima.script.parse import Code, Node, inner, parse_bracketed
 
 Function = Callable[[Scopes], Any]
 
@@ -205,7 +205,7 @@ def compiled(code: str) -> Compiled | None:
 
 
 def _compile(code: str) -> Compiled | None:
-    parsed = parse_expression(code)
+    parsed = parse_bracketed(code)
     node = inner(parsed) if parsed is not None else None
     if parsed is None or node is None:
         return None

@@ -14,7 +14,7 @@ from typing import Literal
 import tree_sitter_javascript
 from tree_sitter import Language, Node, Parser, Tree
 
-__all__ = ["MOST_CODE", "Code", "Node", "parse_expression", "parse_script"]
+__all__ = ["MOST_CODE", "Code", "Node", "parse_bracketed", "parse_expression", "parse_script"]
 
 MOST_CODE = 300_000
 """Characters of code beyond which none is parsed."""
@@ -91,10 +91,16 @@ def parse_expression(code: str) -> Code | None:
 
     None for code that is too long to be parsed.
     """
-    found = _parse(code, f"({code}\n)", 1)
+    found = parse_bracketed(code)
     if found is None or inner(found) is not None:
         return found
     return parse_script(code)
+
+
+@lru_cache(maxsize=2)
+def parse_bracketed(code: str) -> Code | None:
+    """The tree of code in brackets, whatever it is; the last one is asked for again."""
+    return _parse(code, f"({code}\n)", 1)
 
 
 def inner(code: Code) -> Node | None:
