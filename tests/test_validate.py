@@ -908,17 +908,101 @@ def told(folder: Path, content: str, attributes: str = "", **others: str) -> lis
         ("<form><block><script>var y = x;</script></block></form>", "x"),
         ("<script>function f(y) { return x + y; }</script><form><var name='x'/></form>", "x"),
         ("<form><block><script>x++;</script></block></form>", "x"),
+        ('<form><block><disconnect namelist="x"/></block></form>', "x"),
+        ('<form><block><data src="service:s" namelist="x"/></block></form>', "x"),
+        ('<form><block><var name="x"/></block><block><log expr="x"/></block></form>', "x"),
+        ('<form><block><script>x = 1;</script></block><block><log expr="x"/></block></form>', "x"),
+        ('<form><filled><var name="x"/></filled><catch><log expr="x"/></catch></form>', "x"),
+        ('<catch event="e"><var name="x"/></catch><form><block><log expr="x"/></block></form>', "x"),
+        ('<form><subdialog name="s" src="#a"><filled><log expr="s$.y"/></filled></subdialog></form>'
+         '<form id="a"><block><return/></block></form>', "s$"),
+        ('<var name="x"/><form><block><log expr="x$"/></block></form>', "x$"),
     ],
-)
+)  # fmt: skip
 def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, name: str) -> None:
     (one,) = told(tmp_path, content)
     assert f'undeclared-variable The variable "{name}" is not declared' in one
+
+
+MEMBERS = """<form><var name="own"/><block>{}</block></form>"""
+
+
+@pytest.mark.parametrize(
+    ("content", "holder", "name"),
+    [
+        (MEMBERS.format('<assign name="document.q" expr="1"/>'), "document", "q"),
+        (MEMBERS.format('<assign name="application.q" expr="1"/>'), "application", "q"),
+        (MEMBERS.format('<assign name="dialog.q.z" expr="1"/>'), "dialog", "q"),
+        (MEMBERS.format('<clear namelist="own dialog.q"/>'), "dialog", "q"),
+        (MEMBERS.format('<value expr="dialog.q.foo"/>'), "dialog", "q"),
+        (MEMBERS.format('<value expr="document.own.length"/>'), "document", "own"),
+        (MEMBERS.format("<script>var a = dialog.q.z;</script>"), "dialog", "q"),
+        (
+            '<catch event="e"><assign name="application.q" expr="1"/></catch><form/>',
+            "application",
+            "q",
+        ),
+        (
+            '<form><var name="q"/></form>' + MEMBERS.format('<value expr="dialog.q.z"/>'),
+            "dialog",
+            "q",
+        ),
+    ],
+)
+def test_a_member_of_a_scope_that_nothing_declares_there_is_told(
+    tmp_path: Path, content: str, holder: str, name: str
+) -> None:
+    (one,) = told(tmp_path, content)
+    says = f'undeclared-variable The scope "{holder}" declares no variable "{name}": this will be'
+    assert says in one
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        ('<var name="a" expr="x"/><var name="x" expr="1"/><form/>', "x"),
+        ('<form><var name="a" expr="x"/><var name="x" expr="1"/></form>', "x"),
+        ('<form><var name="a" expr="x"/><field name="x" type="boolean"/></form>', "x"),
+        ('<form><field name="a" type="boolean" expr="x"/><var name="x"/></form>', "x"),
+        ('<form><script>var a = x;</script><var name="x"/></form>', "x"),
+        ('<form><var name="a" expr="x()"/><script>function x() {}</script></form>', "x"),
+        ('<form><block><log expr="x"/><var name="x"/></block></form>', "x"),
+        ('<form><block><assign name="x" expr="1"/><var name="x"/></block></form>', "x"),
+    ],
+)
+def test_a_variable_that_is_used_before_it_is_declared_is_told(
+    tmp_path: Path, content: str, name: str
+) -> None:
+    (one,) = told(tmp_path, content)
+    assert f'undeclared-variable The variable "{name}" is declared after this: this will be' in one
+    assert one.endswith("Declare it before.")
 
 
 @pytest.mark.parametrize(
     "content",
     [
         '<var name="x"/><form><block><log expr="x + document.x + application.y"/></block></form>',
+        MEMBERS.format('<log expr="dialog.q"/><log expr="dialog.q &amp;&amp; dialog.q.z"/>'),
+        MEMBERS.format('<if cond="dialog.q"><log expr="dialog.q.z"/></if>'),
+        MEMBERS.format('<log expr="dialog.q?.z + application.lastresult$.confidence"/>'),
+        MEMBERS.format('<script>dialog.q = {};</script><log expr="dialog.q.z"/>'),
+        MEMBERS.format(
+            '<script>f(dialog); function f(a) { a.q = 1; }</script><log expr="dialog.q.z"/>'
+        ),
+        MEMBERS.format('<assign name="dialog.own" expr="1"/><clear namelist="dialog.own"/>'),
+        '<catch event="e"><log expr="document.q.z + dialog.own.z"/></catch>' + MEMBERS.format(""),
+        '<var name="a" expr="function() { return x; }"/><var name="x"/><form/>',
+        '<script>function f() { return x; }</script><var name="x"/><form/>',
+        """<var name="a" expr="typeof x == 'undefined' ? 1 : x"/><var name="x"/><form/>""",
+        '<form><block name="x"/><field name="a" type="boolean" expr="x"/></form>',
+        '<form><block name="x"/><block><clear namelist="x dialog.x"/></block></form>',
+        '<form><block cond="x"><log expr="x"/></block><var name="x"/></form>',
+        '<form><block><foreach item="i" array="[1, 2]"><if cond="i == 2"><log expr="x"/></if>'
+        '<var name="x"/></foreach></block></form>',
+        '<form><block><if cond="true"><var name="x"/></if><log expr="x"/></block></form>',
+        '<form><grammar version="1.0" root="r"><rule id="r">a</rule></grammar>'
+        '<subdialog name="s" src="#a"><filled><log expr="s$.utterance"/></filled></subdialog></form>'
+        '<form id="a"><block><return/></block></form>',
         '<form><field name="x" type="boolean"><filled><log expr="x$.utterance"/></filled></field></form>',
         '<form><block><log expr="typeof x"/></block></form>',
         '<form><block><script>var x = 1; y = 2;</script><log expr="x + y"/></block></form>',
@@ -927,7 +1011,6 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
         '<form><block><foreach item="x" array="[1]"><log expr="x"/></foreach></block></form>',
         '<form><block><log expr="session.connection + lastresult$.length"/></block></form>',
         '<catch event="e"><log expr="_event + x"/></catch><form><var name="x"/></form>',
-        '<form><block><assign name="document.x" expr="1"/></block></form>',
         '<form><var name="x"/><block><script>y = x; a: while (y--) break a;</script></block></form>',
         "<script>with (Math) { var y = floor(PI); } function f() { return g() + y; }"
         "function g() { try { f(); } catch (e) { return e; } }</script><form/>",

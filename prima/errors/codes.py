@@ -67,7 +67,9 @@ CODES: dict[str, str] = {
     "dead-content": "What stands behind a goto, return or exit is never reached.",
     "undeclared-variable": "An expression uses, or an assign changes, a variable that no <var>,"
     " form item, <foreach> or <script> declares. At run time that is error.semantic. So is, in VoiceXML, a"
-    " param of a subdialog that no <var> of the called form takes. A grammar's tag uses a name that no"
+    " param of a subdialog that no <var> of the called form takes, a variable of one <block> in another,"
+    " one that is declared only afterwards, and a member of document or another scope that is given a"
+    " value, or asked for a member of its own, and that nothing declares there. A grammar's tag uses a name that no"
     " tag of the grammar declares: at run time such an answer is no match.",
     "bad-expression": "An expression or script is not ECMAScript. The place is where its compiler"
     " stopped.",

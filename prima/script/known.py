@@ -26,14 +26,14 @@ class Scope(set[str]):
 class Known:
     """The variables that some code may see: looked up in their scopes, which are never joined."""
 
-    __slots__ = ("_scopes",)
+    __slots__ = ("scopes",)
 
     def __init__(self, *scopes: Scope) -> None:
-        self._scopes = scopes
+        self.scopes = scopes
 
     def __contains__(self, name: object) -> bool:
-        return any(name in scope for scope in self._scopes)
+        return any(name in scope for scope in self.scopes)
 
     def written(self) -> Iterator[str]:
         """Variables that an author may have meant."""
-        return (name for scope in self._scopes for name in scope.written)
+        return (name for scope in self.scopes for name in scope.written)

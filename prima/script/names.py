@@ -30,7 +30,9 @@ class Use:
     holder: str = ""
     """The scope it is a member of: ``document`` in ``document.x``; empty where none is written."""
     declares: bool = False
-    """Whether it is declared there."""
+    """Whether it is declared there; a scope's member is by being given a value."""
+    parted: bool = False
+    """Whether it is a scope's member whose own member is asked for: of undefined that is an error."""
 
 
 @dataclass(slots=True)
@@ -45,6 +47,8 @@ class Names:
     """What is given a value and not declared in the code: a new global variable."""
     changed: set[str] = field(default_factory=set)
     """What is given a value by its old one, and not declared in the code: ``x++``, ``x += 1``."""
+    now: dict[str, int] = field(default_factory=dict)
+    """What of that is read outside of functions, unless the code asks for its type as well."""
     uses: list[Use] = field(default_factory=list)
     """Where names of all these kinds stand, in the order of the text."""
     opaque: bool = False
@@ -147,6 +151,10 @@ class _Walk:
         self.found: list[tuple[int, str, str, _Scope]] = []
         """Offset, name, how (``read``, ``write``, ``change``, ``ask``, ``declare`` or a holder), scope."""
         self.opaque = False
+        self.given: set[int] = set()
+        """Offsets of scopes' members that are given values."""
+        self.parted: set[int] = set()
+        """Offsets of scopes' members whose own members are asked for."""
 
     def names(self) -> Names:
         """All names of the code."""
@@ -160,11 +168,15 @@ class _Walk:
         made = Names(set(self.top.names), opaque=self.opaque)
         for start, name, how, scope in sorted(self.found, key=lambda one: one[0]):
             self._add(made, start, name, how, scope)
+        for _, name, how, _ in self.found:
+            if how == "ask":
+                made.now.pop(name, None)
         return made
 
     def _add(self, made: Names, start: int, name: str, how: str, scope: _Scope) -> None:
         if how in SCOPES:
-            made.uses.append(Use(name, start, how))
+            given, parted = start in self.given, start in self.parted
+            made.uses.append(Use(name, start, how, given, parted))
             return
         home = scope.home(name)
         if home is not None and home is not self.top:
@@ -173,6 +185,8 @@ class _Walk:
             made.uses.append(Use(name, start, declares=how == "declare"))
         if home is None and how == "read":
             made.read.setdefault(name, start)
+            if scope.function is self.top:
+                made.now.setdefault(name, start)
         elif home is None and how in ("write", "change"):
             (made.written if how == "write" else made.changed).add(name)
 
@@ -276,6 +290,8 @@ class _Walk:
         self.push(target, scope)
         if target is not None and target.type == "identifier":
             self.tell(target, "change", scope)
+        elif target is not None and (found := self.of_scope(target)) is not None:
+            self.given.add(self.code.start(found[1]))
 
     def unary(self, node: Node, scope: _Scope) -> None:
         """``typeof x`` may be asked of what nothing declares."""
@@ -299,12 +315,21 @@ class _Walk:
     def member(self, node: Node, scope: _Scope) -> None:
         """A member's name is a variable's where the object is a scope."""
         holder = node.child_by_field_name("object")
-        part = node.child_by_field_name("property")
         self.push(holder, scope)
-        if holder is not None and part is not None and holder.type == "identifier":
-            name = self.code.of(holder)
-            if name in SCOPES and part.type == "property_identifier":
-                self.tell(part, name, scope)
+        if (found := self.of_scope(node)) is not None:
+            self.tell(found[1], found[0], scope)
+        whole = node.child_by_field_name("optional_chain") is None
+        if whole and holder is not None and (found := self.of_scope(holder)) is not None:
+            self.parted.add(self.code.start(found[1]))
+
+    def of_scope(self, node: Node) -> tuple[str, Node] | None:
+        """The scope and the member's name in ``document.x``; None for anything else."""
+        holder = node.child_by_field_name("object")
+        part = node.child_by_field_name("property")
+        if holder is None or part is None or part.type != "property_identifier":
+            return None
+        name = self.code.of(holder) if holder.type == "identifier" else ""
+        return (name, part) if name in SCOPES else None
 
     def bind(self, target: Node | None, home: _Scope) -> None:
         """Declare the names of a target: a name, a pattern or a list of parameters."""
@@ -340,6 +365,8 @@ class _Walk:
                 waiting += node.named_children
             else:
                 self.push(node, scope)
+                if (found := self.of_scope(node)) is not None:
+                    self.given.add(self.code.start(found[1]))
 
 
 VISITS: Mapping[str, Callable[[_Walk, Node, _Scope], None]] = {

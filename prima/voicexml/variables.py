@@ -1,21 +1,26 @@
 """Variables that a VoiceXML document uses and nothing declares: error.semantic when it gets there.
 
-Where it cannot be told, a name is taken for declared: it counts in a whole dialog, wherever in it
-it is declared, and in a whole document if outside of all dialogs.
+Where it cannot be told, a name is taken for declared. Executable content has a scope of its own, in
+that of its dialog (5.1.2); what a dialog or a document declares counts from where it stands on in
+what is evaluated in document order, and everywhere in all else.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from prima.errors import Place, Problem, did_you_mean
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, Scope
-from prima.script.names import Names, expression_names, script_names
-from prima.voicexml.check import NAMING, is_code
+from prima.script.names import SCOPES, Names, Use, expression_names, script_names
+from prima.voicexml.check import FORM_ITEMS, NAMING, is_code
+from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
+from prima.voicexml.events import HANDLERS
 
 ALWAYS = frozenset(
     [
@@ -24,13 +29,17 @@ ALWAYS = frozenset(
     ]
 )
 """What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4)."""
-LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog"])
+LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog", "disconnect", "data"])
 """Elements whose namelist names variables."""
 DIALOGS = ("form", "menu")
 SETUP = ("var", "script", "data")
-NOTHING = Scope()
+CONTAINERS = frozenset([*HANDLERS, "block", "filled", "prompt"])
+"""Elements whose content has a scope of its own, unless they stand in such content themselves."""
+FILES = ("src", "srcexpr")
+"""Attributes of a script that stands elsewhere."""
 LISTED = re.compile(r"\S+")
 """A name in a list of names."""
+MENTIONED = re.compile(rf"\b(?:{'|'.join(sorted(SCOPES))})\b")
 
 Text = Callable[[Page, Node], str | None]
 """Gives the text of a script in a file, if it can be had."""
@@ -45,98 +54,276 @@ def check_variables(page: Page, root: Page | None, text: Text) -> list[Problem]:
     if page.application and root is None:
         return []
     try:
-        shared = [_outside(page, text), *([_outside(root, text)] if root is not None else [])]
-        dialogs = {id(node): _declared(page, node, text) for node in page.dialogs.values()}
+        return list(_Look(page, root, text).problems())
     except Unknown:
         return []
-    problems: list[Problem] = []
-    everywhere = Known(*shared, Scope(set().union(*dialogs.values())))
-    outside = Known(*shared)
-    for node in page.root.nodes:
-        if node.tag in DIALOGS:
-            problems += _used(node, Known(*shared, dialogs.get(id(node), NOTHING)))
-        elif node.tag in SETUP:
-            problems += _used(node, outside)
-        elif dialogs:  # else handlers and links stand in the dialogs of other documents
-            problems += _used(node, everywhere)
-    return problems
 
 
-def _outside(page: Page, text: Text) -> Scope:
-    """What a document declares outside of its dialogs, and anywhere in handlers and links."""
-    found = Scope()
-    for node in page.root.nodes:
-        if node.tag not in DIALOGS:
-            found |= _declared(page, node, text)
-    return found
+class Read(NamedTuple):
+    """A variable that a piece of code reads."""
+
+    name: str
+    node: Node
+    attribute: str
+    start: int
+    at_once: bool = True
+    """Whether it is read as soon as the code is evaluated."""
+
+    @property
+    def place(self) -> Place:
+        """Where it stands."""
+        return self.node.source.inside(self.node.index, self.attribute, self.start)
 
 
-def _script(page: Page, node: Node, text: Text) -> Names:
-    """The names in a script, which may stand in a file.
+@dataclass(slots=True)
+class Level:
+    """One scope: its elements in document order, and the names that they declare."""
 
-    Raises:
-        Unknown: it cannot be read.
-    """
-    elsewhere = {"src", "srcexpr"} & node.attributes.keys()
-    code = text(page, node) if elsewhere else node.own_text
-    if code is None:
-        raise Unknown
-    found = script_names(code)
-    if found.opaque:
-        raise Unknown
-    return found
+    nodes: list[Node] = field(default_factory=list)
+    inner: list[Node] = field(default_factory=list)
+    """Those whose content has a scope of its own."""
+    names: Scope = field(default_factory=Scope)
+    by_node: dict[int, set[str]] = field(default_factory=dict)
+    ordered: bool = False
+    """Whether all of it is evaluated in document order."""
 
 
-def _declared(page: Page, top: Node, text: Text) -> Scope:
-    """The names that an element and all that it holds declare."""
-    found = Scope()
-    for node in top.walk():
+class _Look:
+    """Looks through one document."""
+
+    def __init__(self, page: Page, root: Page | None, text: Text) -> None:
+        self.page, self.root, self.text = page, root, text
+        self.own = self.level(page, self.outside(page))
+        self.shared = [self.own.names]
+        if root is not None:
+            self.shared.append(self.level(root, self.outside(root)).names)
+        self.dialogs = {id(one): self.level(page, [one]) for one in page.dialogs.values()}
+        self.mentioned = self.mentions()
+
+    @staticmethod
+    def outside(page: Page) -> list[Node]:
+        """What stands outside of a document's dialogs."""
+        return [node for node in page.root.nodes if node.tag not in DIALOGS]
+
+    # What is declared -------------------------------------------------------------------------
+
+    def level(self, page: Page, tops: Iterable[Node], ordered: bool = False) -> Level:
+        """The scope that elements are in, without those in it that have their own.
+
+        Raises:
+            Unknown: a script cannot be read.
+        """
+        made = Level(ordered=ordered)
+        waiting = [*tops][::-1]
+        while waiting:
+            node = waiting.pop()
+            made.nodes.append(node)
+            if found := self.declared(page, node):
+                made.by_node[node.index] = found
+                made.names |= found
+            if node.tag in CONTAINERS and not ordered:
+                made.inner.append(node)
+            else:
+                waiting += reversed(node.nodes)
+        made.names |= self.shadows(made)
+        return made
+
+    def declared(self, page: Page, node: Node) -> set[str]:
+        """The names that an element declares."""
         if node.key == "script":
-            names = _script(page, node, text)
-            found |= names.declared | names.written
-        if name := node.get(NAMING.get(node.key, "")):
-            found |= {name, f"{name}$"}
-    return found
+            names = self.script(page, node)
+            return names.declared | names.written
+        name = node.get(NAMING.get(node.key, ""))
+        return {name} if name else set()
+
+    @staticmethod
+    def shadows(level: Level) -> set[str]:
+        """Shadow variables of a dialog's items: those that a user fills, or a form's grammar (3.1.6)."""
+        filled = INPUTS - {"subdialog"}
+        if any(node.key == "grammar" for top in level.nodes[:1] for node in top.nodes):
+            filled = INPUTS
+        return {f"{node.get('name')}$" for node in level.nodes if node.key in filled}
+
+    def script(self, page: Page, node: Node) -> Names:
+        """The names in a script, which may stand in a file.
+
+        Raises:
+            Unknown: it cannot be read.
+        """
+        elsewhere = not node.attributes.keys().isdisjoint(FILES)
+        code = self.text(page, node) if elsewhere else node.own_text
+        if code is None:
+            raise Unknown
+        found = script_names(code)
+        if found.opaque:
+            raise Unknown
+        return found
+
+    def mentions(self) -> set[tuple[str, str]]:
+        """Members of scopes that somebody gives values or looks at: who knows which are there.
+
+        A scope that is used as a whole is in it with an empty name: any member may be meant.
+        """
+        found: set[tuple[str, str]] = set()
+        for page in filter(None, (self.page, self.root)):
+            for node in page.root.walk():
+                for names in self.mentioning(page, node):
+                    found.update(_mentions(names.uses))
+        return found
+
+    def mentioning(self, page: Page, node: Node) -> Iterator[Names]:
+        """The names of an element's code that names scopes."""
+        for attribute, code in node.attributes.items():
+            if is_code(node, attribute) and MENTIONED.search(code):
+                yield expression_names(code)
+        if node.key == "script":
+            yield self.script(page, node)
+
+    # What is used -----------------------------------------------------------------------------
+
+    def problems(self) -> Iterator[Problem]:
+        """Warnings of all that is used and not declared."""
+        everywhere = Scope(name for one in self.dialogs.values() for name in one.names)
+        application = {"application": self.shared[-1]}
+        outer = Known(*self.shared[1:])
+        setup = [node for node in self.own.nodes if node.tag in SETUP]
+        yield from self.check(setup, self.own, outer, application)
+        if not self.dialogs:
+            return  # handlers and links stand in the dialogs of other documents
+        others = [node for node in self.own.nodes if node.tag not in SETUP]
+        known = Known(*self.shared, everywhere)
+        yield from self.check(others, Level(), known, application)
+        yield from self.contents(self.own, known, application)
+        for dialog in self.dialogs.values():
+            members = {**application, "document": self.own.names, "dialog": dialog.names}
+            yield from self.check(dialog.nodes, dialog, Known(*self.shared), members)
+            yield from self.contents(dialog, Known(*self.shared, dialog.names), members)
+
+    def contents(
+        self, level: Level, outer: Known, members: Mapping[str, Scope]
+    ) -> Iterator[Problem]:
+        """Check the executable content in a scope."""
+        for node in level.inner:
+            inner = self.level(self.page, node.nodes, ordered=True)
+            yield from self.check(inner.nodes, inner, outer, members)
+
+    def check(
+        self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
+    ) -> Iterator[Problem]:
+        """Check elements in a scope: what they use is declared before them there, or around it."""
+        seen: set[str] = set()
+        for node in nodes:
+            seen |= _with_it(node, level)
+            for read in _reads(node):
+                if read.name in ALWAYS or read.name in outer or read.name in seen:
+                    continue
+                if read.name not in level.names:
+                    yield _undeclared(read, Known(level.names, *outer.scopes))
+                elif read.at_once and (level.ordered or _in_order(read)):
+                    yield _early(read)
+            yield from self.members(node, members)
+            seen |= level.by_node.get(node.index, set())
+
+    def members(self, node: Node, known: Mapping[str, Scope]) -> Iterator[Problem]:
+        """Warnings of members of scopes that must be there and are not."""
+        for read in _members(node):
+            holder, _, name = read.name.partition(".")
+            scope = known.get(holder)
+            if scope is None or name in scope or name in ALWAYS:
+                continue
+            if self.mentioned.isdisjoint([(holder, ""), *((one, name) for one in SCOPES)]):
+                yield _no_member(read, holder, name, scope)
 
 
-def _used(top: Node, known: Known) -> Iterator[Problem]:
-    for node in top.walk():
-        for attribute in node.attributes:
-            if is_code(node, attribute):
-                yield from _in_code(node, attribute, known)
-        if node.key == "assign":
-            yield from _listed(node, "name", known)
-        elif node.key in LISTING:
-            yield from _listed(node, "namelist", known)
-        elif node.key == "script" and not {"src", "srcexpr"} & node.attributes.keys():
-            yield from _in_script(node, known)
+def _mentions(uses: list[Use]) -> Iterator[tuple[str, str]]:
+    """The members of scopes that some code gives values or looks at, and scopes used as a whole."""
+    members = [use for use in uses if use.holder]
+    for scope in SCOPES:
+        written = sum(use.name == scope and not use.holder for use in uses)
+        if written > sum(use.holder == scope for use in members):
+            yield scope, ""
+    yield from ((use.holder, use.name) for use in members if use.declares or not use.parted)
 
 
-def _in_code(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
-    for name, start in expression_names(node.get(attribute)).free.items():
-        if name not in ALWAYS and name not in known:
-            place = node.source.inside(node.index, attribute, start)
-            yield _undeclared(place, name, known)
+def _with_it(node: Node, level: Level) -> set[str]:
+    """The names that may be there before all of an element has been evaluated."""
+    if node.key == "script":
+        return level.by_node.get(node.index, set())
+    if node.tag == "foreach" and level.ordered:  # its end comes before its beginning again
+        return set().union(*(level.by_node.get(one.index, ()) for one in node.walk()))
+    return set()
 
 
-def _in_script(node: Node, known: Known) -> Iterator[Problem]:
-    """What a script in the document reads that nothing declares: also in functions."""
-    code = node.own_text
-    for name, start in script_names(code).free.items():
-        if name not in ALWAYS and name not in known:
-            place = node.source.inside(node.index, "", start)
-            yield _undeclared(place, name, known)
+def _in_order(read: Read) -> bool:
+    """Whether code of a document or dialog is evaluated where it stands, and not later."""
+    return read.node.tag in SETUP or (read.node.tag in FORM_ITEMS and read.attribute == "expr")
 
 
-def _listed(node: Node, attribute: str, known: Known) -> Iterator[Problem]:
+def _reads(node: Node) -> Iterator[Read]:
+    """The variables that an element reads, or changes by their names."""
+    for attribute in node.attributes:
+        if is_code(node, attribute):
+            yield from _in_code(node, attribute, expression_names(node.get(attribute)))
+    if node.key == "assign":
+        yield from _listed(node, "name")
+    elif node.key in LISTING:
+        yield from _listed(node, "namelist")
+    elif node.key == "script" and node.attributes.keys().isdisjoint(FILES):
+        yield from _in_code(node, "", script_names(node.own_text))
+
+
+def _in_code(node: Node, attribute: str, names: Names) -> Iterator[Read]:
+    for name, start in names.free.items():
+        at_once = name in names.now
+        yield Read(name, node, attribute, names.now.get(name, start), at_once)
+
+
+def _listed(node: Node, attribute: str) -> Iterator[Read]:
     for whole in LISTED.finditer(node.get(attribute)):
         head = whole[0].partition(".")[0]
-        if IDENTIFIER.fullmatch(head) and head not in ALWAYS and head not in known:
-            place = node.source.inside(node.index, attribute, whole.start())
-            yield _undeclared(place, head, known)
+        if IDENTIFIER.fullmatch(head):
+            yield Read(head, node, attribute, whole.start())
 
 
-def _undeclared(place: Place, name: str, known: Known) -> Problem:
-    message = f'The variable "{name}" is not declared: this will be error.semantic.'
-    remedy = did_you_mean(name, known.written()) or f'Declare it: <var name="{name}"/>.'
-    return Problem(place, "warning", "undeclared-variable", message, remedy)
+def _members(node: Node) -> Iterator[Read]:
+    """Members of scopes, as ``document.x``, whose being there is needed."""
+    for attribute, code in node.attributes.items():
+        if is_code(node, attribute) and MENTIONED.search(code):
+            yield from _parted(node, attribute, expression_names(code))
+    if node.key == "script" and node.attributes.keys().isdisjoint(FILES):
+        yield from _parted(node, "", script_names(node.own_text))
+    changed = {"assign": "name", "clear": "namelist"}.get(node.key, "")
+    for whole in LISTED.finditer(node.get(changed)):
+        holder, _, rest = whole[0].partition(".")
+        name = rest.partition(".")[0]
+        if holder in SCOPES and IDENTIFIER.fullmatch(name):
+            yield Read(f"{holder}.{name}", node, changed, whole.start())
+
+
+def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
+    for use in names.uses:
+        if use.parted:
+            start = use.start - len(use.holder) - 1
+            yield Read(f"{use.holder}.{use.name}", node, attribute, start)
+
+
+WILL = "this will be error.semantic."
+
+
+def _undeclared(read: Read, known: Known) -> Problem:
+    message = f'The variable "{read.name}" is not declared: {WILL}'
+    remedy = did_you_mean(read.name, known.written()) or f'Declare it: <var name="{read.name}"/>.'
+    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+
+
+def _early(read: Read) -> Problem:
+    message = f'The variable "{read.name}" is declared after this: {WILL}'
+    remedy = "Declare it before."
+    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+
+
+def _no_member(read: Read, holder: str, name: str, scope: Scope) -> Problem:
+    message = f'The scope "{holder}" declares no variable "{name}": {WILL}'
+    near = did_you_mean(name, scope.written)
+    remedy = near or f'Declare it there: <var name="{name}"/>.'
+    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
