@@ -1203,6 +1203,100 @@ def test_an_answer_that_no_question_contains_is_told(
     assert all((remedy or "") in one.remedy for one in found)
 
 
+PASSAGE = (
+    '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit" world="{0}/passage.xml"'
+    ' robot="{0}/robot.xml"><robot at="door"/><application src="{1}"/>{2}</scenario>'
+)
+CATCHES = VXML.format("", '<catch event="{}"><exit/></catch><form><block>{}</block></form>')
+
+
+def in_the_passage(folder: Path, name: str, more: str = "") -> list[str]:
+    """What is told of an application and a scenario with it, and where."""
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (folder / "visit.xml").write_text(PASSAGE.format(beside, name, more))
+    found = loading.validate([folder / "visit.xml"])
+    assert {one.code for one in found} <= {"unknown-event", "no-such-name"}
+    return [f"{Path(one.place.file).name} {one.message} {one.remedy}" for one in found]
+
+
+@pytest.mark.parametrize("name", ["a.xml", "a.vxml"])
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (
+            '<when on="corner.trun"><say>Yes.</say></when>',
+            '"corner.trun". Did you mean "corner.turn"?',
+        ),
+        ('<expect event="corner.crosing"/>', 'the event "corner.crosing".'),
+        ('<never event="pasage.beds"/>', '"pasage.beds". Did you mean "passage.beds"?'),
+        ('<expect event="corner.turn"/><when on="corner"><say>Yes.</say></when>', ""),
+        (
+            '<when at="1s"><event name="corner.own"/></when><when on="corner.own"><say>Yes.</say></when>',
+            "",
+        ),
+        ('<expect event="passage.beds"/><when on="passage"><say>Yes.</say></when>', ""),
+    ],
+)
+def test_a_corner_that_a_scenario_misspells_is_told(
+    tmp_path: Path, name: str, more: str, says: str
+) -> None:
+    asking = ASKING.replace('id="f">', 'id="f"><on event="corner.own"><exit/></on>', 1)
+    (tmp_path / "a.xml").write_text(asking.format("Tea?"))
+    (tmp_path / "a.vxml").write_text(VOICE.format("Tea?", "<exit/>"))
+    told = [one for one in in_the_passage(tmp_path, name, more) if "a.xml" not in one]
+    assert len(told) == bool(says)
+    assert all(one.startswith("visit.xml No corner of the world raises") for one in told)
+    assert says in "".join(told)
+
+
+@pytest.mark.parametrize(
+    ("event", "meant"),
+    [
+        *(("tuch", "touch"), ("tuch.head", "touch.head"), ("human.fuond", "human.found")),
+        *(("conection.disconnect.hangup", "connection.disconnect.hangup"), ("no-input", "noinput")),
+        *(("error.badfetsh", "error.badfetch"), ("order.cancled", "order.cancelled")),
+        *(
+            ("touch", ""),
+            ("touch.head", ""),
+            ("order", ""),
+            ("order.cancelled", ""),
+            ("menu.left", ""),
+        ),
+        *(
+            ("error.badfetch.http.404", ""),
+            ("error.mine", ""),
+            (".", ""),
+            ("exit", ""),
+        ),
+        *(("error.unsupported.fly", ""), ("maxspeechtimeout", ""), ("connection", "")),
+    ],
+)
+def test_a_handler_of_voicexml_whose_event_is_a_slip_is_told(
+    tmp_path: Path, event: str, meant: str
+) -> None:
+    thrown = '<throw event="order.cancelled"/>'
+    path = tmp_path / "main.vxml"
+    path.write_text(text := CATCHES.format(event, thrown))
+    told = [(one.message, one.remedy, one.place.column) for one in loading.validate([path])]
+    right = f'Nothing raises an event "{event}".', f'Did you mean "{meant}"?', text.index(event) + 1
+    assert told == ([right] if meant else [])
+
+
+def test_a_handler_may_take_what_another_document_throws(tmp_path: Path) -> None:
+    content = '<form><subdialog name="s" src="second.vxml"><catch event="tuch"/></subdialog></form>'
+    thrown = '<form><block><return event="{}"/></block></form>'
+    assert told(tmp_path, content, second=VXML.format("", thrown.format("tuch"))) == []
+    (one,) = told(tmp_path, content, second=VXML.format("", thrown.format("other")))
+    assert one.startswith("main.vxml unknown-event")
+
+
+def test_a_touch_sensor_that_voicexml_misspells_is_told(tmp_path: Path) -> None:
+    thrown = '<throw event="touch.own"/>'
+    (tmp_path / "a.vxml").write_text(CATCHES.format("touch.hed touch.head touch.own", thrown))
+    (one,) = in_the_passage(tmp_path, "a.vxml")
+    assert one == 'a.vxml The robot has no touch sensor "hed". Did you mean "head"?'
+
+
 def test_a_grammar_in_the_place_of_a_document_is_told_to_be_one(tmp_path: Path) -> None:
     (tmp_path / "g.gram").write_text("#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = yes;\n")
     told = r"This is a grammar, not XML\. Name it in a VoiceXML"

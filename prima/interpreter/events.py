@@ -99,6 +99,15 @@ def near(word: str, known: Iterable[str]) -> str:
     return plain[found[0]] if found else ""
 
 
+def slip_of(name: str, known: Iterable[str]) -> str:
+    """The event of whose name another one is most likely a slip, or nothing."""
+    if found := near(name, known):
+        return found
+    first, _, rest = name.partition(".")
+    meant = near(first, FIRST) if rest and first not in FIRST else ""
+    return f"{meant}.{rest}" if meant else ""
+
+
 def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handler]:
     """Every handler of a document; ``acts`` are its acts, where they have been gathered."""
     yield from document.handlers
@@ -201,9 +210,7 @@ class Events:
             return message, name.removesuffix(service) + nearest if nearest else ""
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
-        nearest = HABITS.get(name, "") or near(name, {*STANDARD, *self._own})
-        if not nearest and rest and first not in FIRST and near(first, FIRST):
-            nearest = f"{near(first, FIRST)}.{rest}"
+        nearest = HABITS.get(name, "") or slip_of(name, {*STANDARD, *self._own})
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
     def _unheard(self, one: Raised, meant: set[str]) -> Problem | None:

@@ -53,13 +53,17 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
                 problems += check_name(command.node, name, value, names)
     for handler in handlers_of(document):
         for event in handler.events:
-            first, _, sensor = event.partition(".")
-            if first == "touch" and sensor and sensor not in names.sensors:
-                message = f'The robot has no touch sensor "{sensor}".'
-                place = event_place(handler.node, event)
-                remedy = nearest(sensor, names.sensors)
-                problems.append(Problem(place, "warning", "no-such-name", message, remedy))
+            problems += check_sensor(handler.node, event, names)
     return problems
+
+
+def check_sensor(node: Node, event: str, names: Surroundings) -> list[Problem]:
+    """A warning if a handler names the event of a touch sensor that is not there."""
+    first, _, sensor = event.partition(".")
+    if first != "touch" or not sensor or sensor in names.sensors:
+        return []
+    message, remedy = f'The robot has no touch sensor "{sensor}".', nearest(sensor, names.sensors)
+    return [Problem(event_place(node, event), "warning", "no-such-name", message, remedy)]
 
 
 def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:

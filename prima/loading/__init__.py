@@ -332,6 +332,7 @@ def _voicexml_problems(
 
     URIs that begin like one of ``answered`` are a service's.
     """
+    from prima.voicexml.caught import check_caught
     from prima.voicexml.document import FetchError, read_page
     from prima.voicexml.pages import Pages
     from prima.voicexml.sketched import check_sketched
@@ -351,6 +352,7 @@ def _voicexml_problems(
     for page in pages:
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
         yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+        yield from check_caught(page.root, pages.thrown)
     yield from check_sketched((page, pages.root(page)) for page in pages)
     yield from (*pages.problems, *pages.between())
 

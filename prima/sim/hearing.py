@@ -13,6 +13,7 @@ from prima.interpreter.surroundings import (
     Sayings,
     Surroundings,
     check_name,
+    check_sensor,
     check_surroundings,
     nearest,
     texts_of,
@@ -22,6 +23,7 @@ from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
+from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
@@ -47,49 +49,66 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems = [one for document in documents for one in check_surroundings(document, names)]
     for document in cast.documents:
         if not isinstance(document, Document):
-            problems += _named(document.page.root, names)
+            problems += _in_voicexml(document.page.root, names)
     nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
     events = [Events(document) for document in documents]
-    problems += [*_corners(nodes, events, cast), *_words(nodes, cast)]
+    corners = [*_corners(nodes, events, cast)]
+    problems += [*corners, *_words(nodes, cast)]
     if len(documents) < len(cast.documents):
         return problems  # what a VoiceXML application hears is known only when it runs
     problems += _services(events, cast)
-    return [*problems, *_unheard(nodes, events), *_triggers(nodes, events, cast)]
+    told = {one.place for one in corners}
+    triggers = [one for one in _triggers(nodes, events, cast) if one.place not in told]
+    return [*problems, *_unheard(nodes, events), *triggers]
 
 
 def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
-    """Handlers of a corner's event that no corner of the world raises: most likely a slip."""
+    """A corner's event that is waited for and that no corner of the world raises: likely a slip."""
     corners = {corner.event for corner in cast.world.corners} - {"corner"}
+    pages = [one.page.root for one in cast.documents if not isinstance(one, Document)]
     known = {*STANDARD, *corners, *(node.get("name") for node in nodes if node.tag == "event")}
     known |= {raised.name for one in events for raised in one.raised}
+    known.update(*(thrown_in(root) for root in pages))
     begins = {name for one in known for name in beginnings(one)}
-    heard = [(handler.node, name) for one in events for handler in one.handlers
-             for name in handler.events]  # fmt: skip
-    pages = [document for document in cast.documents if not isinstance(document, Document)]
-    for page in pages:
-        catches = [node for node in page.page.root.walk() if node.tag == "catch"]
-        heard += [(node, name) for node in catches for name in node.get("event").split()]
-    for node, name in heard:
-        if name in begins or name.startswith(OPEN):
-            continue
-        meant = near(name, corners)
+    handled = [(handler.node, name) for one in events for handler in one.handlers
+               for name in handler.events]  # fmt: skip
+    handled += [one for root in pages for one in caught_in(root)]
+    waiting = [(event_place(node, name), name) for node, name in handled if name not in begins]
+    waiting += [
+        (node.attribute_place(attribute), name)
+        for node, attribute, name in _awaited(nodes)
+        if name not in begins
+    ]
+    for place, name in waiting:
+        meant = "" if name.startswith(OPEN) else near(name, corners)
         if meant or name.startswith("corner."):
             message = f'No corner of the world raises the event "{name}".'
             remedy = f'Did you mean "{meant}"?' if meant else nearest(name, corners)
             remedy = remedy or "Write corner, or name the corner's event in the world."
-            place = event_place(node, name)
             yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
-def _named(root: Node, names: Surroundings) -> Iterator[Problem]:
-    """What Commands of PRIMA in a VoiceXML document name and is not there."""
+def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
+    """The events that triggers and expectations name: element, attribute, name."""
+    for node in [one for one in nodes if one.tag in ("when", "expect", "never")][:MOST]:
+        for attribute in ("on", "event", "reason"):
+            if name := node.get(attribute):
+                yield node, attribute, name
+
+
+def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
+    """What a VoiceXML document names and is not there: in Commands of PRIMA, and touch sensors."""
     for node in root.walk():
         if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
             for name, value in node.attributes.items():
                 if name in PLACED and name in TABLE_4_2[node.tag].arguments:
                     yield from check_name(node, name, value, names)
+    thrown = {*thrown_in(root)}
+    for node, event in caught_in(root):
+        if event not in thrown:
+            yield from check_sensor(node, event, names)
 
 
 def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
@@ -159,20 +178,17 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
     known |= {node.get("name") for node in nodes if node.tag == "event"}
     known |= {raised.name for one in events for raised in one.raised}
     begins = {name for one in known for name in beginnings(one)}
-    for node in [one for one in nodes if one.tag in ("when", "expect", "never")][:MOST]:
-        for attribute in ("on", "event", "reason"):
-            name = node.get(attribute)
-            ending = ENDINGS if attribute == "reason" else frozenset()
-            if not name or name in begins or name in ending or name.startswith(OPEN):
-                continue
-            meant = near(name, chain(ending, known))
-            if meant:
-                message = f'Nothing raises an event "{name}".'
-                if meant in ending:
-                    message = f'No application ends with "{name}".'
-                remedy = f'Did you mean "{meant}"?'
-                place = node.attribute_place(attribute)
-                yield Problem(place, "warning", "unknown-event", message, remedy)
+    for node, attribute, name in _awaited(nodes):
+        ending = ENDINGS if attribute == "reason" else frozenset()
+        if name in begins or name in ending or name.startswith(OPEN):
+            continue
+        if meant := near(name, chain(ending, known)):
+            message = f'Nothing raises an event "{name}".'
+            if meant in ending:
+                message = f'No application ends with "{name}".'
+            remedy = f'Did you mean "{meant}"?'
+            place = node.attribute_place(attribute)
+            yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:

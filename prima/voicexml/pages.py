@@ -7,6 +7,7 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 from prima.errors import DocumentError, Problem, did_you_mean
 from prima.markup.tree import Node
+from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page, read_page
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
@@ -37,6 +38,8 @@ class Pages:
         while waiting:
             page = waiting.pop(0)
             waiting += [one for uri in _named(page) if (one := self._read(uri)) is not None]
+        self.thrown = {name for page in self for name in thrown_in(page.root)}
+        """The events that they throw."""
         self.open = any(self._is_open(page, node) for page in self for node in page.root.walk())
 
     def _is_open(self, page: Page, node: Node) -> bool:

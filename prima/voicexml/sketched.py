@@ -13,8 +13,8 @@ from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, is_unit
+from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Page, broken
 from prima.voicexml.events import HANDLERS
 from prima.voicexml.sketch import Sketch, commands_in
@@ -67,8 +67,8 @@ def _source(sketch: Sketch, root: Page | None) -> Source:
     """A document as what is told twice is looked for in it."""
     own = {
         *OWN,
-        *_thrown_in(sketch.page.root),
-        *(_thrown_in(root.root) if root is not None else ()),
+        *thrown_in(sketch.page.root),
+        *(thrown_in(root.root) if root is not None else ()),
     }
     return Source(sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True)
 
@@ -98,10 +98,3 @@ def _unit_problems(
 def _is_foreign(name: str, own: set[str]) -> bool:
     """Whether a handler that names an event waits for what is not of the dialog itself."""
     return bool(name) and own.isdisjoint(beginnings(name))
-
-
-def _thrown_in(root: Node) -> Iterator[str]:
-    """The events that a document throws itself: also by what the user says or chooses."""
-    for node in root.walk():
-        if node.tag in ("throw", "link", "choice", "return") and node.get("event"):
-            yield node.get("event")

@@ -1,0 +1,48 @@
+"""Events that VoiceXML documents throw and catch, and names of which are most likely slips."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from prima.errors import Problem
+from prima.interpreter.events import MOST_GUESSES, STANDARD, beginnings, event_place, slip_of
+from prima.markup.tree import Node
+
+EVENTS = STANDARD | {
+    *("exit", "maxspeechtimeout", "connection.disconnect.transfer", "error.connection.noroute"),
+    *("error.connection.baddestination", "error.connection.busy", "error.connection.noresource"),
+    *("error.connection.protocol", "error.noauthorization", "error.noresource"),
+    *("error.connection.noauthorization", "error.unsupported.language"),
+    *("error.unsupported.format", "error.unsupported.builtin", "error.unsupported.objectname"),
+    *("error.unsupported.uri", "error.unsupported.transfer.blind", "error.badfetch.http"),
+    *("error.unsupported.transfer.bridge", "error.unsupported.transfer.consultation"),
+}
+"""Events that nobody need throw: VoiceXML's (2.0, 5.2.6; 2.1, 8) and PRIMA's."""
+OPEN = ("touch.", "error.unsupported.", "error.badfetch.")
+"""Beginnings of events that go on with the name of a sensor, Command or code."""
+
+
+def thrown_in(root: Node) -> Iterator[str]:
+    """The events that a document throws itself: also by what the user says or chooses."""
+    for node in root.walk():
+        if node.tag in ("throw", "link", "choice", "return") and node.get("event"):
+            yield node.get("event")
+
+
+def caught_in(root: Node) -> Iterator[tuple[Node, str]]:
+    """The events that handlers of a document name, each with its handler."""
+    for node in root.walk():
+        if node.tag == "catch":
+            yield from ((node, name) for name in node.get("event").split())
+
+
+def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
+    """Warnings of handlers whose event is most likely a slip: others may be thrown by anybody."""
+    known = {*EVENTS, *thrown}
+    begins = {name for one in known for name in beginnings(one)}
+    strange = [(node, name) for node, name in caught_in(root) if name not in begins]
+    for node, name in strange[:MOST_GUESSES]:
+        meant = "" if name.startswith(OPEN) else slip_of(name, known)
+        if meant:
+            message, remedy = f'Nothing raises an event "{name}".', f'Did you mean "{meant}"?'
+            yield Problem(event_place(node, name), "warning", "unknown-event", message, remedy)
