@@ -924,6 +924,61 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
     assert f'undeclared-variable The variable "{name}" is not declared' in one
 
 
+ASKS = '<field name="a"{}><prompt>Q?</prompt>{}</field>'
+RULES = '<grammar version="1.0" root="r"{}><rule id="r">a</rule></grammar>'
+UNIVERSALS = '<property name="universals" value="all"/>'
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        f"<form>{ASKS.format('', '')}</form>",
+        f'<form><p:iu xmlns:p="urn:prima:dialogue:1">{ASKS.format("", "")}</p:iu></form>',
+        "<form>" + ASKS.format(' modal="true"', "") + "</form><link event='e' dtmf='1'/>",
+        f"<form>{ASKS.format('', '')}</form><form>{RULES.format('')}</form>",
+    ],
+)
+def test_a_question_of_voicexml_at_which_no_grammar_listens_is_told(
+    tmp_path: Path, content: str
+) -> None:
+    (one,) = told(tmp_path, content)
+    assert one.startswith("main.vxml no-answer No grammar listens at the <field> a: ")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "<form>" + ASKS.format(' type="boolean"', "") + "</form>",
+        f"<form>{ASKS.format('', '<option>tea</option>')}</form>",
+        f"<form>{ASKS.format('', RULES.format(''))}</form>",
+        f"<form>{RULES.format('')}<initial/>{ASKS.format('', '')}</form>",
+        f"<form>{ASKS.format('', '')}<link event='e' dtmf='1'/></form>",
+        f"<form>{ASKS.format('', '')}</form><link event='e' dtmf='1'/>",
+        f"<form>{ASKS.format('', '')}</form><form scope='document'>{RULES.format('')}</form>",
+        f"<form>{ASKS.format('', '')}</form><form>" + RULES.format(' scope="document"') + "</form>",
+        f"{UNIVERSALS}<form>{ASKS.format('', '')}</form>",
+        f"<form>{ASKS.format('', UNIVERSALS)}</form>",
+        "<form>" + ASKS.format(' expr="1"', "") + "</form>",
+        f"<form><block><assign name='a' expr='1'/></block>{ASKS.format('', '')}</form>",
+    ],
+)
+def test_a_question_of_voicexml_at_which_something_listens_is_fine(
+    tmp_path: Path, content: str
+) -> None:
+    assert [one for one in told(tmp_path, content) if "no-answer" in one] == []
+
+
+def test_what_listens_in_an_application_root_listens_in_its_leaves(tmp_path: Path) -> None:
+    root, leaf = (
+        VXML.format("", "<link event='e' dtmf='1'/>"),
+        f"<form>{ASKS.format('', '')}</form>",
+    )
+    assert told(tmp_path, leaf, ' application="root.vxml"', root=root) == []
+    assert (
+        "no-answer" in told(tmp_path, leaf, ' application="root.vxml"', root=VXML.format("", ""))[0]
+    )
+
+
 MEMBERS = """<form><var name="own"/><block>{}</block></form>"""
 
 

@@ -53,7 +53,8 @@ CODES: dict[str, str] = {
     "no-such-file": "A scenario or a grammar names a file that cannot be read. Paths are relative to"
     " the folder of the document that names them.",
     "no-answer": "A field without options, grammar or type takes no answer: the user could never"
-    " leave it.",
+    " leave it. In VoiceXML grammars of its form, links and document-wide grammars count as well; where"
+    " none listens, it is error.semantic at run time.",
     "empty-answer": "An option or a grammar that holds nothing to say can never be said.",
     "nothing-to-say": "A Command that speaks has no text.",
     "empty": "The element holds nothing.",

@@ -334,6 +334,7 @@ def _voicexml_problems(
     """
     from prima.voicexml.caught import check_caught
     from prima.voicexml.document import FetchError, read_page
+    from prima.voicexml.listening import check_listening
     from prima.voicexml.pages import Pages
     from prima.voicexml.sketched import check_sketched
     from prima.voicexml.variables import check_variables
@@ -353,6 +354,7 @@ def _voicexml_problems(
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
         yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
         yield from check_caught(page.root, pages.thrown)
+        yield from check_listening(page, pages.root(page))
     yield from check_sketched((page, pages.root(page)) for page in pages)
     yield from (*pages.problems, *pages.between())
 

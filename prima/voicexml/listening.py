@@ -1,0 +1,55 @@
+"""Questions of VoiceXML documents at which no grammar listens: error.semantic when they are asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.errors import Problem
+from prima.markup.tree import Node
+from prima.voicexml.arranging import parts_of
+from prima.voicexml.document import Page, broken
+
+ASKING = ("field", "initial")
+REMEDY = "Give it a <grammar>, <option>s or a type. At run time it is error.semantic."
+
+
+def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
+    """Warnings of fields that nobody can answer (2.0, 3.1.4), unless they may never be asked."""
+    if broken(page) is not None or (page.application and root is None):
+        return
+    wider = [page.root, *([root.root] if root is not None else [])]
+    given = {node.get("name") for node in page.root.walk() if node.key == "assign"}
+    shared = any(map(_shares, wider))
+    for form in page.root.all("form"):
+        if _listens(form):
+            continue
+        for item in parts_of(form):
+            surely = {"expr", "cond"}.isdisjoint(item.attributes) and item.get("name") not in given
+            heard = _listens(item) or (shared and item.get("modal") != "true")
+            if item.tag in ASKING and surely and not heard:
+                name = f" {item.get('name')}".rstrip()
+                message = (
+                    f"No grammar listens at the <{item.tag}>{name}: it takes no answer at all."
+                )
+                yield Problem(item.place, "warning", "no-answer", message, REMEDY)
+
+
+def _listens(node: Node) -> bool:
+    """Whether an item or dialog has a grammar of its own, or commands that listen everywhere."""
+    held = any(one.tag in ("grammar", "option", "choice", "link") for one in node.nodes)
+    return held or bool(node.get("type")) or _universals(node)
+
+
+def _shares(root: Node) -> bool:
+    """Whether something listens in all of a document: links, dialogs and grammars of its scope."""
+    dialogs = root.all("form", "menu")
+    return (
+        bool(root.all("link"))
+        or _universals(root)
+        or any(one.get("scope") == "document" for one in dialogs)
+        or any(one.get("scope") == "document" for node in dialogs for one in node.all("grammar"))
+    )
+
+
+def _universals(node: Node) -> bool:
+    return any(one.get("name") == "universals" for one in node.all("property"))
