@@ -301,8 +301,8 @@ def limits() -> str:
             "the application ends",
         ),
         (
-            f"waits of less than {bounds.BRIEF_MS} ms in a row, each begun as soon as the last is over",
-            f"{bounds.MOST_BRIEF:,}",
+            "waits in a row, for content, answers and calls",
+            f"one in {bounds.BRIEF_MS} ms on an average, and {bounds.MOST_BRIEF:,} more",
             "the application ends",
         ),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),

@@ -29,7 +29,7 @@ MAX_ACTIONS, ACTIONS_A_SECOND = 20_000, 20
 of the run besides."""
 
 BRIEF_MS, MOST_BRIEF = 50, 1_000
-"""How long a wait must last (ms), or how many may be shorter in a row."""
+"""How long waits must last on an average (ms), and how many more there may be."""
 
 
 class Visit(NamedTuple):
@@ -73,8 +73,10 @@ class Bounds(Generic[Evaluator]):
         """Pieces of content gone through in this instant."""
         self.hurried = -1
         """An instant that is none of its own: of an event sent without delay just before."""
-        self._brief = 0
-        """How many waits in a row lasted almost no time."""
+        self._short = 0
+        """How much longer (ms) the waits so far should have lasted."""
+        self._waits = 0
+        """How many waits there have been since they last were long enough."""
         self._waited = 0
         """When the latest wait ended."""
         self._latest: Node | None = None
@@ -150,16 +152,19 @@ class Bounds(Generic[Evaluator]):
             raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def count_wait(self, began: int, node: Node) -> None:
-        """Bound waits that last almost no time, one after the other (ms, when the wait began).
+        """Bound waits that last almost no time (ms, when the wait began), however they are mixed.
 
-        Commands that fail or are refused at once, and questions that time out at once, make
-        records for ever, of which a run may have so many.
+        Commands that fail or are refused at once, and questions or calls that time out at once,
+        make records for ever, of which a run may have so many. Longer waits make up for short ones,
+        and so does time in which nothing is waited for.
         """
-        brief = self.now - began < BRIEF_MS and began - self._waited < BRIEF_MS
-        self._brief = self._brief + 1 if brief else 0
+        lasted = self.now - began + max(0, began - self._waited)
+        self._short = max(0, self._short + BRIEF_MS - lasted)
+        self._waits = self._waits + 1 if self._short else 0
         self._waited = self.now
-        if self._brief > MOST_BRIEF:
-            reason = f"it waited for less than {BRIEF_MS} ms {MOST_BRIEF:,} times in a row"
+        if self._short > MOST_BRIEF * BRIEF_MS:
+            often = f"{BRIEF_MS - self._short / self._waits:.0f} ms"
+            reason = f"it waited {self._waits:,} times, for {often} on an average"
             self.give_up(node, f"{reason}: let what comes again and again wait longer")
 
     def fail(self, error: Exception) -> None:

@@ -284,13 +284,18 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         steps = steps_of(commands)
         self.actions.append(Request(self._run, steps, self._state, cause, self._unit))
         self._open, self._queue = open_to_answers, commands
+        resume = yield from self._resumed()
+        self._run, self._open, self._queue = 0, (), ()
+        self._stay_in_time()
+        return resume
+
+    def _resumed(self) -> Generator[None, Resume, Resume]:
+        """Wait until something goes on."""
         began = self.now
         resume = yield
-        self._run, self._open, self._queue = 0, (), ()
         context = self._machine.context
         item = context.item if context is not None else None
         self.count_wait(began, item or self.document.node)
-        self._stay_in_time()
         return resume
 
     def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
@@ -354,7 +359,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
 
         An event ends the wait as well.
         """
-        resume = (yield from self.wait(commands)) if commands else (yield)
+        resume = yield from self.wait(commands) if commands else self._resumed()
         return self._answer or resume
 
     def pass_time(
@@ -369,7 +374,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
     def fetched(self) -> Generator[None, Resume, Fetched]:
         """Wait for the answer of a fetch."""
         while not isinstance(self._answer, Fetched):
-            yield
+            yield from self._resumed()
             self._stay_in_time()
         return self._answer
 
