@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from prima import api, loading
+from prima.cli import cli
 from prima.errors import UsageError
 from tests.voice import HEAD, vxml
 
@@ -71,6 +73,29 @@ def test_a_copy_behaves_as_if_it_was_fetched(tmp_path: Path, leads: str) -> None
     maps = [f"https://example.org/app/={site}/"]
     staged = api.stage([], [str(site / "voice" / "main.vxml")], ["tea"], maps=maps)
     assert logged(api.rehearse(staged)) == ["the shop", "there"]
+
+
+def test_a_copy_is_validated_as_if_it_was_fetched(tmp_path: Path) -> None:
+    site = copied(tmp_path, "/app/voice/there.vxml")
+    main = site / "voice" / "main.vxml"
+    main.write_text(main.read_text().replace("../root.vxml", "/app/root.vxml"))
+    codes = [one.code for one in api.validate([main])]
+    assert codes == ["no-such-file"] * len(codes) != []
+    maps = [f"https://example.org/app/={site}/"]
+    assert api.validate([main], maps) == []
+    (site / "voice" / "there.vxml").unlink()
+    (missing,) = api.validate([main], maps)
+    assert missing.code == "no-such-file" and missing.place.file.endswith("next.vxml")
+    with pytest.raises(UsageError, match="no application is in the folder"):
+        api.validate([tmp_path / "outside.vxml"], maps)
+
+
+def test_the_command_line_maps_what_it_validates(tmp_path: Path) -> None:
+    site = copied(tmp_path, "/app/voice/there.vxml")
+    served_at = f"--map=https://example.org/app/={site}"
+    done = CliRunner().invoke(cli, ["validate", "--strict", str(site), served_at])
+    assert (done.exit_code, done.stdout) == (0, ""), done.output
+    assert CliRunner().invoke(cli, ["validate", "--strict", str(site)]).exit_code == 1
 
 
 LEADING_OUT = {

@@ -15,6 +15,7 @@ from prima.cli.common import (
     SourceLines,
     coloured,
     limit_option,
+    map_option,
     print_json,
     put,
     raise_limits,
@@ -49,6 +50,7 @@ MANY = 50
     help="Certify what each of FILES, an EA, can do to this FA.",
 )
 @click.option("--robot", type=click.Path(), default="", help="The robot's profile for --with.")
+@map_option
 @limit_option
 def validate(
     files: tuple[str, ...],
@@ -58,6 +60,7 @@ def validate(
     notes: bool,
     fas: tuple[str, ...],
     robot: str,
+    maps: tuple[str, ...],
     limits: tuple[str, ...],
 ) -> None:
     """Check documents of any kind: applications, worlds, robots, scenarios, VoiceXML.
@@ -71,19 +74,20 @@ def validate(
     prima validate documents --format sarif > problems.sarif
     prima validate documents --strict
     prima validate my-guide.xml --watch
+    prima validate site/voice/main.vxml --map https://example.org/app/=site/
     prima validate --with documents/fa/follow.xml documents/ea/museum.xml
     """
     raise_limits(limits)
     if robot and not fas:
         raise UsageError("--robot goes with --with.")
-    if fas and (watch or notes or strict or form in ("short", "sarif")):
+    if fas and (watch or notes or strict or maps or form in ("short", "sarif")):
         raise UsageError("A certificate (--with) takes --format text or json alone.")
     if fas:
         _certify(fas, files, robot, form)
         return
     if watch:
-        _watch(files, form, notes)
-    unread, errors, warnings = _check(files, form, notes)
+        _watch(files, form, notes, maps)
+    unread, errors, warnings = _check(files, form, notes, maps)
     if unread or errors or (strict and warnings):
         raise Exit(2 if unread else 1)
 
@@ -102,14 +106,16 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
         put("\n".join(map(format_certificate, found)))
 
 
-def _check(files: tuple[str, ...], form: str, notes: bool) -> tuple[int, int, int]:
+def _check(
+    files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]
+) -> tuple[int, int, int]:
     """Check and print; gives how many files could not be read, and the errors and warnings."""
     from prima import loading  # not the whole interface, for a quick start
 
-    validation = loading.Validation()
     problems: list[Problem] = []
     unread: list[str] = []
     names = list(_expanded(files))
+    validation = loading.Validation(loading.mappings(maps, names))
     for index, name in enumerate(names, 1):
         try:
             problems += validation.problems(name)
@@ -175,7 +181,7 @@ def _show(every: list[Problem], form: str) -> None:
             put(str(problem))
 
 
-def _watch(files: tuple[str, ...], form: str, notes: bool) -> None:
+def _watch(files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]) -> None:
     """Check now and after every change, until somebody interrupts."""
     import time
 
@@ -187,7 +193,7 @@ def _watch(files: tuple[str, ...], form: str, notes: bool) -> None:
             if sys.stdout.isatty():
                 click.clear()
             tell(time.strftime("%H:%M:%S"))
-            _check(files, form, notes)
+            _check(files, form, notes, maps)
             sys.stdout.flush()
         time.sleep(WATCH_SECONDS)
 

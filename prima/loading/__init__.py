@@ -238,16 +238,21 @@ class Loaded:
     problems: list[Problem] = field(default_factory=list)
 
 
-def validate(paths: Iterable[str | Path]) -> list[Problem]:
+def validate(paths: Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
     Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
     last says only how many there are more (:func:`prima.errors.listed`).
 
+    Args:
+        paths: the documents.
+        maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
+
     Raises:
-        UsageError: a file cannot be read.
+        UsageError: a file cannot be read, or a mapping is none.
     """
-    validation = Validation()
+    paths = list(paths)
+    validation = Validation(mappings(maps, map(str, paths)))
     problems = [problem for path in paths for problem in validation.problems(path)]
     return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
 
@@ -265,9 +270,14 @@ def once(problems: Iterable[Problem]) -> list[Problem]:
 
 
 class Validation:
-    """Checks documents one after the other, and in the end what their authors ignore."""
+    """Checks documents one after the other, and in the end what their authors ignore.
 
-    def __init__(self) -> None:
+    Args:
+        maps: folders of VoiceXML documents by the URIs at which they are served.
+    """
+
+    def __init__(self, maps: Mapping[str, str] | None = None) -> None:
+        self._maps = maps or {}
         self._ignores = Ignores(read_file)
 
     def problems(self, path: str | Path) -> list[Problem]:
@@ -277,7 +287,7 @@ class Validation:
             UsageError: the file cannot be read.
         """
         with few_guesses():
-            found = self._ignores.left(_validate_one(str(path)))
+            found = self._ignores.left(_validate_one(str(path), self._maps))
         self._ignores.check(str(path))
         return in_order(found)
 
@@ -286,12 +296,12 @@ class Validation:
         return in_order(self._ignores.told())
 
 
-def _validate_one(path: str) -> list[Problem]:
+def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
     try:
         data = read_file(path)
         application = _is_surely_ours(data)
         if not application and is_voicexml(data):
-            return list(_voicexml_problems(path, data))
+            return list(_voicexml_problems(path, data, _mapped_site(path, maps)))
         if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
             return _grammar_problems(_path(path), data)
         if application:
@@ -317,6 +327,37 @@ def _validate_one(path: str) -> list[Problem]:
     except DocumentError as error:
         return error.problems
     return []
+
+
+def _mapped_site(path: str, maps: Mapping[str, str]) -> Site | None:
+    """Where a document is served by the mapping of its folder, if there is one."""
+    if not maps:
+        return None
+    from prima.voicexml.site import mapped, site_of
+
+    found = mapped(path, maps)
+    return site_of(path, *found) if found else None
+
+
+def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
+    """Folders by the URIs at which they are served, of ``URI=FOLDER``.
+
+    Raises:
+        UsageError: a mapping is none, or none of the applications is in its folder.
+    """
+    from prima.voicexml.site import mapped, mapping_of
+
+    held: dict[str, str] = {}
+    paths = list(paths)
+    for text in maps:
+        try:
+            uri, folder = mapping_of(text)
+        except ValueError as error:
+            raise UsageError(f"--map {' '.join(error.args)}") from None
+        held[uri] = folder
+        if not any(mapped(path, {uri: folder}) for path in paths):
+            raise UsageError(f"--map {text}: no application is in the folder {folder}.")
+    return held
 
 
 def _application_problems(path: str, data: bytes) -> list[Problem]:
@@ -575,18 +616,10 @@ def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
     """
     from html import escape
 
-    from prima.voicexml.site import mapped, mapping_of
+    from prima.voicexml.site import mapped
 
+    held = mappings(maps, paths)
     served: dict[str, str] = {}
-    held: dict[str, str] = {}
-    for text in maps:
-        try:
-            uri, folder = mapping_of(text)
-        except ValueError as error:
-            raise UsageError(f"--map {' '.join(error.args)}") from None
-        held[uri] = folder
-        if not any(mapped(path, {uri: folder}) for path in paths):
-            raise UsageError(f"--map {text}: no application is in the folder {folder}.")
     for path in paths:
         if found := mapped(path, held):
             served[path] = f' uri="{escape(found[0])}" folder="{escape(found[1])}"'

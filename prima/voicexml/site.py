@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import quote, unquote, urljoin, urlsplit
 
@@ -93,7 +94,7 @@ def mapping_of(text: str) -> tuple[str, str]:
     return f"{uri.rstrip('/')}/", folder
 
 
-def mapped(file: str, maps: dict[str, str]) -> tuple[str, str] | None:
+def mapped(file: str, maps: Mapping[str, str]) -> tuple[str, str] | None:
     """The URI of a file by the mapping whose folder holds it, the innermost one, and that folder."""
     found = [(uri, folder) for uri, folder in maps.items() if within(file, folder) is not None]
     if not found:
