@@ -102,6 +102,22 @@ def test_an_ignore_in_voicexml(tmp_path: Path) -> None:
     assert told(path) == []
 
 
+@pytest.mark.parametrize(
+    ("content", "codes"),
+    [("<block>x</block>", ["unused-ignore"]), ('<block><log expr="x"/></block>', [])],
+)
+def test_an_ignored_variable_of_voicexml_has_to_be_there_to_be_ignored(
+    tmp_path: Path, content: str, codes: list[str]
+) -> None:
+    path = tmp_path / "a.vxml"
+    path.write_text(
+        '<vxml xmlns="http://www.w3.org/2001/vxml" version="2.1"><form>'
+        + IGNORE.format("undeclared-variable A server writes it.")
+        + f"{content}</form></vxml>"
+    )
+    assert told(path) == codes
+
+
 # In a project's settings ------------------------------------------------------------------
 
 

@@ -30,7 +30,7 @@ FORM = f"Write <!-- {WORD}: CODE reason -->."
 OF_SCENARIOS = frozenset(
     [
         *("unsupported-command", "no-such-name", "no-such-argument", "missing-attribute"),
-        *("out-of-range", "bad-value", "unknown-event", "unheard-event", "undeclared-variable"),
+        *("out-of-range", "bad-value", "unknown-event", "unheard-event"),
     ]
 )
 """Codes of warnings that a document may get from a scenario alone: nobody knows which do not."""
