@@ -1215,6 +1215,49 @@ def test_documents_that_lead_to_each_other_are_read_once(tmp_path: Path) -> None
     assert told(tmp_path, content, second=second) == []
 
 
+# Worlds ---------------------------------------------------------------------------------
+
+WORLD = """<world xmlns="urn:prima:world:1" version="1.0" id="w">
+<place id="a" x="0" y="0"/><place id="b" x="4" y="0"/>
+<way from="a" to="b"/>
+{}
+</world>"""
+WALKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f"><block>
+<topological-move to="b"/><exit/></block></form></prima>"""
+
+
+def test_a_way_through_a_wall_is_told_beside_other_errors(tmp_path: Path) -> None:
+    path = tmp_path / "w.xml"
+    wall = '<wall x1="2" y1="-2" x2="2" y2="2"/>'
+    path.write_text(WORLD.format(f'<way from="a" to="q"/>{wall}'))
+    found = [(one.code, one.place.line) for one in loading.validate([path])]
+    assert found == [("blocked-way", 3), ("no-such-name", 4)]
+    path.write_text(WORLD.format(wall.replace('"2"', '"far"', 1)))
+    assert [one.code for one in loading.validate([path])] == ["bad-value"], (
+        "nobody knows where it is"
+    )
+
+
+@pytest.mark.parametrize("y", ["0.1", "-0.18", "0.2", "0.4"])
+def test_a_way_that_is_too_narrow_for_the_robot_is_told(tmp_path: Path, y: str) -> None:
+    (tmp_path / "w.xml").write_text(WORLD.format(f'<wall x1="1" y1="{y}" x2="5" y2="{y}"/>'))
+    (tmp_path / "a.xml").write_text(WALKS)
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
+        '<application src="a.xml"/></scenario>'
+    )
+    assert loading.validate([tmp_path / "w.xml"]) == [], "it is wide enough for some robot"
+    told = [one.message for one in loading.validate([tmp_path / "s.xml"])]
+    blocked = bool(api.rehearse(api.load_scenario(tmp_path / "s.xml")).failures)
+    assert blocked == (abs(float(y)) < 0.19)
+    right = (
+        'The way from "a" to "b" is too narrow for the robot: the wall in line 4 is'
+        f" {abs(float(y)):.2f} m beside it."
+    )
+    assert told == [right] * blocked
+
+
 # What a scenario waits for ----------------------------------------------------------------
 
 

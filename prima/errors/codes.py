@@ -61,7 +61,8 @@ CODES: dict[str, str] = {
     "after-else": "Nothing but content may stand after <else>: it takes all that is left.",
     "unreachable": "No goto, link or subdialog leads to the form, so its content never runs. Or no way of"
     " a world leads to a place: the robot gets there only from where it sees it.",
-    "blocked-way": "A way of a world goes through a wall: the robot that takes it stands before the wall.",
+    "blocked-way": "A way of a world goes through a wall: the robot that takes it stands before the wall."
+    " Given a scenario, also a way that is too near to a wall for its robot, which is blocked by it.",
     "dead-end": "Nothing in the form, its handlers included but for those of errors, is a goto, exit, return, throw or link,"
     " and no subdialog that it calls can exit: once in it, the application waits for ever. That may"
     " be meant; if it is over there, say so with <exit/>, or in a subdialog with <return/>.",

@@ -23,6 +23,7 @@ from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.sim.rehearsal import Cast
 from prima.sim.scenario import Map
+from prima.sim.world import room_beside
 from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -53,6 +54,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     nodes = list(cast.scenario.node.walk())
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
+    problems += world.plan.narrow(room_beside(robot)) if world.plan is not None else ()
     events = [Events(document) for document in documents]
     corners = [*_corners(nodes, events, cast)]
     problems += [*corners, *_words(nodes, cast)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import dist
 
 from prima.errors import Problem
 from prima.markup.tree import Node
@@ -31,6 +32,22 @@ def _between(a: Point, b: Point, p: Point) -> bool:
     return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
 
 
+def off_line(point: Point, start: Point, end: Point) -> float:
+    """Metres from a point to the nearest point of a straight line between two others."""
+    length = dist(start, end)
+    if length == 0.0:
+        return dist(point, start)
+    (x, y), (x1, y1), (x2, y2) = point, start, end
+    share = ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length**2
+    share = min(max(share, 0.0), 1.0)
+    return dist(point, (x1 + share * (x2 - x1), y1 + share * (y2 - y1)))
+
+
+def apart(one: Segment, two: Segment) -> float:
+    """Metres between two segments that do not cross."""
+    return min(*(off_line(end, *two) for end in one), *(off_line(end, *one) for end in two))
+
+
 class Plan:
     """A map's places (m) by name, with its ways and walls; each with its element."""
 
@@ -46,11 +63,11 @@ class Plan:
         self._ways = [way for way in ways if way[0] in places and way[1] in places]
         self._walls = walls
 
-    def problems(self) -> Iterator[Problem]:
-        """Warnings about it."""
+    def problems(self, whole: bool = True) -> Iterator[Problem]:
+        """Warnings about it; ``whole`` says whether all its ways are known."""
         if len(self._ways) * len(self._walls) <= MOST:
             yield from self._blocked()
-        if self._ways and len(self._places) ** 2 * max(len(self._walls), 1) <= MOST:
+        if whole and self._ways and len(self._places) ** 2 * max(len(self._walls), 1) <= MOST:
             yield from self._unreachable()
 
     def _blocked(self) -> Iterator[Problem]:
@@ -63,6 +80,24 @@ class Plan:
                     f" in line {wall.place.line}."
                 )
                 remedy = "Lead it round the wall, by a <place> beside it."
+                yield Problem(node.place, "warning", "blocked-way", message, remedy)
+
+    def narrow(self, room: float) -> Iterator[Problem]:
+        """Warnings of ways that are nearer (m) to a wall than a robot can be that goes along them."""
+        if len(self._ways) * len(self._walls) > MOST:
+            return
+        for begin, end, node in self._ways:
+            line = self._places[begin], self._places[end]
+            if any(crosses(line, segment) for segment, _ in self._walls):
+                continue  # told already
+            near = [(apart(line, segment), wall) for segment, wall in self._walls]
+            metres, wall = min(near, key=lambda one: one[0], default=(room, node))
+            if metres < room:
+                message = (
+                    f'The way from "{begin}" to "{end}" is too narrow for the robot:'
+                    f" the wall in line {wall.place.line} is {metres:.2f} m beside it."
+                )
+                remedy = f"Lead it {room:.2f} m or more away from walls."
                 yield Problem(node.place, "warning", "blocked-way", message, remedy)
 
     def _unreachable(self) -> Iterator[Problem]:

@@ -19,9 +19,10 @@ from prima.messages import (
     Sensed,
 )
 from prima.sim import voice
+from prima.sim.plan import off_line
 from prima.sim.routes import Routes
 from prima.sim.scenario import POINTING_MS, Point, Profile
-from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance, off_line
+from prima.sim.world import LOST_AFTER_MS, World, bearing, difference, distance
 
 ARRIVED = 0.1
 """How near a goal is reached (m)."""

@@ -137,6 +137,8 @@ class Map:
     areas: list[Area] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
     """What is odd in its document, and no error."""
+    plan: Plan | None = None
+    """Its ways and walls with their elements, of a world that has been read."""
 
     def point(self, name: str) -> Point | None:
         """Where a place or thing is (m)."""
@@ -190,12 +192,20 @@ def read_world(file: str, data: bytes) -> Map:
         title = node.get("title", node.get("id"))
         low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
         world.areas.append(Area(node.get("id"), title, low, high, node.get("application"), node))
+    world.plan = _plan(reader.root, world)
+    errors = {problem.code for problem in reader.problems if problem.severity == "error"}
+    if errors <= {"no-such-name"}:  # others may be about what stands where
+        reader.problems += world.plan.problems(whole=not errors)
     reader.finish()
-    places = {node.get("id"): node for node in reader.root.all("place")}
-    ways = [(node.get("from"), node.get("to"), node) for node in reader.root.all("way")]
-    walls = list(zip(world.walls, reader.root.all("wall"), strict=True))
-    world.warnings = [*reader.problems, *Plan(world.places, places, ways, walls).problems()]
+    world.warnings = reader.problems
     return world
+
+
+def _plan(root: Node, world: Map) -> Plan:
+    """A world's map with its elements."""
+    places = {node.get("id"): node for node in root.all("place")}
+    ways = [(node.get("from"), node.get("to"), node) for node in root.all("way")]
+    return Plan(world.places, places, ways, list(zip(world.walls, root.all("wall"), strict=True)))
 
 
 POINTING_MS = 1000

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pymunk
 
-from prima.sim.plan import crosses
+from prima.sim.plan import crosses, off_line
 from prima.sim.scenario import Corner, Map, Point, Profile
 
 STEP_MS = 50
@@ -15,6 +15,10 @@ STEP_MS = 50
 WALLS = pymunk.ShapeFilter(mask=0b10)
 ROOM = 0.1
 """How much room (m) it leaves beside its body where it may choose."""
+WALL = 0.05
+"""Half of how thick (m) walls are."""
+THICK = 0.7
+"""The share of the body's radius on both sides of its way in which no wall may be."""
 FAR = 3.0
 """How far (m) walls are looked for around the robot."""
 EPSILON = 1e-6
@@ -36,15 +40,9 @@ def difference(angle: float, other: float) -> float:
     return (angle - other + 180.0) % 360.0 - 180.0
 
 
-def off_line(point: Point, start: Point, end: Point) -> float:
-    """Metres from a point to the nearest point of a straight line between two others."""
-    length = distance(start, end)
-    if length == 0.0:
-        return distance(point, start)
-    (x, y), (x1, y1), (x2, y2) = point, start, end
-    share = ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length**2
-    share = min(max(share, 0.0), 1.0)
-    return distance(point, (x1 + share * (x2 - x1), y1 + share * (y2 - y1)))
+def room_beside(profile: Profile) -> float:
+    """How far (m) a robot must be from a wall beside it, so as not to be blocked by it."""
+    return profile.radius * THICK + WALL
 
 
 class World:
@@ -56,7 +54,7 @@ class World:
         self.time = 0
         self._space = pymunk.Space()
         for start, end in plan.walls:
-            wall = pymunk.Segment(self._space.static_body, start, end, 0.05)
+            wall = pymunk.Segment(self._space.static_body, start, end, WALL)
             wall.filter = pymunk.ShapeFilter(categories=0b10)
             self._space.add(wall)
         self._body = pymunk.Body(10.0, pymunk.moment_for_circle(10.0, 0, profile.radius))
@@ -197,7 +195,7 @@ class World:
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
         """Whether going on would press the body against a wall."""
         reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
-        thick = self.profile.radius * 0.7
+        thick = self.profile.radius * THICK
         angle = self._angle if forward > 0 else self._angle + math.pi
         x, y = self.position
         ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
