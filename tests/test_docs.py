@@ -360,7 +360,21 @@ def test_a_rule_is_explained_with_a_picture_and_a_run(name: str, tmp_path: Path)
     assert run(shlex.split(made[-1])[1:], tmp_path)[0] == 0
     code, told = run(["explain", name, "--format", "json"], tmp_path)
     data = json.loads("\n".join(told))
-    assert data["rule"] == name and data["example"]["command"] == made[-1].strip()
+    assert data["rule"] == name and data["example"]["commands"] == [made[-1].strip()]
+
+
+@pytest.mark.parametrize("there", [(), ("documents",), ("documents", "documents-2")])
+def test_a_rule_is_tried_by_the_commands_as_they_are_printed(
+    tmp_path: Path, there: tuple[str, ...]
+) -> None:
+    for folder in there:
+        (tmp_path / folder).mkdir()
+    _, made = run(["explain", "F2"], tmp_path)
+    copy, example = made[made.index("Try it:") + 1 :]
+    for line in (copy, example):
+        assert run(shlex.split(line)[1:], tmp_path)[0] == 0, line
+    _, made = run(["explain", "F2"], tmp_path)
+    assert made[made.index("Try it:") + 1 :] == [example], "the documents are there now"
 
 
 def test_a_rule_that_is_not_there_is_told(tmp_path: Path) -> None:

@@ -979,6 +979,37 @@ def test_what_listens_in_an_application_root_listens_in_its_leaves(tmp_path: Pat
     )
 
 
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        ('<var name="session"/><form/>', "session"),
+        ("<script>var session = 5;</script><form/>", "session"),
+        ("<form><block><script>function dialog() {}</script></block></form>", "dialog"),
+        ('<form><field name="document" type="boolean"/></form>', "document"),
+        ("<script>function f(session) { var application; return session; }</script><form/>", ""),
+    ],
+)
+def test_a_variable_that_hides_a_scope_is_told(tmp_path: Path, content: str, name: str) -> None:
+    found = [one for one in told(tmp_path, content) if " hides " in one]
+    assert len(found) == bool(name)
+    assert all(f'bad-value The variable "{name}" hides the ' in one for one in found)
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        *(("nogr.grxml", ""), ("cro.grxml", "cor.grxml"), ("c.xml", "")),
+        *(("tea-menus.grxml", "tea-menu.grxml"), ("sor.grxml", ""), ("cor.vxml", "cor.xml")),
+    ],
+)
+def test_a_file_is_guessed_only_where_it_is_near(tmp_path: Path, name: str, meant: str) -> None:
+    for there in ("cor.xml", "cor.grxml", "tea-menu.grxml", "other.xml"):
+        (tmp_path / there).write_text("")
+    field = f'<form><field name="a"><grammar src="{name}"/></field></form>'
+    (one,) = [one for one in told(tmp_path, field) if "no-such-file" in one]
+    assert one.rpartition("badfetch.")[2].strip() == (f'Did you mean "{meant}"?' if meant else "")
+
+
 MEMBERS = """<form><var name="own"/><block>{}</block></form>"""
 
 
@@ -1082,7 +1113,7 @@ def test_variables_of_the_application_root_are_declared(tmp_path: Path) -> None:
     content = '<form><block><log expr="shared + own"/></block></form>'
     (one,) = told(tmp_path, content, ' application="root.vxml"', root=root)
     assert '"own"' in one
-    assert "root.vxml" in told(tmp_path, content, ' application="gone.vxml"')[0]
+    assert 'no file "gone.vxml"' in told(tmp_path, content, ' application="gone.vxml"')[0]
     assert len(told(tmp_path, content, ' application="gone.vxml"')) == 1, "nobody knows the rest"
 
 

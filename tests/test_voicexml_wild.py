@@ -495,12 +495,13 @@ def test_a_document_of_voicexml_1_is_read_as_2(tmp_path: Path) -> None:
     assert call.session.apps["app"].document.lang == "en-GB"
 
 
-def test_a_grammar_of_voicexml_1_without_a_type_is_not_supported() -> None:
-    call = Call(
-        """<vxml version="1.0"><catch event="error"><log expr="_event"/><exit/></catch><form>
+def test_a_grammar_of_voicexml_1_without_a_type_is_not_supported(tmp_path: Path) -> None:
+    text = """<vxml version="1.0"><catch event="error"><log expr="_event"/><exit/></catch><form>
         <field name="f"><prompt>Well?</prompt><grammar>yes | no</grammar></field></form></vxml>"""
-    )
-    assert call.logs() == ["error.unsupported.format"]
+    assert Call(text).logs() == ["error.unsupported.format"]
+    (problem,) = [one for one in problems(tmp_path, text) if one.code == "format"]
+    told = "A grammar without a type is in JSGF in VoiceXML 1.0; JSGF is not supported."
+    assert problem.message == told
 
 
 @pytest.mark.parametrize("kind", ["application/x-jsgf", "application/x-gsl", "text/gsl"])

@@ -21,6 +21,8 @@ OPEN_TYPES = frozenset(
 """Types that say nothing of the form; the content does."""
 OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
 """How formats that are not SRGS begin."""
+UNTYPED = "jsgf"
+"""Stands for the type of a grammar that has none in VoiceXML 1.0, where its form is JSGF's."""
 RIGHT_TYPES: dict[Form, str] = {"XML": "application/srgs+xml", "ABNF": "application/srgs"}
 NO_HEADER = "The header of the ABNF form is missing."
 FIRST_LINE = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
@@ -57,6 +59,9 @@ def check_known(media: str, place: Place, begin: str) -> None:
         if begin.lstrip().startswith(start):
             message = f"This grammar is in {name}, which is not supported."
             raise refuse(UnsupportedFormat, place, "format", message, remedy)
+    if media == UNTYPED:
+        message = "A grammar without a type is in JSGF in VoiceXML 1.0; JSGF is not supported."
+        raise refuse(UnsupportedFormat, place, "format", message, remedy)
     if media not in XML_TYPES | ABNF_TYPES | OPEN_TYPES:
         message = f'Grammars of type "{media[:80]}" are not supported.'
         raise refuse(UnsupportedFormat, place, "format", message, remedy)

@@ -362,11 +362,18 @@ def _decided(name: str, rows: list[Row], records: list[Any]) -> Iterator[int]:
                 yield row.number
 
 
-def command(name: str) -> str:
-    """The command that runs a rule's example."""
+def commands(name: str) -> list[str]:
+    """The commands that run a rule's example in this folder, one after the other."""
     example = _example(name)
     policy = f" --policy {example.policy}" if example.policy else ""
-    return f"prima run documents/{example.scenario}{policy} --why"
+    folder, copied = "documents", f"documents/{example.scenario}"
+    count = 1
+    while Path(folder).exists() and not Path(copied).is_file():  # it is another folder
+        count += 1
+        folder = f"documents-{count}"
+        copied = f"{folder}/{example.scenario}"
+    run = f"prima run {copied}{policy} --why"
+    return [run] if Path(copied).is_file() else [f"prima documents {folder}", run]
 
 
 def shown(name: str, columns: int = 80) -> str:
@@ -381,9 +388,7 @@ def shown(name: str, columns: int = 80) -> str:
         lines += wrap(piece, columns, break_long_words=False, break_on_hyphens=False)
     look = wrap(f"Row {run.number}: {_example(name).look}", columns)
     table = format_rows(run.rows, True, columns).rstrip("\n")
-    tried = [f"    {command(name)}"]
-    if not Path("documents", _example(name).scenario).is_file():
-        tried.insert(0, "    prima documents documents")
+    tried = [f"    {one}" for one in commands(name)]
     return "\n".join([*lines, "", run.picture, "", *look, "", table, "", "Try it:", *tried])
 
 
@@ -404,6 +409,6 @@ def data(name: str) -> dict[str, Any]:
             "row": run.number,
             "look": example.look,
             "picture": run.picture,
-            "command": command(name),
+            "commands": commands(name),
         },
     }

@@ -31,6 +31,7 @@ from prima.errors import (
 )
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
+from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.check import check_root, kind_of
@@ -849,12 +850,15 @@ def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) ->
 
 
 def _nearby(path: Path) -> str:
-    """The file beside that a name which leads nowhere most likely means."""
+    """The file beside that a name which leads nowhere most likely means: its ending says little."""
     try:
-        beside = [one.name for one in islice(path.parent.iterdir(), MOST_BESIDE)]
+        beside = sorted(islice(path.parent.iterdir(), MOST_BESIDE))
     except (OSError, ValueError):
         return ""
-    return did_you_mean(path.name, [one for one in beside if one != path.name])
+    alike = sorted(beside, key=lambda one: one.suffix == path.suffix)  # the last one counts
+    stems = {one.stem: one.name for one in alike if one.name != path.name}
+    meant = stems.get(near(path.stem, stems))
+    return f'Did you mean "{meant}"?' if meant else ""
 
 
 MOST_BESIDE = 300

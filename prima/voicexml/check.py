@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from prima.errors import Problem, did_you_mean, few, one_of
+from prima.errors import Place, Problem, did_you_mean, few, one_of
 from prima.interpreter.checks import given_to
 from prima.language.commands import TABLE_4_2, CommandType, excluding_arguments
 from prima.language.values import NUMBER, read_value
@@ -21,6 +21,7 @@ from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.globals import IDENTIFIER, RESERVED
 from prima.script.isolated import IsolatedSyntax, syntax
+from prima.script.names import SCOPES, script_names
 from prima.voicexml.arranging import (
     ARRANGING,
     UNIT,
@@ -407,6 +408,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
             problems += _command_problems(node, TABLE_4_2[node.tag])
         if node.key == "property":
             problems += _property_problems(node)
+        if node.key == "script" and node.own_text.strip():
+            problems += _script_problems(node)
         for name in ("next", "src"):
             target = node.get(name)
             if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
@@ -425,6 +428,11 @@ def is_code(node: Node, attribute: str) -> bool:
     return node.namespace == PRIMA_NAMESPACE and own
 
 
+HIDING = {
+    "session": "the session variables, which are read-only",
+    **{name: f"the variables of the {name}" for name in sorted(SCOPES)},
+}
+"""Names that variables should not have, and what cannot be reached any more if one does (5.1.2)."""
 SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
 """Words that are names, too, in the ECMAScript of documents."""
 NAMING = {
@@ -434,9 +442,26 @@ NAMING = {
 """Elements that have a variable, and the attribute that names it."""
 
 
+def _script_problems(script: Node) -> Iterator[Problem]:
+    """Variables of a script that hide the platform's scopes (5.1.2)."""
+    told: set[str] = set()
+    for use in script_names(script.own_text).uses:
+        if use.declares and not use.holder and use.name in HIDING.keys() - told:
+            told.add(use.name)
+            place = script.source.inside(script.index, "", use.start)
+            yield _hidden(place, use.name)
+
+
+def _hidden(place: Place, name: str) -> Problem:
+    message = f'The variable "{name}" hides {HIDING[name]}.'
+    return Problem(place, "warning", "bad-value", message, "Write another name.")
+
+
 def _name_problems(node: Node, attribute: str) -> list[Problem]:
     """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
     name = node.get(attribute)
+    if name in HIDING:
+        return [_hidden(node.attribute_place(attribute), name)]
     remedy = "Write letters, digits and _, and no word that ECMAScript has for itself."
     if not IDENTIFIER.fullmatch(name) or name in RESERVED - SOMETIMES:
         message = f'"{name}" is no name of ECMAScript: no expression can read it.'

@@ -6,11 +6,11 @@ import re
 from collections.abc import Callable
 
 from prima.errors import Problem
+from prima.grammar.media import UNTYPED
 from prima.markup.tree import Node
 
 VERSIONS = ("2.0", "2.1")
 OLD = "1.0"
-JSGF = "application/x-jsgf"
 RENAMED = {
     "vxml": {"base": "xml:base", "lang": "xml:lang"},
     "pros": {"vol": "volume"},
@@ -72,7 +72,7 @@ def _grammar(node: Node) -> None:
     """A grammar's text without a type is in the form that 1.0 shows; it is not supported."""
     written = node.text and not node.nodes and not node.text.startswith("#ABNF")
     if written and "type" not in node.attributes:
-        node.attributes["type"] = JSGF
+        node.attributes["type"] = UNTYPED
 
 
 def _div(node: Node) -> None:
