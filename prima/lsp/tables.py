@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.scan import Page, Tag
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
@@ -208,7 +209,7 @@ def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ..
         if (element.key, name) == ("vxml", "version"):
             return ("2.1", "2.0")
         if (element.key, name) == ("field", "type"):
-            return ("boolean", "currency", "date", "digits", "number", "phone", "time")
+            return TYPES
         kind = VALUES.get(f"{element.key} {name}") or VALUES.get(name, "")
         return tuple(kind.split()) if kind not in ("time", "integer", "rate") else ()
     return ()
