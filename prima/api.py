@@ -330,7 +330,7 @@ def export(
     Args:
         transcript: a transcript, or the path of one, which is then read piece by piece as far
             as it goes.
-        to: ``eaf``, ``textgrid``, ``vtt``, ``mcap`` or ``csv``.
+        to: the format's name, such as ``eaf``; docs/exports.md lists all.
         output: the file to write, by its path or open for bytes.
         languages: language tags (BCP 47) by application; under the empty name, that of all
             others and of the user.
