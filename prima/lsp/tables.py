@@ -17,8 +17,7 @@ from prima.markup.vocabulary import (
 )
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
-from prima.voicexml.check import SPEAKING
-from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, SRGS, VALUES, VOICEXML
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 
 _PARTS = ("one-of", "item", "ruleref", "tag", "token")
 _REPEAT = (
@@ -150,7 +149,7 @@ def children(tag: Tag) -> list[Choice]:
     ]
     prefix = _prefix(tag, DIALOGUE)
     if inner is VOICEXML and prefix:
-        acts = tag.key in SPEAKING or VOICEXML.child(tag.key, "assign")
+        acts = tag.key in HOLDING or VOICEXML.child(tag.key, "assign")
         keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
         own = [DIALOGUE.elements[key] for key in keys]
         found += [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
