@@ -151,7 +151,7 @@ def rehearse(
 
     Args:
         scenario: its path, or what :func:`load_scenario` gave.
-        policy: ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``;
+        policy: a policy's name (docs/mediation.md lists them) or ``fixed:APP``;
             by default the scenario's own.
         bound: rule E4's bound on loops of a feedback Command.
         sink: is given each line of the transcript as soon as it is made.
