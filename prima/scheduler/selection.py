@@ -59,7 +59,7 @@ class Policy:
         """What else than a device keeps the AB from starting (F2, F6, K1)."""
         if self.extensions and self.has("x5") and rules.x5(ab, memory):
             return rules.k1(ab, memory)
-        return rules.f2(ab, memory) or rules.f6(ab, memory) or rules.k1(ab, memory)
+        return rules.refusal(ab, memory)
 
     def holds_back(self, ab: Behavior) -> bool:
         """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
