@@ -151,7 +151,7 @@ def rehearse(
 
     Args:
         scenario: its path, or what :func:`load_scenario` gave.
-        policy: ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``;
+        policy: a policy's name (docs/mediation.md lists them) or ``fixed:APP``;
             by default the scenario's own.
         bound: rule E4's bound on loops of a feedback Command.
         sink: is given each line of the transcript as soon as it is made.
@@ -330,7 +330,7 @@ def export(
     Args:
         transcript: a transcript, or the path of one, which is then read piece by piece as far
             as it goes.
-        to: ``eaf``, ``textgrid``, ``vtt``, ``mcap`` or ``csv``.
+        to: the format's name, such as ``eaf``; docs/exports.md lists all.
         output: the file to write, by its path or open for bytes.
         languages: language tags (BCP 47) by application; under the empty name, that of all
             others and of the user.

@@ -567,7 +567,7 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["t.jsonl"], "say in what format: --to eaf"),
+        (["t.jsonl"], "say in what format: --to csv, eaf, mcap, textgrid or vtt"),
         (["t.jsonl", "--to", "textgird"], 'Did you mean "textgrid"?'),
         (["t.jsonl", "--to", "pdf"], "Name csv, eaf, mcap, textgrid or vtt."),
         (["none.jsonl", "--to", "csv"], "none.jsonl: cannot be read"),

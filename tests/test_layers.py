@@ -81,7 +81,8 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"vocabulary", "grammar"},
+        {"grammar"},
+        {"vocabulary"},
         {"leads"},
         {"elements", "srgs"},
         {"events", "plain", "selection"},

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.errors import Problem
 
-POLICIES = "prima, fifo, fair, fixed, fixed:APP or none"
-POLICY_NAMES = ("prima", "fifo", "fair", "fixed", "none")
-
 
 class Choice(click.Choice[str]):
     """One of some words, with a suggestion for a misspelt one."""

@@ -8,8 +8,6 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    POLICIES,
-    POLICY_NAMES,
     Choice,
     check_output,
     coloured,
@@ -20,6 +18,7 @@ from prima.cli.common import (
 )
 from prima.cli.runs import run_of
 from prima.errors import UsageError
+from prima.scheduler.selection import POLICIES, USAGE
 
 
 @click.command()
@@ -29,8 +28,8 @@ from prima.errors import UsageError
     "--policy",
     "policies",
     multiple=True,
-    shell_complete=suggesting(*POLICY_NAMES),
-    help=f"Run a scenario under this policy; twice, once for each run: {POLICIES}.",
+    shell_complete=suggesting(*POLICIES),
+    help=f"Run a scenario under this policy; twice, once for each run: {USAGE}.",
 )
 @click.option(
     "--format",

@@ -10,7 +10,8 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import check_output, or_stdout, suggesting, tell
-from prima.errors import UsageError, counted
+from prima.errors import UsageError, counted, one_of
+from prima.exports import FORMATS
 
 
 @click.command()
@@ -18,8 +19,8 @@ from prima.errors import UsageError, counted
 @click.option(
     "--to",
     metavar="FORMAT",
-    shell_complete=suggesting("eaf", "textgrid", "vtt", "mcap", "csv"),
-    help="eaf (ELAN), textgrid (Praat), vtt (captions), mcap (Foxglove) or csv;"
+    shell_complete=suggesting(*FORMATS),
+    help=f"{one_of(f'{name} ({use})' for name, use in FORMATS.items())};"
     " by default what OUTPUT's suffix tells.",
 )
 @click.option(
@@ -51,7 +52,7 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
 
     form = to.lower() if to else Path(output or "").suffix.lower()[1:]
     if not form:
-        raise UsageError("say in what format: --to eaf, textgrid, vtt, mcap or csv.")
+        raise UsageError(f"say in what format: --to {one_of(FORMATS)}.")
     if output is None and form == "mcap" and sys.stdout.isatty():
         raise UsageError("mcap is no text for a terminal: name a file with -o.")
     if output is not None:

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from prima.cli.common import (
-    POLICIES,
-    POLICY_NAMES,
     check_output,
     suggesting,
     tell,
@@ -19,6 +17,7 @@ from prima.cli.common import (
 )
 from prima.cli.runs import Run, is_markup, run_of
 from prima.errors import UsageError
+from prima.scheduler.selection import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
     "--policy",
     "policies",
     multiple=True,
-    shell_complete=suggesting(*POLICY_NAMES),
-    help=f"Run a scenario under this policy; twice to compare two runs: {POLICIES}.",
+    shell_complete=suggesting(*POLICIES),
+    help=f"Run a scenario under this policy; twice to compare two runs: {USAGE}.",
 )
 @click.option(
     "--scenario",

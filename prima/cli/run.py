@@ -11,8 +11,6 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     MAPS,
-    POLICIES,
-    POLICY_NAMES,
     check_output,
     columns,
     format_option,
@@ -28,6 +26,7 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
+from prima.scheduler.selection import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -53,8 +52,8 @@ ENDS_OF_FOLDERS = ("/", os.sep)
     "--policy",
     "policies",
     multiple=True,
-    shell_complete=suggesting(*POLICY_NAMES),
-    help=f"The mediator's policy: {POLICIES}. Several: a run under each.",
+    shell_complete=suggesting(*POLICIES),
+    help=f"The mediator's policy: {USAGE}. Several: a run under each.",
 )
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."

@@ -11,8 +11,6 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     MAPS,
-    POLICIES,
-    POLICY_NAMES,
     clean,
     coloured,
     columns,
@@ -30,6 +28,7 @@ from prima.cli.common import (
 from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
 from prima.language.commands import PATIENCE_MS
+from prima.scheduler.selection import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
@@ -59,8 +58,8 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 )
 @click.option(
     "--policy",
-    shell_complete=suggesting(*POLICY_NAMES),
-    help=f"The mediator's policy: {POLICIES}.",
+    shell_complete=suggesting(*POLICIES),
+    help=f"The mediator's policy: {USAGE}.",
 )
 @why_option
 @click.option(

@@ -9,8 +9,6 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    POLICIES,
-    POLICY_NAMES,
     Choice,
     check_output,
     coloured,
@@ -24,6 +22,7 @@ from prima.cli.common import (
     tell,
 )
 from prima.errors import UsageError
+from prima.scheduler.selection import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.testing.coverage import Coverage
@@ -38,8 +37,8 @@ MOST_JOBS = 64
 @click.option("-k", "word", metavar="WORD", default="", help="Only scenarios with it in the path.")
 @click.option(
     "--policy",
-    shell_complete=suggesting(*POLICY_NAMES),
-    help=f"Run under this policy: {POLICIES}.",
+    shell_complete=suggesting(*POLICIES),
+    help=f"Run under this policy: {USAGE}.",
 )
 @click.option(
     "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Run so many at once."

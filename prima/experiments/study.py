@@ -11,14 +11,15 @@ from pathlib import Path
 from prima.api import Transcript, documents_folder, load_scenario, rehearse
 from prima.errors import UsageError
 from prima.messages import Json
+from prima.scheduler import selection
 from prima.transcript.criteria import Criteria, observe
 from prima.transcript.diff import compare
 from prima.transcript.table import Row, read_table
 
 POLICIES = (
-    "none", "fixed", "fair", "fifo", "prima",
-    "prima+x1", "prima+x2", "prima+x3", "prima+x4", "prima+x5", "prima+x6", "prima+all",
-)  # fmt: skip
+    *reversed(selection.POLICIES),
+    *(f"prima+{extension}" for extension in (*selection.EXTENSIONS, "all")),
+)
 """All that a study compares unless it is told otherwise."""
 EXPECTED = ".txt"
 """The suffix of the table beside a scenario that its author expects."""

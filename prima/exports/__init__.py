@@ -19,7 +19,8 @@ FORMATS = {
     "mcap": "Foxglove",
     "csv": "spreadsheets and statistics",
 }
-"""The formats by their names, which are also the files' suffixes, and for what they are."""
+"""The formats by their names, which are also the files' suffixes, and for what they are;
+each is a module of this package with a function ``write``."""
 
 
 @dataclass(frozen=True, slots=True)

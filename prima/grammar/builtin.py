@@ -59,7 +59,6 @@ MOST_WORDS = 20
 PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
          "セント": ""}  # fmt: skip
 """Hundredths, with the currency if they tell it."""
-TYPES = ("boolean", "currency", "date", "digits", "number", "phone", "time")
 
 
 class Conflict(ValueError):
@@ -301,3 +300,5 @@ _READERS: dict[str, Reader] = {
     "phone": _phone,
     "time": _time,
 }
+TYPES = tuple(_READERS)
+"""The names of the types; checks, editors and the interpreter read them here."""

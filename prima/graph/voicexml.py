@@ -25,7 +25,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
-from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100
 """Documents of one application that are read."""
@@ -34,18 +34,6 @@ ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog
 GOING_ON = (*sorted(ASKED), "cancel", "maxspeechtimeout")
 """Events after which the dialog goes on where no handler takes them (5.2.5)."""
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
-TEXT = (
-    "p",
-    "s",
-    "paragraph",
-    "sentence",
-    "emphasis",
-    "prosody",
-    "voice",
-    "say-as",
-    "sub",
-    "phoneme",
-)
 
 
 def states(document: VoiceDocument) -> Graph:
@@ -449,8 +437,6 @@ def _said(node: Node, depth: int = 0) -> str:
             parts.append(f"{{{item.get('expr')}}}")
         elif item.tag == "enumerate":
             parts.append("...")
-        elif depth < 40 and (
-            item.namespace == PRIMA_NAMESPACE or item.tag in (*TEXT, "prompt", "audio")
-        ):
+        elif depth < 40 and (item.namespace == PRIMA_NAMESPACE or item.tag in (*WORDED, "prompt")):
             parts.append(" " + _said(item, depth + 1) + " ")
     return clean(" ".join("".join(parts).split()))

@@ -159,8 +159,8 @@ BUILT_IN: dict[str, Callable[[str], Json]] = {
     "boolean": _boolean,
     "number": _number,
     "digits": _digits,
-    "time": _time,
     "date": _date,
+    "time": _time,
     "text": _text,
 }
 """The built-in types: text to value, None where it does not match."""

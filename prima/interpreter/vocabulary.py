@@ -7,12 +7,12 @@ SMIL's.
 
 from __future__ import annotations
 
+from prima.interpreter.grammar import BUILT_IN
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
 
 NAMESPACE = "urn:prima:dialogue:1"
 
-TYPES = ("boolean", "number", "digits", "date", "time", "text")
 USUAL_CONFIDENCE = 0.5
 """How sure a recogniser has to be where no document says so (VoiceXML 2.0, 6.3.2)."""
 _ASKING = TABLE_4_2["q-and-a"].arguments
@@ -211,7 +211,7 @@ ELEMENTS = (
             attribute("name", "variable", "the variable that the answer fills", "required"),
             _START,
             _COND,
-            attribute("type", "text", "a built-in grammar for the answer", choices=TYPES),
+            attribute("type", "text", "a built-in grammar for the answer", choices=tuple(BUILT_IN)),
             *_STREAM,
             _CHANNEL,
         ),

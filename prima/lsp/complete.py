@@ -30,6 +30,7 @@ from prima.lsp.tables import (
 )
 from prima.lsp.words import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.scheduler.selection import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 MOST = 500
@@ -37,7 +38,6 @@ MOST = 500
 END_TAG = re.compile(r"</([^\s<>]*)$")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
-POLICIES = ("prima", "prima+all", "fifo", "fair", "fixed", "none")
 PROPERTIES = (
     *("bargein", "bargeintype", "completetimeout", "confidencelevel", "fetchaudio"),
     *("fetchtimeout", "incompletetimeout", "inputmodes", "interdigittimeout", "maxnbest"),
@@ -374,7 +374,7 @@ def _where(asked: _Completion, found: Found) -> str:
 def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
     """Values that stand in no table."""
     if key == ("scenario", "scenario", "policy"):
-        return POLICIES
+        return ("prima", "prima+all", *BASELINES)
     if key == ("voicexml", "property", "name"):
         return PROPERTIES
     return ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.scan import Page, Tag
 from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
@@ -16,8 +17,7 @@ from prima.markup.vocabulary import (
 )
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
-from prima.voicexml.check import SPEAKING
-from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, SRGS, VALUES, VOICEXML
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 
 _PARTS = ("one-of", "item", "ruleref", "tag", "token")
 _REPEAT = (
@@ -149,7 +149,7 @@ def children(tag: Tag) -> list[Choice]:
     ]
     prefix = _prefix(tag, DIALOGUE)
     if inner is VOICEXML and prefix:
-        acts = tag.key in SPEAKING or VOICEXML.child(tag.key, "assign")
+        acts = tag.key in HOLDING or VOICEXML.child(tag.key, "assign")
         keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
         own = [DIALOGUE.elements[key] for key in keys]
         found += [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
@@ -208,7 +208,7 @@ def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ..
         if (element.key, name) == ("vxml", "version"):
             return ("2.1", "2.0")
         if (element.key, name) == ("field", "type"):
-            return ("boolean", "currency", "date", "digits", "number", "phone", "time")
+            return TYPES
         kind = VALUES.get(f"{element.key} {name}") or VALUES.get(name, "")
         return tuple(kind.split()) if kind not in ("time", "integer", "rate") else ()
     return ()

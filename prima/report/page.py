@@ -17,6 +17,7 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
 from prima.report.view import View
+from prima.scheduler.selection import BASELINES
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
@@ -351,10 +352,11 @@ def _data(
 ) -> dict[str, Any]:
     used = {row.rule for view in views for row in view.rows}
     used |= {told[2] for view in views for why in view.whys for told in why.get("told", [])}
+    known = RULES | dict.fromkeys(BASELINES, "the baseline policy of that name")
     data: dict[str, Any] = {
         "runs": [_run(view, shades) for view in views],
         "nobody": NOBODY,
-        "rules": {rule: RULES[rule] for rule in sorted(used) if rule in RULES},
+        "rules": {rule: known[rule] for rule in sorted(used) if rule in known},
     }
     if difference is not None:
         data["changes"] = [

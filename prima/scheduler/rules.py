@@ -76,6 +76,11 @@ def s2f(ab: Behavior) -> tuple[int, int]:
     return (ab.app.order, ab.serial)
 
 
+def refusal(ab: Behavior, memory: Memory) -> Refusal | None:
+    """The first rule that keeps a waiting AB from starting, beside its devices."""
+    return f2(ab, memory) or f6(ab, memory) or k1(ab, memory)
+
+
 def outranks(priority: int, stream: Stream, memory: Memory) -> bool:
     """F2: whether a priority is higher than that of all that the floor's stream has.
 

@@ -59,7 +59,7 @@ class Policy:
         """What else than a device keeps the AB from starting (F2, F6, K1)."""
         if self.extensions and self.has("x5") and rules.x5(ab, memory):
             return rules.k1(ab, memory)
-        return rules.f2(ab, memory) or rules.f6(ab, memory) or rules.k1(ab, memory)
+        return rules.refusal(ab, memory)
 
     def holds_back(self, ab: Behavior) -> bool:
         """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
@@ -127,7 +127,23 @@ class Unmediated(Fifo):
         return False
 
 
-POLICIES = ("prima", "fifo", "fair", "fixed", "none")
+POLICIES: dict[str, type[Policy]] = {
+    "prima": Policy,
+    "fifo": Fifo,
+    "fair": Fair,
+    "fixed": Fixed,
+    "none": Unmediated,
+}
+"""Every policy by its name; the command line, editors, studies and reports read this table."""
+_WORDS = [
+    word
+    for name, policy in POLICIES.items()
+    for word in ((name, f"{name}:APP") if policy is Fixed else (name,))
+]
+USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
+"""How policies are written, for the help of the command line."""
+BASELINES = tuple(name for name in POLICIES if name != "prima")
+"""The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
 EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
 """The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
 
@@ -144,18 +160,12 @@ def policy_named(text: str) -> Policy:
     if base == "prima" and extensions:
         return Policy(name=text, extensions=_extensions(extensions))
     name, colon, first = text.partition(":")
-    if name == "fixed" and (first or not colon):
+    if name == "fixed" and first:
         return Fixed(first=first)
-    simple: dict[str, type[Policy]] = {
-        "prima": Policy,
-        "fifo": Fifo,
-        "fair": Fair,
-        "none": Unmediated,
-    }
-    if name not in simple or colon:
+    if name not in POLICIES or colon:
         hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
         raise UsageError(f'There is no policy "{text}". {hint}')
-    return simple[name]()
+    return POLICIES[name]()
 
 
 def _extensions(names: list[str]) -> frozenset[str]:

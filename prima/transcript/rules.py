@@ -37,9 +37,5 @@ RULES = {
     "X4": "the robot turns to the user before the first word",
     "X5": "a motion free in its path and one faithful to its own run together",
     "X6": "another Command takes the place of one that the robot lacks",
-    "fifo": "the baseline policy of that name",
-    "fair": "the baseline policy of that name",
-    "fixed": "the baseline policy of that name",
-    "none": "the baseline policy of that name",
 }
 """A rule's number, as in a record's ``rule``, with what it says."""

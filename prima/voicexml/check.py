@@ -36,6 +36,7 @@ from prima.voicexml.vocabulary import (
     ALTERNATIVES,
     COMMANDS,
     EXPRESSIONS,
+    HOLDING,
     NAMESPACE,
     PRIMA_NAMESPACE,
     SRGS,
@@ -63,21 +64,6 @@ HOLDERS = {
 """What elements are that hold different things by where they stand."""
 INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
 FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
-SPEAKING = frozenset(
-    [
-        "prompt",
-        "audio",
-        "said-foreach",
-        "emphasis",
-        "prosody",
-        "voice",
-        "p",
-        "s",
-        "paragraph",
-        "sentence",
-    ]
-)
-"""Elements besides executable content in which a Command of the robot may stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -352,7 +338,7 @@ def _check_command(node: Node, parent: Node, problems: list[Problem]) -> None:
         message, hint = f"PRIMA has no Command <{node.tag}>.", did_you_mean(node.tag, known)
         problems.append(Problem(node.place, "error", "unknown-element", message, hint))
         return
-    if parent.key not in SPEAKING and VOICEXML.child(parent.key, "assign") is None:
+    if parent.key not in HOLDING and VOICEXML.child(parent.key, "assign") is None:
         message = f"A Command cannot stand in <{parent.tag}>."
         if node.tag in ARRANGING:
             message = f"<p:{node.tag}> cannot stand in <{parent.tag}>: it is around Commands."

@@ -13,7 +13,7 @@ from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.fetching import Request, decoded
-from prima.voicexml.prompts import SPOKEN, Speaker, Speech
+from prima.voicexml.prompts import Speaker, Speech
 from prima.voicexml.state import (
     SCOPES,
     Context,
@@ -24,7 +24,7 @@ from prima.voicexml.state import (
     HungUp,
     Thrown,
 )
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine

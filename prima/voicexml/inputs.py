@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from prima.grammar.builtin import TYPES
 from prima.interpreter.content import source
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
@@ -24,7 +25,6 @@ DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
 USUAL_CONFIDENCE = 0.5
-BUILT_IN = frozenset(["boolean", "currency", "date", "digits", "number", "phone", "time"])
 
 
 @dataclass(slots=True)
@@ -212,7 +212,7 @@ class Inputs:
 
     def _built_in(self, node: Node, page: Page) -> Matcher:
         name = node.get("type")
-        known = name.partition("?")[0] in BUILT_IN or name.startswith("builtin:")
+        known = name.partition("?")[0] in TYPES or name.startswith("builtin:")
         return self._load(node, page, name if known else f"builtin:grammar/{name}")
 
     def _grammar(

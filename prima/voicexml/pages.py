@@ -9,13 +9,10 @@ from prima.errors import DocumentError, Problem, did_you_mean
 from prima.markup.tree import Node
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page, read_page
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100
 """Documents of one application that are read."""
-MARKUP = frozenset(["audio", "emphasis", "p", "s", "paragraph", "sentence", "prosody", "say-as",
-                    "sub", "voice", "desc"])  # fmt: skip
-"""Elements of speech markup, whose text is a part of that around them."""
 LEADING = {"goto": "next", "link": "next", "choice": "next", "submit": "next", "subdialog": "src"}
 """Elements that lead to a dialog, and the attribute that names it."""
 
@@ -147,5 +144,7 @@ def _parts(node: Node) -> Iterator[object]:
             yield " ".join(one.split()) + " "
         elif one.tag in OPEN or (one.tag == "audio" and not one.text and not one.nodes):
             yield None
-        elif one.tag in MARKUP:
+        elif one.tag == "sub":
+            yield f"{one.get('alias')} "
+        elif one.tag in WORDED or one.tag == "desc":
             yield from _parts(one)

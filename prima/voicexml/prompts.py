@@ -28,32 +28,11 @@ from prima.voicexml.cues import (
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.state import Context, Thrown
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
 
-SPOKEN = frozenset(
-    [
-        "audio",
-        "value",
-        "enumerate",
-        "prompt",
-        "break",
-        "emphasis",
-        "mark",
-        "phoneme",
-        "prosody",
-        "say-as",
-        "sub",
-        "voice",
-        "p",
-        "s",
-        "paragraph",
-        "sentence",
-    ]
-)
-"""Elements that are said; all but ``prompt`` are a prompt even without one around (4.1.2)."""
 SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
 SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent

@@ -48,8 +48,8 @@ from prima.voicexml.content import ITEMS
 from prima.voicexml.cues import break_ms
 from prima.voicexml.document import Page
 from prima.voicexml.events import HANDLERS, handler_names, handler_number
-from prima.voicexml.prompts import SILENT, SPOKEN
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.prompts import SILENT
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data", "script")

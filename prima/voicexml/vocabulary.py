@@ -111,6 +111,17 @@ def _elements() -> list[Element]:
 VOICEXML = Vocabulary(NAMESPACE, "voicexml", "vxml", _elements())
 """VoiceXML's elements; grammars are checked by :mod:`prima.grammar`."""
 
+SPOKEN = frozenset(BLOCKS.split()) - {"said-foreach"} | {"prompt"}
+"""Elements that are said; all but ``prompt`` are a prompt even without one around (4.1.2)."""
+WORDED = frozenset(tag for tag in SPOKEN - {"prompt", "enumerate"} if VOICEXML.elements[tag].text)
+"""Elements of speech markup whose text is a part of that around them."""
+HOLDING = frozenset(
+    key
+    for key in (SPOKEN | {"said-foreach"}) - {"enumerate"}
+    if "break" in VOICEXML.elements[key].children
+)
+"""Elements besides executable content in which a Command of the robot may stand."""
+
 ALTERNATIVES = {
     "goto": ("next expr nextitem expritem !",),
     "submit": ("next expr !",),

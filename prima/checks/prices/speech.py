@@ -10,8 +10,8 @@ from prima.messages import Cue
 from prima.sim.voice import timeline
 from prima.voicexml.cues import break_ms, fold, milliseconds, rate_of
 from prima.voicexml.inputs import words_of
-from prima.voicexml.prompts import APART, SENTENCE, SILENT, SPOKEN, UNKNOWN_MS
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.prompts import APART, SENTENCE, SILENT, UNKNOWN_MS
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 UNKNOWN_LETTERS = 20
 """How much an expression is taken to say."""

@@ -30,10 +30,9 @@ from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.events import HANDLERS, WORDS, handler_names
-from prima.voicexml.prompts import SPOKEN
 from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import Sketch
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 SPEAKER = frozenset({"speaker"})
 ASKING = ("field", "initial", "record", "menu")
