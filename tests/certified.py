@@ -9,10 +9,13 @@ from prima.certificate import Certificate, Delay, Starving
 from prima.interpreter.selection import takes
 from prima.messages import Record
 from prima.sim.voice import duration
+from prima.transcript.criteria import observe
 
 SLACK = 0.002
 """How far (s) times may be off: records have them rounded."""
 OVER = ("end", "fail", "cancel")
+OWN = ("end", "cancel", "noinput", "nomatch", "late")
+"""Events that an application makes for itself: certificates count none of them."""
 
 
 @dataclass
@@ -121,6 +124,7 @@ def faults(certificate: Certificate, records: list[Record], rates: dict[str, flo
     return [
         *_devices(certificate, run),
         *_waits(certificate, run, rates),
+        *_responses(certificate, run, rates),
         *_starved(certificate, run, rates),
     ]
 
@@ -145,7 +149,8 @@ def _waits(certificate: Certificate, run: Watched, rates: dict[str, float]) -> l
             until = spell.over
         others = [one for one in run.of(certificate.fa) if one is not spell]
         waited = until - asked - run.ran(others, asked, until)
-        allowed = _allowed(certificate, run, event, (asked, until), rates)
+        told = [one for one in certificate.delays if takes(one.event, event)]
+        allowed = _allowed(told, certificate, run, (asked, until), rates)
         if allowed is not None and waited > allowed + SLACK:
             found.append(
                 f"{spell.name} about {event} at {asked} waits {waited:.3f} > {allowed:.3f}"
@@ -153,15 +158,34 @@ def _waits(certificate: Certificate, run: Watched, rates: dict[str, float]) -> l
     return found
 
 
+def _responses(certificate: Certificate, run: Watched, rates: dict[str, float]) -> list[str]:
+    """First words and movements towards the user that come later than they may."""
+    found = []
+    for delay in observe(run.records).delays:
+        if delay.app != certificate.fa or delay.response is None:
+            continue
+        asked, _ = run.events[delay.serial]
+        until = asked + delay.response
+        waited = delay.response - run.ran(run.of(certificate.fa), asked, until)
+        told = [one.response for one in certificate.delays if takes(one.event, delay.event)]
+        if told and not any(told):
+            found.append(f"{delay.event} at {asked} is not said to have a response")
+        allowed = _allowed([one for one in told if one], certificate, run, (asked, until), rates)
+        if allowed is not None and waited > allowed + SLACK:
+            found.append(
+                f"the response to {delay.event} at {asked} waits {waited:.3f} > {allowed:.3f}"
+            )
+    return found
+
+
 def _allowed(
+    told: list[Delay],
     certificate: Certificate,
     run: Watched,
-    event: str,
     stretch: tuple[float, float],
     rates: dict[str, float],
 ) -> float | None:
     """How long (s) a reaction may wait; None where the certificate gives no bound."""
-    told = [one for one in certificate.delays if takes(one.event, event)]
     if not told:
         return 0.0
     if not all(one.known for one in told):
@@ -182,11 +206,16 @@ def _bound(
         for spell in run.of(certificate.ea)
         if spell.cause in run.events and since <= spell.asked <= until
     }
+    causes = {one for one in causes if not _is_own(run.events[one][1])}
     further = len(causes) + (_unfinished(certificate, run, since) if delay.whole else 0)
     if delay.each is None and further:
         return float("inf")
     count, speaks = run.spoken(since, until, rates) if delay.listens else (0, 0.0)
     return (delay.lasts * (1 + count) + (delay.each or 0) * further) / 1000 + speaks
+
+
+def _is_own(event: str) -> bool:
+    return any(takes(one, event) for one in OWN)
 
 
 def _unfinished(certificate: Certificate, run: Watched, since: float) -> int:

@@ -15,7 +15,10 @@ VOICE = (
     '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1"'
     ' xml:lang="en">'
 )
-TIMER = '<on event="late">{}</on>'
+TIMER = '<on event="late"{}>{}</on>'
+REACTIVE = ' reactive="true"'
+OWN = ("end.speak", "end.gesture", "end.move-head", "end.turn", "end")
+"""Events that an application makes for itself."""
 EVENTS = ("touch", "touch.head", "message", "bell", "human.found", "human.lost")
 WORDS = ("one", "two three", "four, five. Six", "a longer sentence about nothing at all", "eh")
 MOTIONS = (
@@ -35,6 +38,8 @@ SHARED = (
     ('<move-head pan="5"/>', ('<move-head pan="{angle}"/>', '<gesture name="bow"/>')),
 )
 """What one application does, and what of the other makes it wait."""
+BEFORE = ("", "", "", '<point-by-hand angle="20"/>', '<pause time="10ms"/>')
+"""What the first one may do before that, for nothing of the other."""
 TOUCH = '<touch sensor="head"/>'
 MESSAGE = '<message from="A">Hello.</message>'
 BELL = '<event name="bell"/>'
@@ -116,7 +121,9 @@ class _Dialogue(_Author):
         body = "".join(self.form(name) for name in self.forms)
         back = '<on event="touch"><return/></on>' if self.maybe(0.5) else ""
         body += f'<form id="sub"><block>{self.act()}<return/></block>{back}</form>'
-        body += self.handlers(0.2) + TIMER.format(self.content())
+        body += self.handlers(0.2) + TIMER.format(
+            REACTIVE if self.maybe(0.2) else "", self.content()
+        )
         return f"{HEAD.format(self.kind, self.name)}{body}</prima>"
 
     def form(self, name: str) -> str:
@@ -181,7 +188,11 @@ class _Dialogue(_Author):
 
     def handlers(self, chance: float) -> str:
         found = [name for name in EVENTS if self.maybe(chance if self.kind == "fa" else chance / 3)]
-        return "".join(f'<on event="{name}">{self.content()}</on>' for name in found)
+        made = "".join(f'<on event="{name}">{self.content()}</on>' for name in found)
+        if self.maybe(0.1):
+            own = self.random.choice(OWN)
+            made += f'<on event="{own}"{REACTIVE}>{self.content()}</on>'
+        return made
 
 
 class _Voice(_Author):
@@ -284,7 +295,8 @@ def _slowest(seed: int, random: Random) -> Pair:
         for _ in range(random.choice((0, 2, 6))):
             doings.append((begun + random.randint(50, 1200), random.choice((TOUCH, MESSAGE))))
         whens += [f'<when at="{at}ms">{doing}</when>' for at, doing in doings]
-    fa = f'{HEAD.format("fa", "mine")}<form id="f"><on event="{event}">{mine}</on></form></prima>'
+    before = random.choice(BEFORE)
+    fa = f'{HEAD.format("fa", "mine")}<form id="f"><on event="{event}">{before}{mine}</on></form></prima>'
     ea = f'{HEAD.format("ea", "theirs")}<form id="f">{handlers}</form></prima>'
     return Pair(seed, fa, ea, VOICE, _staged(whens, PLACES[0]))
 

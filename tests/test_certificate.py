@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -524,6 +525,177 @@ def test_other_events_of_the_ea_make_the_wait_longer(tmp_path: Path) -> None:
     assert delay.each == lasting("A message has come.")
 
 
+ROUNDS = {
+    "its own end": "<block><speak>Hello.</speak></block>"
+    '<on event="end.speak" reactive="true"><speak>I go on and on.</speak></on>',
+    "two ends in turn": "<block><speak>Hello.</speak></block>"
+    '<on event="end.speak" reactive="true"><turn-and-speak toward="door">So.</turn-and-speak></on>'
+    '<on event="end.turn-and-speak" reactive="true"><speak>And so on.</speak></on>',
+    "what goes on beside": '<block><gesture name="nod"/></block>'
+    '<on event="end.gesture"><move-head pan="3"/><gesture name="nod"/></on>'
+    '<on event="end.move-head" reactive="true"><speak>A sentence longer than a nod.</speak></on>',
+    "a send": '<block><send event="x"/></block><on event="x" reactive="true">'
+    '<send event="x" delay="900ms"/><speak>A sentence that is longer.</speak></on>',
+}
+"""Reactions of an EA to its own events that come again and again, without a turn for others."""
+
+
+@pytest.mark.parametrize("body", ROUNDS.values(), ids=ROUNDS)
+def test_reactions_to_own_events_that_go_round_have_no_bound(tmp_path: Path, body: str) -> None:
+    found = certified(tmp_path, f'<form id="f">{body}</form>')
+    (delay,) = found.delays
+    assert delay.endless and not delay.known
+    data = certificate_data(found)["delays"][0]
+    assert (data["known"], data["lasts"]) == (False, None)
+    assert data["without_end"][0]["place"].startswith(str(tmp_path / "theirs.xml:1:"))
+    assert data["response"]["without_end"] == data["without_end"]
+    text = format_certificate(found)
+    assert "touch: without a bound, for the" in text and "more for each" not in text
+    assert "(K1, K2)" not in text
+    at = '<when at="4s"><touch sensor="head"/></when>'
+    records = run(tmp_path, "mine.xml", "theirs.xml", at)
+    assert "Yes?" not in [one.get("text") for one in records if one["phase"] == "start"]
+
+
+def test_the_reason_names_the_loop_and_its_line(tmp_path: Path) -> None:
+    found = certified(tmp_path, f'\n<form id="f">\n{ROUNDS["its own end"]}</form>')
+    line = "without an end: what is done about end.speak leads to it again, at"
+    assert f"{line} {tmp_path}/theirs.xml:3:" in format_certificate(found)
+
+
+def test_a_watch_that_the_robot_itself_makes_true_has_no_bound(tmp_path: Path) -> None:
+    watch = '<watch name="still" when="{}"/><form id="f"><on event="still"><turn angle="20"/></on></form>'
+    own = FA.replace("<speak>", '<turn angle="40"/><speak>')
+    (delay,) = certified(tmp_path, watch.format("!sensor.moving"), own).delays
+    assert [gap.reason for gap in delay.endless] == ["what is done about still leads to it again"]
+    (delay,) = certified(tmp_path, watch.format("sensor.battery &lt; 3"), own).delays
+    assert delay.known and delay.each == delay.lasts
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<block><speak>Hello.</speak></block><on event="end.speak" reactive="true">'
+        '<turn-and-speak toward="door">Once.</turn-and-speak></on>',
+        '<block><send event="x" delay="99s"/></block><on event="x" reactive="true">'
+        '<send event="x" delay="99s"/><speak>It is time.</speak></on>',
+        '<block><send event="x"/></block><on event="x" reactive="true">'
+        '<speak>I let others in.</speak><send event="x"/></on>',
+        '<block><speak>Hello.<on event="end" reactive="true"><speak>Once.</speak></on></speak></block>',
+    ],
+)
+def test_how_often_own_events_come_is_not_known(tmp_path: Path, body: str) -> None:
+    (delay,) = certified(tmp_path, f'<form id="f">{body}</form>').delays
+    assert not delay.endless and not delay.known and delay.each == 0
+    assert [gap.reason[:24] for gap in delay.unknown] == ["how often its own event "]
+
+
+def test_own_events_count_only_for_the_devices_of_their_reactions(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><block><speak>Hello.</speak></block>'
+        '<on event="end.speak"><speak>I go on.</speak></on>'
+        '<on event="end.gesture" reactive="true"><gesture name="nod"/></on></form>'
+    )
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.known, "what is no reaction gives way, and a nod needs no speaker"
+
+
+def test_own_events_are_nobody_elses(tmp_path: Path) -> None:
+    own = '<form id="s"><on event="end.gesture" reactive="true"><speak>Yes?</speak></on></form>'
+    body = '<form id="f"><on event="end.gesture" reactive="true"><gesture name="nod"/></on></form>'
+    assert [one.after for one in certified(tmp_path, body, own).delays] == []
+
+
+LATE = FA.replace("<speak>", '<move-head tilt="10"/><speak>')
+"""An FA whose first Command is no response."""
+ASKS = (
+    '<form id="s"><field name="q" type="boolean"><prompt timeout="55s">Tell me?</prompt>'
+    "<noinput><exit/></noinput><filled><exit/></filled></field></form>"
+)
+
+
+def test_the_first_word_may_come_long_after_the_first_command(tmp_path: Path) -> None:
+    found = certified(tmp_path, ASKS, LATE)
+    (delay,) = found.delays
+    assert (delay.lasts, delay.known, delay.place) == (0, True, None)
+    assert delay.response is not None and delay.response.known
+    assert delay.response.lasts == lasting("Tell me?") + 55_000
+    text = format_certificate(found)
+    assert "touch: not at all\n    first word or movement towards the user: up to 55." in text
+    assert "never" not in text
+    data = certificate_data(found)["delays"][0]
+    assert (data["lasts"], data["response"]["lasts"]) == (0, delay.response.lasts)
+    records = run(
+        tmp_path, "mine.xml", "theirs.xml", '<when at="200ms"><touch sensor="head"/></when>'
+    )
+    assert 55 < waited(records) <= delay.response.lasts / 1000
+    assert faults(found, records, PROFILE.voices) == []
+    delay.response = replace(delay, response=None)
+    assert "the response to touch.head" in faults(found, records, PROFILE.voices)[0]
+
+
+def test_where_response_and_first_command_are_one_they_are_told_once(tmp_path: Path) -> None:
+    found = certified(tmp_path, ASKS)
+    (delay,) = found.delays
+    assert delay.response == replace(delay, response=None)
+    assert "first word" not in format_certificate(found)
+    data = certificate_data(found)["delays"][0]
+    assert data["response"]["lasts"] == data["lasts"]
+    nods = FA.replace("<speak>Yes?</speak>", '<gesture name="nod"/>')
+    (delay,) = certified(tmp_path, block('<gesture name="bow"/>'), nods).delays
+    assert delay.response is None
+
+
+@pytest.mark.parametrize(
+    ("content", "most"),
+    [
+        ("<par><gesture name='bow'/><speak>Yes?</speak></par>", 1),
+        ('<iu><gesture name="bow"/><speak>Yes?</speak></iu>', 1),
+        ('<move-head pan="3"/><if cond="a"><gesture name="nod"/></if><speak>Yes?</speak>', 2),
+        ('<move-head pan="3"/><goto next="#g"/>', 2),
+        ('<move-head pan="3"><on event="end"><speak>Yes?</speak></on></move-head>', 1),
+        ('<move-head pan="3"/><face-human/><speak>Yes?</speak>', 2),
+    ],
+)
+def test_a_response_is_found_on_all_ways(tmp_path: Path, content: str, most: int) -> None:
+    own = (
+        f'<var name="a" expr="true"/><form id="s"><on event="touch">{content}</on></form>'
+        '<form id="g"><block><gesture name="nod"/><speak>Yes?</speak></block></form>'
+    )
+    document, _ = read_application("a.xml", (HEAD.format("fa", "a") + own + "</prima>").encode())
+    (reaction,) = outline(document, PROFILE).reactions
+    assert reaction.responds
+    others = [one for one in reaction.responds if "speaker" not in one.devices]
+    assert len(others) <= most
+
+
+def test_what_own_delayed_events_say_later_is_not_known(tmp_path: Path) -> None:
+    own = (
+        '<form id="s"><on event="touch"><gesture name="nod"/><send event="x" delay="9s"/></on>'
+        '<on event="x"><speak>Yes?</speak></on></form>'
+    )
+    (delay,) = certified(tmp_path, ASKS, own).delays
+    assert delay.known and delay.response is not None
+    assert [gap.reason for gap in delay.response.unknown] == [
+        "its own event x makes it go on later"
+    ]
+
+
+def test_an_event_asks_the_question_of_a_voicexml_document_anew(tmp_path: Path) -> None:
+    field = '<field name="a" type="boolean"><prompt timeout="9s">Well?</prompt></field>'
+    catch = "<catch event='touch'>That was me, and I am a robot.</catch>"
+    own = FA.replace("touch", "bell")
+    found, fa, ea = voiced(tmp_path, f"<form>{field}</form>{catch}", own)
+    (delay,) = found.delays
+    assert delay.each is not None and delay.each > 9000
+    touches = "".join(f'<when at="{at}s"><touch sensor="head"/></when>' for at in (8, 16, 24))
+    bell = '<when at="2s"><event name="bell"/></when>'
+    records = run(tmp_path, fa, ea, bell + touches)
+    assert faults(found, records, PROFILE.voices) == []
+    without_more_for_each_event(found)
+    assert faults(found, records, PROFILE.voices) != []
+
+
 def test_what_drives_waits_for_whole_conversations(tmp_path: Path) -> None:
     own = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
     field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
@@ -604,7 +776,7 @@ def test_certificates_that_are_too_good_are_found_out(seed: int) -> None:
 def broken_by(change: Callable[[Certificate], None]) -> int:
     """How many of some pairs exceed their certificates once those are changed."""
     broken = 0
-    for seed in range(0, 40, 4):
+    for seed in range(0, 60, 4):
         with TemporaryDirectory() as folder:
             fa, ea, scenario = pair(seed).write(Path(folder))
             (found,) = certificates([str(fa)], [str(ea)])
@@ -622,12 +794,19 @@ def without_more_for_each_event(found: Certificate) -> None:
         delay.each = 0
 
 
+def without_the_time_of_responses(found: Certificate) -> None:
+    for delay in found.delays:
+        delay.response = replace(delay, response=None)
+
+
 def test_the_slowest_runs_need_all_that_their_certificates_allow(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Neither what further events add to a wait can go, nor the time in which turns slow down."""
+    """None of these can go: what further events add to a wait, the time of responses, and the
+    time in which turns slow down."""
     assert not broken_by(as_it_is)
     assert broken_by(without_more_for_each_event)
+    assert broken_by(without_the_time_of_responses)
     monkeypatch.setattr(commands, "SETTLING_MS", 0)
     assert broken_by(as_it_is)
 

@@ -672,6 +672,26 @@ def test_a_unit_around_items_owns_its_devices_from_question_to_the_last_word() -
     assert bench.saying() == ["Bye."]
 
 
+ANSWER = (
+    '<var name="n"/><form id="a"><block><speak>The answer is</speak><move-head pan="30"/>{}'
+    "<speak>forty two.</speak><exit/></block></form>"
+)
+TRAINS = '<form id="a"><on event="touch" reactive="false"><speak>I like trains.</speak></on></form>'
+
+
+@pytest.mark.parametrize(
+    ("between", "said"),
+    [("", ["move-head"]), ('<assign name="n" expr="42"/>', ["I like trains.", "move-head"])],
+)
+def test_f6_what_is_not_requested_yet_keeps_no_topic_together(
+    between: str, said: list[str]
+) -> None:
+    bench = Bench(document(ANSWER.format(between), name="answer"), document(TRAINS, name="other"))
+    bench.event("touch")
+    bench.finish("The answer is")
+    assert sorted(bench.saying()) == said
+
+
 REACHING = """<form id="a">{form}
   <iu name="u">{unit}
     <field name="x" type="boolean"><prompt>May I?</prompt>{field}</field>
@@ -693,7 +713,7 @@ def reaching(**parts: str) -> str:
     [
         {"field": '<filled><throw event="x.y"/></filled>', "document": TURNS.format("x")},
         {"block": '<throw event="x"/>', "form": TURNS.format("x")},
-        {"block": "<throw event-expr=\"'x'\"/>", "document": TURNS.format("z")},
+        {"block": "<throw event-expr='x'/>", "document": TURNS.format("z")},
         {"form": TURNS.format("noinput")},
         {"field": TURNS.format("touch")},
         {"unit": TURNS.format("touch")},
@@ -740,6 +760,44 @@ def test_u5_a_unit_owns_nothing_for_handlers_that_it_cannot_reach(parts: dict[st
     made, _ = read(reaching(**parts))
     (unit,) = [unit for _, unit in units_of(made)]
     assert unit.devices == {"speaker", "speech-recognition"}
+
+
+CHOOSES = '<filled><throw event-expr="{}"/></filled>'
+GIVEN = '<var name="e" expr="old ? \'y\' : \'z\'"/><var name="old" expr="true"/>'
+
+
+@pytest.mark.parametrize(
+    ("code", "document", "reached"),
+    [
+        ("x ? 'y' : 'z'", "", False),
+        ("x ? 'x' : 'z'", "", True),
+        ("'x' + x", "", True),
+        ("x", "", True),
+        ("e", GIVEN, False),
+        ("e", GIVEN.replace("'z'", "'x'"), True),
+        ("e", GIVEN.replace("'z'", "old"), True),
+        ("e", GIVEN + "<script>e = 'x';</script>", True),
+        ("e", GIVEN + TURNS.format("touch").replace("<turn", "<log expr=\"e = 'x'\"/><turn"), True),
+        ("e", GIVEN + TURNS.format("a").replace("<turn", "<assign name='e' expr=\"'x'\"/><turn"), True),
+        ("e", GIVEN + TURNS.format("a").replace("<turn", "<assign name='e' expr=\"'w'\"/><turn"), False),
+    ],
+)  # fmt: skip
+def test_u5_an_expression_reaches_the_events_that_it_may_name(
+    code: str, document: str, reached: bool
+) -> None:
+    parts = {"field": CHOOSES.format(code), "document": document + GOES.format("x")}
+    _, problems = read(reaching(**parts))
+    codes = [one.code for one in problems if one.severity == "error"]
+    assert codes == (["not-in-unit"] if reached else [])
+
+
+def test_u5_an_expression_that_may_name_any_event_is_told() -> None:
+    parts = {"field": CHOOSES.format("x"), "document": GOES.format("z")}
+    _, problems = read(reaching(**parts))
+    (problem,) = [one for one in problems if one.severity == "error"]
+    told = 'reaches it by the event "z", which the expression "x" may name; it cannot stand'
+    assert told in problem.message
+    assert "as a text, x ? 'this' : 'that', or leave the <iu> with <goto> first." in problem.remedy
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,52 @@ def test_a_problem_says_what_to_write_instead(body: str, code: str, remedy: str)
     assert remedy in found(body, code).remedy
 
 
+ROUND = '<form id="a"><block><speak>x</speak></block>{}<on event="touch"><exit/></on></form>'
+
+
+@pytest.mark.parametrize(
+    ("handlers", "event"),
+    [
+        ('<on event="end.speak" reactive="true"><speak>y</speak></on>', "end.speak"),
+        ('<on event="end" reactive="true"><log>z</log><speak>y</speak><gesture name="nod"/></on>', "end"),
+        (
+            '<on event="end.speak" reactive="true"><gesture name="nod"/></on>'
+            '<on event="end.gesture" reactive="true"><speak>y</speak></on>',
+            "end.speak",
+        ),
+        (
+            '<on event="end.speak" reactive="true"><throw event="z"/></on>'
+            '<on event="z" reactive="true"><speak>y</speak></on>',
+            "end.speak",
+        ),
+    ],
+)  # fmt: skip
+def test_a_reaction_to_an_own_end_that_leads_to_itself_is_endless(
+    handlers: str, event: str
+) -> None:
+    problem = found(ROUND.format(handlers), "endless")
+    assert problem.message.startswith(f"This reaction to {event} leads to itself again")
+    assert "<pause" in problem.remedy and 'reactive="true"' in problem.remedy
+
+
+@pytest.mark.parametrize(
+    "handlers",
+    [
+        '<on event="end.speak"><speak>y</speak></on>',
+        '<on event="end.speak" reactive="true"><pause time="9s"/><speak>y</speak></on>',
+        '<on event="end.speak" reactive="true"><gesture name="nod"/><speak>y</speak></on>',
+        '<on event="end.speak" reactive="true"><gesture name="nod"/></on>',
+        '<on event="end.speak" reactive="true"><exit/></on>',
+        '<on event="end.speak" reactive="true" cond="session.time &lt; 9"><speak>y</speak></on>',
+        '<on event="end.speak" reactive="true"><if cond="session.time &lt; 9"><speak>y</speak></if></on>',
+        '<on event="end.speak" reactive="true"><goto next="#b"/></on></form>'
+        '<form id="b"><field name="q" type="boolean"><prompt>q</prompt></field>',
+    ],
+)
+def test_a_reaction_to_an_own_end_that_lets_others_in_is_not_endless(handlers: str) -> None:
+    assert [one for one in read(ROUND.format(handlers), "fa")[1] if one.code == "endless"] == []
+
+
 @pytest.mark.parametrize(
     ("body", "code"),
     [

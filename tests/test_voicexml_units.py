@@ -454,7 +454,7 @@ def devices_of(text: str) -> set[str]:
     [
         {"field": '<filled><throw event="x.y"/></filled>', "outer": TURNS.format("x")},
         {"content": '<throw event="x"/>', "form": TURNS.format("x")},
-        {"content": "<throw eventexpr=\"'x'\"/>", "outer": TURNS.format("z")},
+        {"content": "<throw eventexpr='x'/>", "outer": TURNS.format("z")},
         {"content": '<if cond="x"><else/><throw event="x"/></if>', "form": TURNS.format("x")},
         {"form": TURNS.format("noinput")},
         {"form": '<noinput count="3"><p:turn angle="9"/></noinput>'},

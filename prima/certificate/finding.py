@@ -27,7 +27,9 @@ class Delay:
     listens: bool = False
     """Whether the user may speak in it: what they say comes on top."""
     after: list[Place] = field(default_factory=list)
-    """What it waits for as a whole: the other's reactions to the same event, or all that it does."""
+    """The other's reactions to the same event, for which it waits as a whole (F2)."""
+    everything: bool = False
+    """Whether it waits for all that the other does in one go, as what drives may (K1, K2)."""
     each: int | None = 0
     """How much longer (ms) for each other event that the other reacts to meanwhile; None where
     that has no bound."""
@@ -36,6 +38,8 @@ class Delay:
     event whose reaction the other has begun before and not ended."""
     unknown: list[Gap] = field(default_factory=list)
     endless: list[Gap] = field(default_factory=list)
+    response: Delay | None = None
+    """How long its first word or movement towards the user may wait; None where it has none."""
 
     @property
     def known(self) -> bool:
@@ -79,32 +83,123 @@ def delays(own: Outline, theirs: Outline) -> list[Delay]:
 
 
 def _delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
+    """How long the first Commands about an event may wait, and its response; None for not at all."""
+    first = _first_delay(event, mine, theirs)
+    firsts = [price for one in mine for price in one.firsts]
+    until = [price for one in mine for price in one.responds]
+    found = first or Delay(event, (), 0, "", None)
+    if {id(one.node) for one in until} <= {id(one.node) for one in firsts}:
+        found.response = replace(found) if until else None
+        return first
+    found.response = _response(found, firsts, until, theirs)
+    found.response.unknown += [gap for one in mine for gap in one.later]
+    return found if first or found.response != replace(found, response=None) else None
+
+
+def _first_delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
     firsts = [price for one in mine for price in one.firsts]
     needed = devices_of(firsts)
-    fitting = [part for part in theirs.parts if part.devices & needed]
-    longest = worst(fitting, needed)
-    same = [one for one in theirs.reactions if any(related(each, one) for each in mine)]
+    foreign = _foreign(theirs)
+    same = [one for one in foreign if any(related(each, one) for each in mine)]
     whole = _whole(firsts, theirs, same)
-    if longest is None and whole is None and not theirs.gaps:
+    if not theirs.gaps and whole is None and worst(theirs.parts, needed) is None:
         return None
     delay = Delay(event, (), 0, "", None, unknown=list(theirs.gaps))
-    if longest is not None:
-        delay.devices = tuple(sorted(longest.devices & needed))
-        delay.lasts, delay.what, delay.place = longest.lasts, longest.what, longest.place
-        delay.listens = any(part.listens for part in fitting)
-        delay.unknown += [Gap(part.place, part.unknown) for part in fitting if part.unknown]
-    delay.each = max((_first(one, needed) for one in theirs.reactions), default=0)
+    _add_longest(delay, theirs, needed)
+    delay.each = max((_first(one, needed) for one in foreign), default=0)
+    _add_own(delay, theirs, needed)
+    delay.everything = whole is not None and _drives(firsts, theirs)
     if whole is not None:
         delay.after = [one.node.place for one in same]
-        _wait_for_all(delay, whole, theirs, same)
+        _wait_for_all(delay, whole, theirs)
+    return _once(delay)
+
+
+def _response(first: Delay, firsts: list[Price], until: list[Price], theirs: Outline) -> Delay:
+    """How long the first word or movement towards the user may wait, behind other Commands.
+
+    The reaction has the floor by then (F1): what the other has begun before goes to its end, and
+    its reactions to further events come in with all that follows from them (F2).
+    """
+    needed = devices_of(until)
+    delay = replace(first, unknown=list(first.unknown), endless=list(first.endless))
+    delay.lasts = 0
+    _add_longest(delay, theirs, needed)
+    delay.lasts = max(delay.lasts, first.lasts + _begun_meanwhile(first, firsts, needed, theirs))
+    if _drives(until, theirs):
+        delay.everything = True
+        _wait_for_all(delay, busy_at_all(theirs), theirs)
+    _add_own(delay, theirs, None)
+    _add_further(delay, theirs)
+    return _once(delay)
+
+
+def _begun_meanwhile(
+    first: Delay, firsts: list[Price], needed: frozenset[str], theirs: Outline
+) -> int:
+    """The longest part of the other that may begin while a reaction waits for its first Command.
+
+    The reaction holds back the devices of that (S3), unless the other has the floor.
+    """
+    fitting = [
+        part
+        for part in theirs.parts
+        if first.whole or not all(part.devices & one.devices for one in firsts)
+    ]
+    longest = worst(fitting, needed)
+    return longest.lasts if longest is not None else 0
+
+
+def _once(delay: Delay) -> Delay:
+    """A delay whose reasons are told once each."""
     delay.unknown = list(dict.fromkeys(delay.unknown))
     delay.endless = list(dict.fromkeys(delay.endless))
     return delay
 
 
+def _foreign(theirs: Outline) -> list[Reaction]:
+    """The reactions of the other to events that it does not make for itself."""
+    return [one for one in theirs.reactions if one.often is None]
+
+
+def _add_longest(delay: Delay, theirs: Outline, needed: frozenset[str]) -> None:
+    """The longest part of the other on devices, which goes to its end (U1)."""
+    fitting = [part for part in theirs.parts if part.devices & needed]
+    longest = worst(fitting, needed)
+    if longest is None:
+        return
+    delay.devices = tuple(sorted(longest.devices & needed))
+    delay.what, delay.place = longest.what, longest.place
+    delay.lasts += longest.lasts
+    delay.listens = delay.listens or any(part.listens for part in fitting)
+    delay.unknown += [Gap(part.place, part.unknown) for part in fitting if part.unknown]
+
+
+def _add_own(delay: Delay, theirs: Outline, needed: frozenset[str] | None) -> None:
+    """Reactions of the other to events that it makes for itself: each goes first (S2b).
+
+    Those count that begin on some devices; without these, all, as each may take the floor.
+    """
+    for one in theirs.reactions:
+        if needed is not None and not devices_of(one.firsts) & needed:
+            continue
+        delay.endless += [one.made] if one.made else []
+        if one.often is None:
+            continue
+        again = [Gap(loop.place, loop.what) for loop in loops(theirs) if _raises(loop, one, theirs)]
+        delay.endless += again if not one.made else []
+        delay.unknown += [one.often] if not again and not one.made else []
+
+
+def _raises(loop: Loop, reaction: Reaction, theirs: Outline) -> bool:
+    """Whether what goes on without an end makes the event of a reaction again and again."""
+    raised = {name for state in loop.states for name in theirs.states[state].raises}
+    return any(takes(event, name) for event in reaction.events for name in raised)
+
+
 def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy | None:
     """What of the other is waited for as a whole (F2, K1, K2); None where nothing is."""
-    if any(one.leaves for one in firsts) and any(not one.leaves for one in theirs.parts):
+    if _drives(firsts, theirs):
         return busy_at_all(theirs)
     told = [one for one in busy_after_each(theirs, same) if one.lasts]
     if not told:
@@ -118,19 +213,29 @@ def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy |
     )
 
 
+def _drives(mine: list[Price], theirs: Outline) -> bool:
+    """Whether something leaves the user, which the other may keep it from (K1, K2)."""
+    return any(one.leaves for one in mine) and any(not one.leaves for one in theirs.parts)
+
+
 def _doings(theirs: Outline) -> Iterable[State]:
     does = [one.does for one in theirs.reactions]
     return [*theirs.states.values(), *does, *theirs.wakes]
 
 
-def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline, same: list[Reaction]) -> None:
+def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline) -> None:
     """All that is done in one go, and all that further events bring."""
-    delay.whole = True
     delay.lasts += whole.lasts
     delay.unknown += whole.unknown
     delay.endless += whole.endless
     delay.listens = delay.listens or any(part.listens for part in theirs.parts)
-    others = busy_after_each(theirs, theirs.reactions)
+    _add_further(delay, theirs)
+
+
+def _add_further(delay: Delay, theirs: Outline) -> None:
+    """All that the other does about each further event, and each that it has not done with."""
+    delay.whole = True
+    others = busy_after_each(theirs, _foreign(theirs))
     delay.each = max((one.lasts for one in others), default=0)
     if any(one.endless or one.unknown for one in others):
         delay.each = None

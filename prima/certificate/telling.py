@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from prima.certificate.finding import Delay, Starving
@@ -12,6 +13,7 @@ from prima.language.commands import PATIENCE_MS
 if TYPE_CHECKING:
     from prima.certificate import Certificate
 
+RESPONSE = "first word or movement towards the user"
 MOST_REASONS = 5
 """Reasons of one kind that are told; the data have all of them."""
 
@@ -57,23 +59,35 @@ def _delays(one: Certificate) -> list[str]:
 
 
 def _delay(delay: Delay, one: Certificate) -> list[str]:
-    lines = []
-    if delay.place is not None:
-        lines.append(f"for the {delay.what} at {delay.place}")
-    if delay.after:
-        places = " and ".join(map(str, delay.after))
-        lines.append(f"for what {one.ea} does about the same event at {places} (F2)")
-    elif delay.endless or not delay.place:
-        lines.append(f"for all that {one.ea} does (K1, K2)")
-    first = ", and ".join(lines)
-    first = f"{_bound(delay)}, {first}"
+    """How long the first Command waits, and the response where that is another time."""
+    response = delay.response
+    found = _wait(delay, one)
+    if response is None or response == replace(delay, response=None):
+        return found
+    first, *rest = _wait(response, one)
+    return [*found, f"    {RESPONSE}: {first}", *(f"  {line}" for line in rest)]
+
+
+def _wait(delay: Delay, one: Certificate) -> list[str]:
+    first = ", ".join([_bound(delay), *filter(None, [", and ".join(_causes(delay, one))])])
     if delay.listens:
         first += ", and while the user speaks"
     found = [first]
-    if delay.each is None or delay.each:
+    if not delay.endless and (delay.each is None or delay.each):
         found.append(f"    {_more(delay)} for each {_further(one.ea, delay)}")
     found += _reasons(delay.endless, "without an end", 4)
     return found + _reasons(delay.unknown, "not known", 4)
+
+
+def _causes(delay: Delay, one: Certificate) -> Iterable[str]:
+    """What of the other is waited for."""
+    if delay.place is not None:
+        yield f"for the {delay.what} at {delay.place}"
+    if delay.after:
+        places = " and ".join(map(str, delay.after))
+        yield f"for what {one.ea} does about the same event at {places} (F2)"
+    if delay.everything:
+        yield f"for all that {one.ea} does (K1, K2)"
 
 
 def _more(delay: Delay) -> str:
@@ -89,6 +103,8 @@ def _further(ea: str, delay: Delay) -> str:
 def _bound(delay: Delay) -> str:
     if delay.endless:
         return "without a bound"
+    if not delay.lasts and delay.known:
+        return "not at all"
     return _seconds(delay.lasts, delay.known)
 
 
@@ -153,8 +169,13 @@ def certificate_data(one: Certificate) -> dict[str, Any]:
 
 
 def _delay_data(delay: Delay) -> dict[str, Any]:
+    response = delay.response
+    found = {"event": delay.event, **_wait_data(delay)}
+    return {**found, "response": _wait_data(response) if response else None}
+
+
+def _wait_data(delay: Delay) -> dict[str, Any]:
     return {
-        "event": delay.event,
         "lasts": delay.lasts if delay.known else None,
         "at_least": delay.lasts,
         "known": delay.known,

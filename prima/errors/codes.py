@@ -83,7 +83,9 @@ CODES: dict[str, str] = {
     " robot. An EA runs on any robot.",
     "not-in-unit": "A unit is one piece that nothing breaks (rule U4). A Command that works in"
     " loops is many pieces, and one that leaves the user must be able to wait for them. Handlers that"
-    " a unit reaches by an event thrown in it, such as noinput, belong to it (rule U5).",
+    " a unit reaches by an event thrown in it, such as noinput, belong to it (rule U5). An expression"
+    " that names the event counts as the texts that it, or the variable that it is, may give; else as"
+    " any event.",
     "now-inside": "A Command wanted now cancels what the application does on its devices; inside a"
     " par, seq or iu it can only stand first.",
     "long-unit": "While a unit runs the robot reacts to nothing on its devices. Divide what it says"
@@ -111,7 +113,9 @@ CODES: dict[str, str] = {
     "idle-hint": "A hint that can never have an effect: hold-for without stream, or a stream held in a"
     " state that handles no event to wait for, or that asks for no Command.",
     "endless": "The Command goes on for ever, and the state handles no event that could end it, or forms go"
-    " round without waiting; another application's equal behaviours may starve (rule E4).",
+    " round without waiting; another application's equal behaviours may starve (rule E4). Or what is"
+    ' done about the end of a Command is a reaction (reactive="true") whose own end leads to it again:'
+    " the latest reaction goes first (rule S2b), so that others' reactions are never answered.",
     "no-noinput": "A question that nobody answers is asked again, as long as nothing handles noinput. The"
     " conversation stays open meanwhile, so that nobody else can drive the robot anywhere (rule K1).",
     "leaves-question": "The robot drives away from the user in the middle of a question, and then asks it"

@@ -48,6 +48,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import DEFAULTS, Events, handlers_of, silent_fields, takes
 from prima.interpreter.repeats import source_of, told_twice
+from prima.interpreter.rounds import endless_reactions
 from prima.interpreter.units import (
     Finder,
     Reached,
@@ -353,6 +354,7 @@ class Checker:
         self._expressions()
         self._commands()
         self._rounds()
+        self.problems += endless_reactions(self.document)
         self._leaving()
         self._silence()
         self.problems += Events(self.document, self.acts).problems()

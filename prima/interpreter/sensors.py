@@ -23,11 +23,12 @@ def hides_sensors(document: Document) -> bool:
         node.attributes.get("name", "").strip() in TAKEN for node in document.node.walk()
     ) or any(
         names.opaque or not TAKEN.isdisjoint(names.declared | names.written | names.changed)
-        for names in _names(document)
+        for names in names_in(document)
     )
 
 
-def _names(document: Document) -> Iterator[Names]:
+def names_in(document: Document) -> Iterator[Names]:
+    """The names in each piece of a document's code."""
     yield from (expression_names(expression.code) for expression in document.expressions)
     yield from (script_names(code) for code in _scripts(document))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from prima.errors import Problem
 from prima.interpreter.elements import (
@@ -16,6 +17,7 @@ from prima.interpreter.elements import (
     Block,
     CommandTemplate,
     Document,
+    Expression,
     Field,
     Filled,
     Form,
@@ -31,6 +33,7 @@ from prima.interpreter.elements import (
     pauses_in,
     run_commands,
 )
+from prima.interpreter.naming import events_named
 from prima.interpreter.selection import taking
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
@@ -57,6 +60,8 @@ class Reached:
     """Whether it is written inside of the unit."""
     event: str = ""
     """The event whose handler outside of the unit asks for it, if any does."""
+    code: str = ""
+    """The expression that may name that event, where only a run tells which one it names."""
 
 
 @dataclass(slots=True)
@@ -114,7 +119,7 @@ def unit_speaks(unit: Unit, lang: str) -> int:
         if isinstance(item, Field):
             total += sum(lasts(prompt.text, lang) for prompt in item.prompts[:1])
         elif isinstance(item, Block):
-            total += speak(Piece(item.content).commands, lang)
+            total += speak(commands_of(item.content), lang)
     return total
 
 
@@ -148,10 +153,16 @@ def unit_problem(
     message, remedy = f"<{prefix}{row.name}> {why}", f"Move it out of the {iu}."
     if unit is not None and not one.inside:
         by = f' by the event "{one.event}"' if one.event else ""
+        if one.code:
+            by += f', which the expression "{one.code}" may name'
         message += f", and the unit in line {unit.node.place.line} reaches it{by}"
         remedy = f"Leave the {iu} with <goto> first, and do this there."
     if one.event:
         remedy = f'Handle "{one.event}" in the {iu} as well, or leave the {iu} with <goto> first.'
+    if one.code:
+        remedy = (
+            f"Name the event as a text, x ? 'this' : 'that', or leave the {iu} with <goto> first."
+        )
     place = one.command.node.place
     return Problem(place, "error", "not-in-unit", f"{message}; it cannot stand in a unit.", remedy)
 
@@ -165,23 +176,37 @@ def now_inside(node: Node, prefix: str = "") -> Problem:
     return Problem(node.place, "error", "now-inside", message, "Put it first.")
 
 
+def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
+    """The Commands of executable content."""
+    runs = [act for act in all_acts(content) if isinstance(act, Run)]
+    return [command for run in runs for command in run_commands(run.steps)]
+
+
 class Piece:
     """Executable content of a unit or a handler: its Commands and what it throws."""
 
-    __slots__ = ("commands", "throws")
+    __slots__ = ("commands", "computed", "throws")
 
-    def __init__(self, content: Sequence[Act]) -> None:
+    def __init__(self, content: Sequence[Act], document: Document) -> None:
         acts = all_acts(content)
-        runs = [act for act in acts if isinstance(act, Run)]
-        self.commands = [command for run in runs for command in run_commands(run.steps)]
-        self.throws: set[str | None] = {
-            act.event if isinstance(act.event, str) else None
-            for act in acts
-            if isinstance(act, Throw)
-        }
-        """Names of events; None for one that an expression names."""
+        self.commands = commands_of(content)
+        self.throws: set[str] = set()
+        """Names of events."""
+        self.computed: set[str] = set()
+        """Expressions that name events, where only a run tells which."""
+        for act in acts:
+            if isinstance(act, Throw):
+                self._throw(act.event, document)
         for command in self.commands:
             self.throws |= failures(command)
+
+    def _throw(self, event: str | Expression, document: Document) -> None:
+        if isinstance(event, str):
+            self.throws.add(event)
+        elif (named := events_named(document, event.code)) is not None:
+            self.throws |= named
+        else:
+            self.computed.add(event.code)
 
 
 def failures(command: CommandTemplate) -> set[str]:
@@ -192,6 +217,15 @@ def failures(command: CommandTemplate) -> set[str]:
         devices |= {"speaker"}
     broken = {f"error.device.{device}" for device in devices}
     return broken | {"error.semantic", f"error.unsupported.{command.type}"}
+
+
+class _Raised(NamedTuple):
+    """An event in a unit, the first one on the way to it, and the expression that may name that."""
+
+    event: str | None
+    """None where only a run tells."""
+    first: str = ""
+    code: str = ""
 
 
 class Finder:
@@ -223,35 +257,46 @@ class Finder:
     def _visit(self, form: Form, unit: Unit, item: Item, found: dict[int, Reached]) -> None:
         """What may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
-        waiting: list[tuple[str | None, str]] = [(event, "") for event in self._thrown(item)]
-        for piece in (*map(Piece, _own(item)), *map(self._piece, inner)):
-            waiting += self._take_in(piece, True, "", found)
+        waiting = [_Raised(event) for event in self._thrown(item)]
+        for content in _own(item):
+            waiting += self._take_in(self._made(content), True, _Raised(""), found)
+        for handler in inner:
+            waiting += self._take_in(self._piece(handler), True, _Raised(""), found)
         for filled in _answered(form, item):
-            waiting += self._take_in(Piece(filled.content), False, "", found)
+            waiting += self._take_in(self._made(filled.content), False, _Raised(""), found)
         seen: set[str | None] = set()
         inside = set(map(id, inner))
         while waiting:
-            event, first = waiting.pop()
-            if event in seen:
+            one = waiting.pop()
+            if one.event in seen:
                 continue
-            seen.add(event)
-            for handler in self._takers(form, inner, event):
+            seen.add(one.event)
+            for handler in self._takers(form, inner, one.event):
                 if id(handler) not in inside:
                     inside.add(id(handler))
-                    told = first or event or handler.events[0]
-                    waiting += self._take_in(self._piece(handler), False, told, found)
+                    told = one.first or one.event or handler.events[0]
+                    by = _Raised(one.event, told, one.code)
+                    waiting += self._take_in(self._piece(handler), False, by, found)
 
     @staticmethod
     def _take_in(
-        piece: Piece, inside: bool, event: str, found: dict[int, Reached]
-    ) -> list[tuple[str | None, str]]:
+        piece: Piece, inside: bool, by: _Raised, found: dict[int, Reached]
+    ) -> list[_Raised]:
+        """Take in a piece of content, and what it throws in turn."""
         for command in piece.commands:
-            found.setdefault(id(command), Reached(command, inside, event))
-        return [(name, event) for name in sorted(piece.throws, key=str)]
+            found.setdefault(id(command), Reached(command, inside, by.first, by.code))
+        named = [_Raised(name, by.first, by.code) for name in sorted(piece.throws)]
+        return [
+            *(_Raised(None, by.first, by.code or code) for code in sorted(piece.computed)),
+            *named,
+        ]
+
+    def _made(self, content: Sequence[Act]) -> Piece:
+        return Piece(content, self._document)
 
     def _piece(self, handler: Handler) -> Piece:
         if id(handler) not in self._pieces:
-            self._pieces[id(handler)] = Piece(handler.content)
+            self._pieces[id(handler)] = self._made(handler.content)
         return self._pieces[id(handler)]
 
     def _takers(

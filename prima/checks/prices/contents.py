@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from prima.interpreter.elements import (
     Act,
     Block,
-    CommandTemplate,
     Document,
     Field,
     Form,
@@ -16,14 +15,13 @@ from prima.interpreter.elements import (
     Return,
     Run,
     SendOut,
-    StepTemplate,
     Subdialog,
     Throw,
     Unit,
     all_acts,
     all_items,
+    run_commands,
 )
-from prima.interpreter.events import takes
 
 
 def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
@@ -33,6 +31,14 @@ def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
         yield from ((form, one) for one in form.handlers)
         for item in all_items(form.items):
             yield from ((form, one) for one in item.handlers)
+
+
+def hooks_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
+    """The handlers in Commands, each with the form of its Command."""
+    for form, content, _ in document.contents():
+        for act in all_acts(content):
+            for command in run_commands(act.steps) if isinstance(act, Run) else ():
+                yield from ((form, one) for one in command.handlers)
 
 
 def own_contents(item: Item) -> list[Sequence[Act]]:
@@ -79,33 +85,3 @@ def thrown_by(document: Document) -> set[str]:
     links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
     linked = {link.event for link in links}
     return {name for name in thrown | returned | linked if name}
-
-
-def leads_round(handler: Handler, handlers: Sequence[Handler]) -> bool:
-    """Whether what a handler does ends in events that lead, by others perhaps, to itself again."""
-    found: list[Handler] = []
-    left = [handler]
-    while left:
-        raised = raised_in(left.pop().content)
-        for one in handlers:
-            if one not in found and any(takes(own, name) for own in one.events for name in raised):
-                found.append(one)
-                left.append(one)
-    return handler in found
-
-
-def raised_in(content: Sequence[Act]) -> set[str]:
-    """The events that content raises without a wait: ends of its Commands, and what it throws."""
-    acts = all_acts(content)
-    ends = {f"end.{name}" for act in acts if isinstance(act, Run) for name in _types(act.steps)}
-    thrown = {act.event for act in acts if isinstance(act, Throw)}
-    return ends | {name for name in thrown if isinstance(name, str)}
-
-
-def _types(steps: Sequence[StepTemplate]) -> Iterator[str]:
-    """The Commands of steps, those in units included."""
-    for step in steps:
-        if isinstance(step.what, CommandTemplate):
-            yield step.what.type
-        else:
-            yield from _types(step.what.steps)

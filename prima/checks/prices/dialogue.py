@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.contents import (
     again,
     contents_of,
     handlers_of,
+    hooks_of,
     inside,
-    leads_round,
     own_contents,
     sent_by,
     thrown_by,
 )
-from prima.checks.prices.firsts import Firsts, asks_at_most, is_left
+from prima.checks.prices.firsts import Firsts, asks_at_most, is_left, responds
 from prima.checks.prices.model import SPEECH, Gap, Outline, Price, Reaction, State, devices_of
+from prima.checks.prices.own import OwnEvents
 from prima.checks.prices.texts import Constants, words_of
 from prima.errors import Place
 from prima.interpreter.elements import (
@@ -45,6 +46,7 @@ from prima.interpreter.elements import (
     pauses_in,
 )
 from prima.interpreter.events import takes
+from prima.interpreter.rounds import leads_round, raised_in
 from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
 from prima.sim.scenario import Profile
@@ -88,6 +90,9 @@ class _Reader:
             if node.index not in self.inside:
                 found += self.steps(content)
         self.parts = sorted(found, key=lambda price: price.node.index)
+        self.firsts = Firsts(document, self.of_items, self.step)
+        self.responses = Firsts(document, self.of_items, self.step, response=True)
+        self.own = OwnEvents(document, self.parts, self.steps)
 
     def _item(self, item: Item, form: Form) -> None:
         if isinstance(item, Field):
@@ -184,29 +189,53 @@ class _Reader:
 
     def outline(self) -> Outline:
         """All that is known of the application."""
-        document, firsts = self.document, Firsts(self.document, self.of_items, self.step)
+        document = self.document
         states = {form.id: self._state(form) for form in document.forms.values()}
         reactions = [
-            self._reaction(handler, form, firsts)
+            reaction
             for form, handler in handlers_of(document)
-            if self._outside(handler)
+            for reaction in self._reactions(handler, form, self.own.leads_round(handler, form))
         ]
+        for form, hook in hooks_of(document):
+            reactions += self._reactions(hook, form, False)
         for scope in (None, *document.forms.values()):
             for link in document.links if scope is None else scope.links:
                 content = () if link.form else self._hearing(link.event, scope)
                 does = self._content(State(SPEECH, link.node), [content], scope)
                 if link.form:
                     does.goes[link.form] = link.node
-                begins = firsts.of_form(link.form) if link.form else firsts.of(content, scope)
+                begins = self._begins(content, scope, link.form)
                 stays = None if link.form or is_left(content) else _name(scope)
                 reactions.append(
-                    Reaction((SPEECH,), link.node, begins, does, stays, words_of(link.node))
+                    Reaction(
+                        (SPEECH,),
+                        link.node,
+                        *begins,
+                        does,
+                        stays,
+                        words_of(link.node),
+                        self._later(),
+                    )
                 )
         holds: list[tuple[Place, int]] = []
         for form in document.forms.values():
             holding: list[Form | Item] = [form, *all_items(form.items)]
             holds += [(one.node.attribute_place("stream"), one.hold) for one in holding if one.hold]
         return Outline(self.parts, states, reactions, self._wakes(), holds, [])
+
+    def _begins(
+        self, content: Sequence[Act], form: Form | None, name: str = ""
+    ) -> tuple[list[Price], list[Price]]:
+        """What content does first, or the form of a name; and up to its response."""
+        found = []
+        for firsts in (self.firsts, self.responses):
+            found.append(firsts.of_form(name) if name else firsts.of(content, form))
+        begins, until = found
+        return begins, until if any(map(responds, until)) else []
+
+    def _later(self) -> list[Gap]:
+        """The delayed events after which a response may come that has been looked for."""
+        return [_goes_on(act) for act in self.responses.later]
 
     def _wakes(self) -> list[State]:
         """What is done about its own delayed events."""
@@ -237,7 +266,7 @@ class _Reader:
         state.repeats += [
             Gap(one.node.place, f"what is done about {one.events[0]} leads to it again")
             for one in inner
-            if leads_round(one, inner)
+            if leads_round(one, inner, raised_in)
         ]
         contents += [one.content for one in inner]
         return self._content(state, contents, form)
@@ -250,6 +279,7 @@ class _Reader:
         if isinstance(item, Subdialog):
             state.calls[item.form] = item.node
         elif isinstance(item, Field):
+            state.raises |= {"noinput", "nomatch"}
             most = asks_at_most(item, form, self.document)
             state.times += max(most - 1, 0)
             if not most:
@@ -267,6 +297,7 @@ class _Reader:
     ) -> State:
         """Add what pieces of content do, and where they lead."""
         for content in contents:
+            state.raises |= self.own.raised(content)
             if not inside:
                 state.parts += self.steps(content)
             for act in all_acts(content):
@@ -289,21 +320,34 @@ class _Reader:
             case Foreach() if self.steps(act.content):
                 state.unknown.append(Gap(place, OFTEN))
             case SendOut() if act.event:
-                state.unknown.append(Gap(place, f"its own event {act.event} makes it go on later"))
+                state.unknown.append(_goes_on(act))
 
     # Events -----------------------------------------------------------------------------
 
-    def _reaction(self, handler: Handler, form: Form | None, firsts: Firsts) -> Reaction:
+    def _reactions(self, handler: Handler, form: Form | None, rounds: bool) -> Iterator[Reaction]:
+        """What a handler does as a reaction: to events from outside, and where its author says so
+        to the application's own (C5); ``rounds`` if it leads to itself again."""
+        if handler.reactive is False:
+            return
+        foreign = tuple(name for name in handler.events if self._foreign(name))
+        own = tuple(name for name in handler.events if name not in foreign)
         does = self._content(State(handler.events[0], handler.node), [handler.content], form)
-        begins = firsts.of(handler.content, form)
+        begins = self._begins(handler.content, form)
+        later = self._later()
         stays = None if is_left(handler.content, back=False) else _name(form)
-        return Reaction(handler.events, handler.node, begins, does, stays)
+        if foreign:
+            made = self._made(foreign[0], handler) if rounds and not own else None
+            yield Reaction(foreign, handler.node, *begins, does, stays, later=later, made=made)
+        if own and handler.reactive:
+            made = self._made(own[0], handler) if rounds else None
+            often = Gap(handler.node.place, f"how often its own event {own[0]} comes")
+            yield Reaction(
+                own, handler.node, *begins, does, stays, later=later, made=made, often=often
+            )
 
-    def _outside(self, handler: Handler) -> bool:
-        """Whether what it does may be a reaction: the author says so, or its events do (C5)."""
-        if handler.reactive is not None:
-            return handler.reactive
-        return any(self._foreign(name) for name in handler.events)
+    @staticmethod
+    def _made(event: str, handler: Handler) -> Gap:
+        return Gap(handler.node.place, f"what is done about {event} leads to it again")
 
     def _foreign(self, name: str) -> bool:
         """Whether an event comes from the user or the surroundings, not from itself."""
@@ -314,6 +358,10 @@ class _Reader:
         """Whether it may take an event of what the application is doing, without a wait."""
         names = [name for name in handler.events if not name.startswith((*BROKEN, SERVICES))]
         return any(_is_inner(name) or name in self.thrown for name in names)
+
+
+def _goes_on(act: SendOut) -> Gap:
+    return Gap(act.node.place, f"its own event {act.event} makes it go on later")
 
 
 def _is_inner(name: str) -> bool:

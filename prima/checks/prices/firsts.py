@@ -20,24 +20,40 @@ from prima.interpreter.elements import (
     Item,
     Return,
     Run,
+    SendOut,
     StepTemplate,
     Subdialog,
     Throw,
     all_items,
+    run_commands,
 )
 from prima.interpreter.events import takes
+from prima.interpreter.rounds import raised_in
+from prima.markup.tree import Node
+
+
+def responds(price: Price) -> bool:
+    """Whether the robot says something with it, or begins a movement towards the user."""
+    return "speaker" in price.devices or price.engages
 
 
 class Firsts:
-    """Finds the Commands that may be the first ones of some content, by all of its ways."""
+    """Finds the Commands that may be the first ones of some content, by all of its ways.
+
+    With ``response``, those that may come up to the first word or movement towards the user.
+    """
 
     def __init__(
         self,
         document: Document,
         of_items: Mapping[int, Price],
         step: Callable[[StepTemplate], Price],
+        response: bool = False,
     ) -> None:
         self._document = document
+        self._response = response
+        self.later: list[SendOut] = []
+        """The delayed events of the application's own after which a response may come."""
         self._of_items = of_items
         self._step = step
         self._seen: set[int] = set()
@@ -45,16 +61,19 @@ class Firsts:
 
     def of(self, content: Sequence[Act], form: Form | None) -> list[Price]:
         """What content of a form, or of the whole document, may do first."""
-        self._seen, self._found = set(), {}
+        self._begin()
         if self._go_through(content, form):
             self._stay(form)
         return list(self._found.values())
 
     def of_form(self, name: str) -> list[Price]:
         """What a form may do first."""
-        self._seen, self._found = set(), {}
+        self._begin()
         self._enter(self._document.forms.get(name))
         return list(self._found.values())
+
+    def _begin(self) -> None:
+        self._seen, self._found, self.later = set(), {}, []
 
     def _add(self, price: Price) -> None:
         self._found.setdefault(price.node.index, price)
@@ -79,7 +98,11 @@ class Firsts:
         own = self._of_items.get(item.node.index)
         if own is not None:
             self._add(own)
-            return False
+            if not self._response or responds(own):
+                return False
+            for filled in item.filled if isinstance(item, Field) else ():
+                self._go_through(filled.content, form)
+            return True
         if isinstance(item, Subdialog):
             return self._enter(self._document.forms.get(item.form))
         return self._go_through(item.content, form) if isinstance(item, Block) else True
@@ -89,10 +112,8 @@ class Firsts:
         for act in content:
             match act:
                 case Run():
-                    for step in act.steps:
-                        if not step.after:
-                            self._add(self._step(step))
-                    return False
+                    if not self._run(act, form):
+                        return False
                 case If():
                     if not self._branch(act, form):
                         return False
@@ -103,12 +124,37 @@ class Firsts:
                     return False
                 case Throw():
                     return self._throw(act, form)
+                case SendOut() if act.event and self._response:
+                    self.later.append(act)
+                    self._handled(act.node, [act.event], form)
                 case Return():
                     self._stay(None)
                     return False
                 case Exit():
                     return False
         return True
+
+    def _run(self, act: Run, form: Form | None) -> bool:
+        """Add what Commands are looked for among some; whether the content behind them is, too."""
+        prices = [self._step(step) for step in act.steps]
+        if not self._response:
+            for step, price in zip(act.steps, prices, strict=True):
+                if not step.after:
+                    self._add(price)
+            return False
+        answering = {at for at, price in enumerate(prices) if responds(price)}
+        before = answering or set(range(len(prices)))
+        for at in reversed(range(len(prices))):
+            if at in before:
+                before.update(act.steps[at].after)
+        for at in sorted(before):
+            self._add(prices[at])
+        if not answering:
+            for command in run_commands(act.steps):
+                for hook in command.handlers:
+                    self._go_through(hook.content, form)
+            self._handled(act.node, sorted(raised_in([act])), form)
+        return not answering
 
     def _branch(self, act: If, form: Form | None) -> bool:
         over = [self._go_through(branch, form) for _, branch in act.branches]
@@ -129,17 +175,20 @@ class Firsts:
                 self._visit(item, one)
 
     def _throw(self, act: Throw, form: Form | None) -> bool:
-        if act.node.index in self._seen:
-            return True
-        self._seen.add(act.node.index)
-        fitting = [one for one in _all_handlers(self._document, form) if _fits(one, act)]
-        for handler in fitting:
-            self._go_through(handler.content, form)
+        self._handled(act.node, [act.event], form)
         return True
 
+    def _handled(self, node: Node, events: Sequence[str | Expression], form: Form | None) -> None:
+        """What is done about events that an element raises."""
+        if node.index in self._seen:
+            return
+        self._seen.add(node.index)
+        for handler in _all_handlers(self._document, form):
+            if any(_fits(handler, event) for event in events):
+                self._go_through(handler.content, form)
 
-def _fits(handler: Handler, act: Throw) -> bool:
-    event = act.event
+
+def _fits(handler: Handler, event: str | Expression) -> bool:
     return isinstance(event, Expression) or any(takes(name, event) for name in handler.events)
 
 

@@ -79,6 +79,8 @@ class State:
     """What in it may be done again and again without a wait for an event."""
     unknown: list[Gap] = field(default_factory=list)
     """Why it may take longer than its parts: delayed events, content of arrays."""
+    raises: set[str] = field(default_factory=set)
+    """The events of the application's own that it may raise before it has ended."""
 
 
 @dataclass(slots=True)
@@ -89,11 +91,20 @@ class Reaction:
     node: Node
     firsts: list[Price]
     """What may be its first Command."""
+    responds: list[Price]
+    """What may come up to its first word or movement towards the user, that included; empty
+    where there is none."""
     does: State
     stays: str | None = None
     """The state that goes on beside it; None where it is left, ``""`` where it may be any."""
     words: frozenset[str] | None = None
     """What the user says is made of these words, for a link; None where that is not known."""
+    later: list[Gap] = field(default_factory=list)
+    """Why its response may come later than its Commands have it: by delayed events."""
+    made: Gap | None = None
+    """Where and how it leads to itself again without a wait, if it does."""
+    often: Gap | None = None
+    """Why nobody knows how often its events come: the application makes them for itself."""
 
 
 @dataclass(slots=True)

@@ -7,6 +7,7 @@ from itertools import chain
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.dialogue import ASKED_AGAIN, OFTEN, QUESTION
+from prima.checks.prices.firsts import responds
 from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, devices_of
 from prima.checks.prices.pages import TARGETS, Pages
 from prima.checks.prices.speech import Reader, Said, utterances
@@ -112,7 +113,7 @@ class _Reader:
             Reaction(
                 tuple(name or "message" for name in names),
                 node,
-                self._first(node) or parts,
+                *self._begins(node, parts),
                 state,
                 None if leaves(node.content) and not returns(node) else "",
             )
@@ -120,6 +121,12 @@ class _Reader:
             if (names := [name for name in handler_names(node) if is_foreign(name)])
         ]
         return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
+
+    def _begins(self, handler: Node, parts: list[Price]) -> tuple[list[Price], list[Price]]:
+        """What a handler does first, and what may come up to its response: anything, perhaps."""
+        firsts = self._first(handler) or parts
+        until = firsts if all(map(responds, firsts)) else [*firsts, *parts]
+        return firsts, until if any(map(responds, until)) else []
 
     def _first(self, handler: Node) -> list[Price]:
         """What a handler does first, where that is the same in each case; else nothing."""
@@ -130,9 +137,14 @@ class _Reader:
                 continue
             said = isinstance(piece, str) or piece.tag in SPOKEN
             if said and not (isinstance(piece, Node) and piece.get("cond")):
-                return [Price(handler, "question", QUESTION.devices, 1, engages=True)]
+                return [self._asked_anew(handler)]
             return [] if isinstance(piece, str) else [*self._steps(piece, first=True)]
         return []
+
+    def _asked_anew(self, handler: Node) -> Price:
+        """The question that listened, asked from its beginning with what a handler says."""
+        lasts = max((one.lasts for one in self.parts if one.listens), default=1)
+        return Price(handler, "question", QUESTION.devices, lasts, engages=True)
 
     # Dialogs ----------------------------------------------------------------------------
 
