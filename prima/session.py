@@ -120,8 +120,8 @@ class Session:
         self._sensors: dict[str, Json] = {}
         self._sends: list[Order] = []
         self._turns: list[tuple[str, Stream]] = []
-        """Streams of which the latest selection suspended or resumed, with which: their
-        applications want to hear of it."""
+        """Streams that wait ``suspended`` or have ``resumed`` by the latest selection, with which:
+        their applications want to hear of it."""
 
     def _made(self, document: AnyDocument, arguments: Mapping[str, frozenset[str]]) -> App:
         """The interpreter of a document; one for which no engine can be had ends at its start."""
@@ -532,7 +532,7 @@ class Session:
         self.mediator.close_window(told)
 
     def _note_turns(self) -> None:
-        """Keep the streams that were suspended or have resumed of which an application will hear."""
+        """Keep the streams that wait suspended or have resumed of which an application will hear."""
         for name, stream in self.mediator.drain_turns():
             app = self.apps[stream.app.name]
             with self._contained(app):
@@ -542,7 +542,7 @@ class Session:
                 self._act(app)
 
     def _tell_turns(self) -> None:
-        """Tell applications that their streams were suspended or have resumed (C2).
+        """Tell applications that their streams wait suspended or have resumed (C2).
 
         What they ask for then belongs to the stream and is no reaction.
         """

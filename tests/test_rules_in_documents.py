@@ -166,6 +166,67 @@ def test_c2_an_application_hears_that_its_stream_was_suspended_and_has_resumed()
     assert not any(r.get("reactive") for r in bench.phases("request") if r["app"] == "ea")
 
 
+STORY = """<form id="story">
+  <block><speak>One.</speak><speak>Two.</speak></block>
+  <on event="suspended"><log>suspended</log></on>
+  <on event="resumed"><log>resumed</log></on>
+</form>"""
+
+
+@pytest.mark.parametrize("at_once", [False, True], ids=["in turn", "kept by itself"])
+def test_c2_a_suspended_stream_that_goes_on_without_a_gap_hears_nothing(at_once: bool) -> None:
+    story = STORY.replace("<block>", "<block><par>").replace("</block>", "</par></block>")
+    bench = pair(
+        story if at_once else STORY,
+        '<form id="sleep"><on event="door"><topological-move to="lab"/></on></form>',
+    )
+    bench.event("door")
+    assert [r["tree"] for r in bench.phases("suspend")] == ["ea:1"]
+    bench.step(at=bench.now + 1)
+    bench.finish("One.")
+    assert "Two." in bench.saying(), "it is of higher priority (F3)"
+    bench.step(at=bench.now + 1)
+    bench.finish("Two.")
+    assert [r["tree"] for r in bench.phases("resume")] == ["ea:1"]
+    assert bench.logs() == []
+
+
+def test_c2_a_suspended_stream_hears_of_it_when_it_has_to_wait() -> None:
+    bench = pair(STORY, '<form id="sleep"><on event="touch"><gesture name="bow"/></on></form>')
+    bench.event("touch")
+    assert bench.saying() == ["One.", "gesture"] and bench.phases("suspend")
+    bench.step(at=bench.now + 10)
+    assert bench.logs() == [], "its sentence goes on"
+    bench.finish("One.")
+    bench.step(at=bench.now + 1)
+    assert bench.logs() == ["suspended"], "the next one waits"
+    bench.finish("gesture")
+    bench.step(at=bench.now + 1)
+    assert bench.saying() == ["Two."] and bench.logs() == ["suspended", "resumed"]
+
+
+def test_c2_a_stream_that_is_suspended_again_hears_it_again() -> None:
+    story = STORY.replace("</block>", "<speak>Three.</speak></block>")
+    bench = pair(story, HELLO)
+    for sentence in ("One.", "Two."):
+        bench.event("touch")
+        bench.finish(sentence)
+        bench.step(at=bench.now + 1)
+        bench.finish("Hello.")
+        bench.step(at=bench.now + 1)
+    assert bench.logs() == ["suspended", "resumed"] * 2
+
+
+def test_c2_a_topic_that_was_broken_off_before_its_next_command_hears_nothing() -> None:
+    bench = pair(STORY, '<form id="sleep"><on event="touch"><gesture name="bow"/></on></form>')
+    bench.event("touch")
+    bench.finish("gesture")
+    bench.finish("One.")
+    bench.step(at=bench.now + 1)
+    bench.finish("Two.")
+    assert bench.phases("suspend") and bench.phases("resume") and bench.logs() == []
+
+
 def test_c2_whoever_does_not_ask_is_told_nothing() -> None:
     bench = pair('<form id="a"><block><speak>One.</speak><speak>Two.</speak></block></form>', HELLO)
     bench.event("touch")

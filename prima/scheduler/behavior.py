@@ -55,6 +55,8 @@ class Stream:
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: bool = False
     """Whether another stream has taken the floor and nothing of this one has started since (C2)."""
+    waits: bool = False
+    """Whether another application has kept an AB of it waiting since it was suspended (C2)."""
     answered: int = -1
     """The instant in which the user has answered a question of it (E6)."""
     place: int = 0
@@ -251,3 +253,8 @@ class Behavior:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         what = self.group or self.command
         return what is not None and what.restartable and not self.silent
+
+
+def application(name: str) -> str:
+    """The application of an AB or a stream."""
+    return name.replace("#", ":", 1).partition(":")[0]

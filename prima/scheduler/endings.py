@@ -90,7 +90,7 @@ class Endings:
         return []
 
     def drain_turns(self) -> list[tuple[str, Stream]]:
-        """Give the streams that were suspended or have resumed since the last time, with which."""
+        """Give the streams that wait suspended or have resumed since the last time, with which."""
         turns, self._selector.turns = self._selector.turns, []
         return turns
 

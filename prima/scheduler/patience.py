@@ -7,7 +7,7 @@ The mediator counts between selections, in which nothing changes. Rule E6 says w
 from __future__ import annotations
 
 from prima.scheduler import rules
-from prima.scheduler.behavior import Behavior
+from prima.scheduler.behavior import Behavior, application
 from prima.scheduler.memory import Memory
 from prima.scheduler.recorder import Recorder
 
@@ -77,8 +77,3 @@ class Patience:
         self.due = None
         for ab in self._memory.waiting.values():
             ab.waits_from = ab.kept_from = -1
-
-
-def application(name: str) -> str:
-    """The application of an AB or a stream."""
-    return name.replace("#", ":", 1).partition(":")[0]

@@ -6,7 +6,7 @@ from typing import Final
 
 from prima.messages import Command, Group, Order
 from prima.scheduler import rules
-from prima.scheduler.behavior import RUNNING, WAITING, Behavior, Stream
+from prima.scheduler.behavior import RUNNING, WAITING, Behavior, Stream, application
 from prima.scheduler.effects import Body
 from prima.scheduler.intake import Maker, link
 from prima.scheduler.memory import Memory
@@ -53,14 +53,16 @@ class Selector:
         self.body = Body()
         self._maker = maker
         self.turns: list[tuple[str, Stream]] = []
-        """Streams that were ``suspended`` or have ``resumed``, for their applications to hear."""
+        """Streams that wait ``suspended`` or have ``resumed``, for their applications to hear."""
+        self._resumed: list[Stream] = []
+        """Streams that the latest selection let go on."""
         self._suspensions = 0
         self._starved = 0
         self.patience = Patience(memory, recorder, patience if policy.floor else 0)
 
     def select(self, now: int) -> None:
         """Start what may start, in the order of S2, until nothing more may."""
-        self.started = []
+        self.started, self._resumed = [], []
         memory = self.memory
         self.patience.before(now)
         if memory.running:
@@ -68,10 +70,21 @@ class Selector:
                 self._advance(unit, now)
         while memory.waiting and self._pass(now):
             pass
-        for name, stream in self.turns:
-            if name == "resumed" and not stream.suspended:
+        for stream in self._resumed:
+            if not stream.suspended:
                 stream.place = 0
+        self._note_turns()
         self.patience.after(now)
+
+    def _note_turns(self) -> None:
+        """C2: a suspended stream waits from when another application keeps an AB of it waiting."""
+        for ab in self.memory.waiting.values():
+            stream = ab.stream
+            if not stream.suspended or stream.waits:
+                continue
+            if application(ab.blocked[1]) not in ("", ab.app.name):
+                stream.waits = True
+                self.turns.append(("suspended", stream))
 
     def _pass(self, now: int) -> bool:
         """Go through the waiting ABs once; true if another pass may find one that may start.
@@ -398,13 +411,15 @@ class Selector:
         for other in begun:
             if not other.suspended:
                 other.suspended, other.place = True, self._suspensions
-                self.turns.append(("suspended", other))
                 self.recorder.stream("suspend", other, "C2", by=stream.name)
 
     def _resume(self, stream: Stream, ab: Behavior) -> None:
         """C2: a suspended stream goes on with an AB."""
         stream.suspended = False
-        self.turns.append(("resumed", stream))
+        self._resumed.append(stream)
+        if stream.waits:
+            stream.waits = False
+            self.turns.append(("resumed", stream))
         self.recorder.stream("resume", stream, "C2", behavior=ab.id)
 
     def _count_starving(self, ab: Behavior, now: int) -> bool:
