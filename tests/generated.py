@@ -668,6 +668,8 @@ class Requester:
         self.unit: int | None = None
         self.devices: frozenset[str] = frozenset()
         self.over = False
+        self._asked = False
+        """Whether the state has asked for something, so that the mediator knows of it (O3)."""
         self._numbers = count(1)
 
     def act(self, mediator: Mediator, deeds: Iterable[Deed], cause: int | None = None) -> None:
@@ -684,25 +686,29 @@ class Requester:
                         number, steps, self.state, cause, self.unit, deed.hold, deed.connect
                     )
                     mediator.request(self.name, asked)
-                    cause = None
+                    self._asked, cause = True, None
                 case Open() if self.unit is None:
                     self.unit, self.devices = next(self._numbers), deed.devices
                     mediator.open_unit(
                         self.name,
                         OpenUnit(self.unit, self.state, deed.devices, deed.longest, cause),
                     )
-                    cause = None
+                    self._asked, cause = True, None
                 case Close():
                     self._close(mediator)
                 case Leave():
-                    self._close(mediator)
-                    mediator.leave_state(self.name, LeaveState(self.state))
+                    self._leave(mediator)
                     self.state += 1
                 case Go():
-                    self._close(mediator)
-                    mediator.leave_state(self.name, LeaveState(self.state))
+                    self._leave(mediator)
                     mediator.unload(self.name, "exit")
                     self.over = True
+
+    def _leave(self, mediator: Mediator) -> None:
+        self._close(mediator)
+        if self._asked:
+            mediator.leave_state(self.name, LeaveState(self.state))
+        self._asked = False
 
     def _close(self, mediator: Mediator) -> None:
         if self.unit is not None:

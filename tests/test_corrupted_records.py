@@ -180,6 +180,12 @@ LEFT_LOOPING = play(
     IDLE,
     events=(at(20),),
 )
+LEFT_DONE = play(
+    form(SAY.format("Done.") + '<goto next="#f2"/>')
+    + '<form id="f2"><block><speak>New.</speak><exit/></block></form>',
+    IDLE,
+)
+"""Nothing is left to cancel when a state is left, nor when its application ends."""
 LEFT_ASKING = play(
     ASKS.replace("</form>", on("touch", '<goto next="#f2"/>') + "</form>") + '<form id="f2"/>',
     IDLE,
@@ -201,12 +207,25 @@ BESIDE = play(
 """Who speaks beside a move that has the floor takes nothing from it (F3)."""
 
 
+HELD_BY_TOPIC = play(TOPIC, form('<turn angle="5"/>' + SAY.format("I.")))
+HELD_TWICE = play(BOTH, BOTH, BOTH)
+LEFT_MOVING = play(
+    form(SAY.format("Off.") + '<goto next="#f2"/>')
+    + '<form id="f2"><block><topological-move to="room"/></block></form>',
+    SPEAKS,
+    events=(at(300),),
+)
+"""A state is left, and the move of the next one is stopped, suspended and resumed."""
 TAKEN_OUT = play(form(SAY.format("Long.")), IDLE, events=((10, Unloaded("ea")),))
 
 
 def listens_on(records: Records) -> Records:
     """A question whose state was left listens; cut off there."""
     return records[: indexes(records, phase="cancel", rule="O3")[0]]
+
+
+def without_windows(records: Records) -> Records:
+    return [one for one in records if one["phase"] != "window"]
 
 
 def heard_of(records: Records) -> Records:
@@ -278,6 +297,40 @@ FALSEHOODS = (
     Falsehood("given-as", BROKEN, change(1, {"phase": "floor"}, outcome="taken"), "13 (F3)"),
     Falsehood("cancelled", LEFT, change(0, {"phase": "cancel"}, outcome="waiting"), "13 (O3)"),
     Falsehood("unloaded", TAKEN_OUT, drop(0, phase="unload", actor="mediator"), "13 (E2)"),
+    # What each record says of itself.
+    *(
+        Falsehood(
+            f"{phase}-by", LEFT_MOVING, change(0, {"phase": phase}, rule="S4"), f"13 ({rule})"
+        )
+        for phase, rule in (
+            *(("window", "C3"), ("leave", "O3"), ("stream-end", "C1")),
+            *(("suspend", "C2"), ("resume", "C2"), ("stop", "F5")),
+        )
+    ),
+    *(
+        Falsehood(
+            f"{phase}-of", LEFT_MOVING, change(0, {"phase": phase, "app": "fa"}, app="ea"), found
+        )
+        for phase, found in (
+            *(("window", "13 (C1)"), ("suspend", "13 (C1)"), ("resume", "13 (U1)")),
+            *(("stream-end", "13 (C1)"), ("decision", "13 (U1)")),
+            *(("start", "13 (U1)"), ("end", "13 (U1)"), ("stop", "13 (U1)"), ("leave", "3 (O3)")),
+        )
+    ),
+    Falsehood("floor-of", LEFT_MOVING, change(0, {"phase": "floor"}, app="fa"), "13 (C1)"),
+    Falsehood("text", LEFT_MOVING, change(0, {"phase": "start"}, text="No."), "13 (U1)"),
+    Falsehood("resumes-by", SUSPENDED, change(0, {"phase": "resume"}, behavior="ea#1"), "13 (C2)"),
+    # Windows.
+    Falsehood("never-open", RIVALS, drop(0, phase="window", outcome="open"), "15 (C3)"),
+    Falsehood("never-closed", RIVALS, drop(0, phase="window", outcome="closed"), "15 (C3)"),
+    Falsehood("unheard", RIVALS, without_windows, "15 (C3)"),
+    Falsehood("two-at-once", RIVALS, double({}, phase="window", outcome="open"), "15 (C3)"),
+    # Reasons to wait, as long as one waits.
+    Falsehood("still-said", HELD_TWICE, drop(1, phase="hold", app="xa"), "13 (S1)"),
+    Falsehood("topic", HELD_BY_TOPIC, change(0, {"rule": "F6"}, by="fa#3"), "13 (F6)"),
+    Falsehood(
+        "waiting-loop", SUSPENDED, change(0, {"phase": "hold"}, behavior="fa#1.9"), "13 (S1)"
+    ),
     # Stops.
     Falsehood(
         "unstopped", play(TRACKS, SPEAKS, events=(at(20),)), drop(0, phase="stop"), "14 (F5)"
@@ -304,6 +357,9 @@ FALSEHOODS = (
     Falsehood("gone", BROKEN, after_its_end, "3 (E2)"),
     # Leaving a state.
     Falsehood("not-left", LEFT, drop(0, phase="leave"), "3 (O3)"),
+    Falsehood("goes-on", LEFT_DONE, drop(0, phase="leave"), "3 (O3)"),
+    Falsehood("ends-in-it", LEFT_DONE, drop(-1, phase="leave"), "3 (O3)"),
+    Falsehood("left-unasked", LEFT_DONE, change(-1, {"phase": "leave"}, state=7), "3 (O3)"),
     Falsehood("left-twice", LEFT, double({}, phase="leave"), "3 (O3)"),
     Falsehood("waits-on", LEFT, drop(0, phase="cancel", rule="O3"), "3 (O3)"),
     Falsehood("asks-on", LEFT, change(-1, FIRST, state=1), "3 (O3)"),

@@ -284,10 +284,10 @@ class Selector:
         rule, by = refusal
         if ab.blocked == refusal:
             return
-        changed = ab.blocked[0] != rule or "." not in by
-        ab.blocked = refusal
-        if changed:  # the next loop of the same feedback Command is no news
-            self.recorder.hold(ab, rule, by)
+        before, ab.blocked = ab.blocked, refusal
+        if before[0] == rule and before[1].partition(".")[0] == by.partition(".")[0]:
+            return  # the next loop of the same feedback Command is no news
+        self.recorder.hold(ab, rule, by)
 
     def _start(self, rank: Rank, ab: Behavior, lower: list[Ranked], held: Held, now: int) -> bool:
         """Start an AB and record why; true when others rank otherwise now.

@@ -67,9 +67,13 @@ class Channel(Memory):
         """K1: the stream that engages the user, so that what leaves them waits."""
         if ab.leaves:
             for tree in self.trees.values():
-                if tree.app != ab.app and tree.open and tree.engages(self.sensed):
+                if self.keeps_user(tree, ab):
                     return tree
         return None
+
+    def keeps_user(self, tree: Tree, ab: AB) -> bool:
+        """K1: whether a stream engages the user whom another application's AB would leave."""
+        return tree.app != ab.app and tree.open and tree.engages(self.sensed)
 
     def channel_kept(self, ab: AB, shown: str) -> None:
         """Invariant 7 at a start."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.invariants.leaving import Leaving
 from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
 from tests.invariants.table import contradictions
+from tests.invariants.telling import Telling
 
 
-class Checker(Leaving):
+class Checker(Telling):
     """Goes through the records of one run, in order."""
 
     def run(self) -> list[str]:
@@ -45,6 +45,7 @@ class Checker(Leaving):
                 self._instant_over()
                 self._until(record["time"])
             self.place = place
+            self.tells_rightly(record)
             take = takes.get(record["phase"])
             if take is not None:
                 take(record)
@@ -75,6 +76,7 @@ class Checker(Leaving):
 
     def _unload(self, record: Record) -> None:
         if record["actor"] == "mediator":
+            self.left_at_end(record["app"])
             self.gone_apps.add(record["app"])
             self.unloaded.add(record["app"])
             self.taken_out.discard(record["app"])
@@ -100,6 +102,7 @@ class Checker(Leaving):
             self.report(3, "U1", f"{name} is requested twice")
             return
         self._may_ask(record)
+        self.asks(record)
         new = record["tree"] not in self.trees
         tree = self.trees.setdefault(record["tree"], Tree(record["tree"], app))
         ab = self.abs[name] = self._made(record, tree)
@@ -324,4 +327,5 @@ class Checker(Leaving):
         self.floor_told_rightly()
         self.stopped_rightly()
         self.ends_told_rightly()
+        self.windows_told_rightly()
         self.left_waiting()

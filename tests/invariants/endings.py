@@ -38,7 +38,14 @@ class Endings(Selection):
             if not (self.has_left(ab) or ab.silent or ab.app in self.gone_apps):
                 self.report(3, "U2", f"{ab.shown} ends before its goal, but its state goes on")
         self._hears_of(ab)
+        if not (ab.silent or ab.inserted or ab.command == "iu" or ab.unit):
+            self._hears_surely(ab)
         self.remove(ab)
+
+    def _hears_surely(self, ab: AB) -> None:
+        """C3: nothing can have made the mediator deaf for its end, as a unit that is left can."""
+        if not (self.has_left(ab) or ab.app in self.gone_apps):
+            self.owed[ab.tree.name] += 1
 
     def _hears_of(self, ab: AB) -> None:
         """C3, O3, E2: an end opens a window, but not of what was given up before."""
@@ -47,6 +54,7 @@ class Endings(Selection):
 
     def note_fail(self, record: Record) -> None:
         if not record.get("behavior"):
+            self.refused.add(record["app"])
             return  # E3: refused before it entered working memory
         ab = self.abs.get(base(record["behavior"]))
         # A unit fails with the Command in it (U4); it is running then as well.

@@ -47,21 +47,22 @@ class Floor(Channel):
         """F6: the stream into which the AB would speak."""
         if "speaker" not in ab.devices or ab.cause is not None or self.holder is ab.tree:
             return None
-        for tree in self.trees.values():
-            if tree.app != ab.app and tree.spoken and self._has_more_to_say(tree):
-                return tree
+        for other in self.running.values():
+            if self.keeps_topic(other, ab):
+                return other.tree
         return None
 
-    def _has_more_to_say(self, tree: Tree) -> bool:
-        """F6: whether something that speaks is linked, without a loop between, behind what runs."""
-        reached = [
-            ab
-            for ab in tree.members.values()
-            if ab.phase == RUNNING and not ab.feedback and ab.unit is None
-        ]
-        for ab in reached:  # it grows
-            for child in tree.members.values():
-                if child.phase != LINKED or ab.name not in child.parents:
+    def keeps_topic(self, other: AB, ab: AB) -> bool:
+        """F6: whether one that runs comes between two utterances of another application's topic."""
+        between = other.phase == RUNNING and not other.feedback and other.unit is None
+        return between and other.app != ab.app and other.tree.spoken and self._speaks_next(other)
+
+    def _speaks_next(self, ab: AB) -> bool:
+        """F6: whether something that speaks is linked behind it, without a loop between."""
+        reached = [ab]
+        for before in reached:  # it grows
+            for child in ab.tree.members.values():
+                if child.phase != LINKED or before.name not in child.parents:
                     continue
                 if "speaker" in child.devices:
                     return True
@@ -105,9 +106,20 @@ class Floor(Channel):
         if tree.suspended:
             tree.suspended = False
             self.resumed.append(tree)
-            if tree.name not in self.resumptions:
-                self.report(13, "C2", f"{tree.name} resumes by {ab.shown} without a record")
-            self.resumptions.discard(tree.name)
+            if tree.waits:
+                self.turns[tree.name] = self.now
+            tree.waits = False
+            told = self.resumptions.pop(tree.name, None)
+            if told != ab.shown:
+                self.report(13, "C2", f"{tree.name} resumes by {ab.shown}; the records name {told}")
+
+    def waits_suspended(self, ab: AB) -> None:
+        """C2: an application hears that another's keeps its suspended stream waiting."""
+        by = ab.said[1] if ab.said is not None else ""
+        other = by.replace("#", ":").partition(":")[0]
+        if ab.tree.suspended and not ab.tree.waits and other not in ("", ab.app):
+            ab.tree.waits = True
+            self.turns[ab.tree.name] = self.now
 
     # What the records say -----------------------------------------------------------
 
@@ -124,7 +136,7 @@ class Floor(Channel):
         self.suspensions[record["tree"]] = record["by"]
 
     def note_resume(self, record: Record) -> None:
-        self.resumptions.add(record["tree"])
+        self.resumptions[record["tree"]] = record["behavior"]
 
     def note_stop(self, record: Record) -> None:
         self.stops.add(base(record["behavior"]))
@@ -144,7 +156,7 @@ class Floor(Channel):
             self.report(13, "C2", f"{tree} is not suspended by {by}, as a record says")
         for tree in self.ordered(self.resumptions):
             self.report(13, "C2", f"{tree} does not resume, as a record says")
-        self.suspensions, self.suspended_by, self.resumptions = {}, {}, set()
+        self.suspensions, self.suspended_by, self.resumptions = {}, {}, {}
 
     def _turns_told_rightly(self) -> None:
         """F1, F3, X3: who took the floor and who gave it back, and by which rule.

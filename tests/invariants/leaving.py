@@ -16,6 +16,8 @@ class Leaving(Endings):
         app, state = record["app"], record["state"]
         if (app, state) in self.left:
             self.report(3, "O3", f"state {state} of {app} is left twice")
+        if state not in self.asked.get(app, ()) and app not in self.refused:
+            self.report(3, "O3", f"state {state} of {app} is left, which has asked for nothing")
         self.left.add((app, state))
         self.left_now.add((app, state))
         for tree in self.trees.values():
@@ -24,6 +26,28 @@ class Leaving(Endings):
         mine = [ab for ab in self.abs_there() if ab.app == app and ab.state == state]
         if mine:
             self.continuing[app] = going_on(mine)
+
+    def asks(self, record: Record) -> None:
+        """O3: a state asks, and those before it were left, but where it may have been called."""
+        app, state = record["app"], record.get("state")
+        if state is None:
+            return
+        states = self.asked.setdefault(app, set())
+        if app not in self.calling:
+            for before in sorted(one for one in states if one < state):
+                self._is_left(app, before, f"state {state} asks for {record['behavior']}")
+        states.add(state)
+
+    def left_at_end(self, app: str) -> None:
+        """O3: an application that ends leaves its state, and all that have called that."""
+        states = sorted(self.asked.get(app, ()))
+        for state in states[-1:] if app in self.calling else states:
+            self._is_left(app, state, "it has ended")
+
+    def _is_left(self, app: str, state: int, because: str) -> None:
+        if (app, state) not in self.left:
+            self.report(3, "O3", f"state {state} of {app} was not left, but {because}")
+            self.asked[app].discard(state)
 
     def _hold_no_more(self, tree: Tree) -> None:
         """X3: a state that is left has nothing held; what was held may be gone on with."""

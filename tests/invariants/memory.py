@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from tests.invariants.model import (
     AB,
@@ -24,8 +24,14 @@ class Memory:
     """What is known so far. The families of rules, which read it, stand on top of it."""
 
     def __init__(
-        self, records: Iterable[Record], policy: str, declared: Sequence[str] = ()
+        self,
+        records: Iterable[Record],
+        policy: str,
+        declared: Sequence[str] = (),
+        calling: Collection[str] = (),
     ) -> None:
+        self.calling = calling
+        """Applications whose states may follow others that were not left."""
         self.records = list(records)
         name, *extensions = policy.split("+")
         self.policy, _, self.first = name.partition(":")
@@ -62,10 +68,18 @@ class Memory:
         self.place = 0
         self.left: set[tuple[str, int | None]] = set()
         """Applications, and states of theirs that they have left (O3)."""
+        self.asked: dict[str, set[int]] = {}
+        """The states of each application that have asked for something."""
+        self.refused: set[str] = set()
+        """Applications of which something was refused, so that its state is not known (E3)."""
+        self.requests: dict[str, Record] = {}
+        """The request of each AB."""
         self.serials: dict[int, float] = {}
         """The numbers of events, and when those happened."""
         self.numbered = any(one.get("serial") is not None for one in self.records)
         """Whether events are recorded: some drivers ask for Commands without any."""
+        self.turns: dict[str, float] = {}
+        """When streams came to wait suspended, or went on: their applications may hear of it."""
         self.told_floor: list[str] = []
         """The floor according to ``floor`` records."""
         self.extra_reactions = 0
@@ -120,7 +134,8 @@ class Memory:
         """What ``suspend`` records have said since the latest start: streams, and by whom."""
         self.suspended_by: dict[str, str] = {}
         """The same as recomputed."""
-        self.resumptions: set[str] = set()
+        self.resumptions: dict[str, str] = {}
+        """Streams of which ``resume`` records have told, and by which AB."""
         self.decision: Record | None = None
         """The latest decision, until its winner starts."""
         self.halting: dict[str, AB] = {}
@@ -140,6 +155,8 @@ class Memory:
         """Streams held no longer as a state was left, and which (X3)."""
         self.heard: Counter[str] = Counter()
         """How many ends of each stream its application hears of, and has no window for yet (C3)."""
+        self.owed: Counter[str] = Counter()
+        """The same of ends that it hears of for certain."""
 
     def report(self, number: int, rule: str, text: str) -> None:
         """Note a violation of an invariant, with the rule behind it."""

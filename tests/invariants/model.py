@@ -125,6 +125,8 @@ class Tree:
     requested: int = -1
     """The index of the latest request."""
     suspended: bool = False
+    waits: bool = False
+    """Whether another application has kept an AB of it waiting since it was suspended."""
     rank: int = 0
     """The index of the start that suspended it: the later goes first (S2d)."""
     place: tuple[float, float] | None = None

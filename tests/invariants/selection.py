@@ -206,6 +206,7 @@ class Selection(Patience):
 
     def _waits_for_a_reason(self, ab: AB) -> None:
         self.late(ab)
+        self.waits_suspended(ab)
         if len(self.waiting) <= MANY:
             self._reason_told(ab)
 
@@ -218,27 +219,15 @@ class Selection(Patience):
                 self.report(6, "S1", f"the reaction {ab.shown} is late")
 
     def _reason_told(self, ab: AB) -> None:
-        """Why an AB waits is told by its latest ``hold``: true when told, and the rule still so."""
+        """Why an AB waits is told by its latest ``hold``, which is true as long as it waits."""
         if ab.said is None:
             if not ab.interrupted:  # the record of that says it
                 self.report(13, "S1", f"nothing says why {ab.shown} waits")
             return
         rule, by, when = ab.said
-        if when == self.now and not self._held_by(ab, rule, by):
-            self.report(13, rule, f"{ab.shown} is said to wait by {rule} for {by}")
-        elif when != self.now and not self._held_still(ab, rule):
-            self.report(13, rule, f"{ab.shown} is still said to wait by {rule} for {by}")
-
-    def _held_still(self, ab: AB, rule: str) -> bool:
-        """Whether a rule keeps an AB waiting, whosesoever the turn is by now."""
-        kept = {
-            "S1": self.occupant(ab),
-            "S3": self.held_back(ab) or None,
-            "F2": self.refused_by_floor(ab),
-            "F6": self.refused_by_topic(ab),
-            "K1": self.refused_by_channel(ab),
-        }
-        return kept.get(rule) is not None or rule not in kept
+        if not self._held_by(ab, rule, by):
+            still = "" if when == self.now else "still "
+            self.report(13, rule, f"{ab.shown} is {still}said to wait by {rule} for {by}")
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
         """Whether a reason to wait is true."""
@@ -251,22 +240,15 @@ class Selection(Patience):
                 return False
             waits = other.cause is not None or self.overdue(other)
             return waits and bool(other.devices & ab.devices)
-        kept = {
-            "F2": self.refused_by_floor(ab, surely=False),
-            "F6": self.refused_by_topic(ab),
-            "K1": self.refused_by_channel(ab),
-        }.get(rule)
-        if rule.startswith("X"):
-            return True
-        return kept is not None and (by == kept.name or self._as_well(ab, rule, by))
-
-    def _as_well(self, ab: AB, rule: str, by: str) -> bool:
-        """K1, F6: another stream than the first that keeps it may be named, or an AB of it."""
-        other = self.abs.get(base(by))
-        tree = self.trees.get(by) or (other.tree if other is not None else None)
-        if tree is None or tree.app == ab.app or rule == "F2":
-            return False
-        return tree.engages(self.sensed) if rule == "K1" else tree.spoken
+        if rule == "F6":
+            return other is not None and self.keeps_topic(other, ab)
+        if rule == "F2":
+            kept = self.refused_by_floor(ab, surely=False)
+            return kept is not None and by == kept.name
+        tree = self.trees.get(by)
+        if rule == "K1":  # another stream than the first that keeps it may be named
+            return ab.leaves and tree is not None and self.keeps_user(tree, ab)
+        return False
 
     def _ahead(self, other: AB, ab: AB) -> bool:
         """Baselines: whether another waiting AB may rank first and hold a device back."""
@@ -284,5 +266,7 @@ class Selection(Patience):
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase != WAITING:
             self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")
+        elif ab.shown != record["behavior"]:
+            self.report(13, "S1", f"{record['behavior']} is said to wait, but {ab.shown} does")
         else:
             ab.said = (record["rule"], record.get("by") or "", self.now)

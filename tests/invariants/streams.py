@@ -5,6 +5,9 @@ from __future__ import annotations
 from tests.invariants.extensions import Extensions
 from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree
 
+A_MOMENT_LATER = 0.0015
+"""Seconds after a selection by which an application has heard of it."""
+
 
 class Streams(Extensions):
     """What a request continues, and what it follows."""
@@ -16,15 +19,36 @@ class Streams(Extensions):
             self.report(3, "C1", f"a window of {record['tree']} opens, which has ended")
             tree = self.trees[record["tree"]] = Tree(record["tree"], record["app"])
         if record["outcome"] == "open":
-            self.heard[tree.name] -= 1
-            if self.heard[tree.name] < 0:
-                self.report(15, "O3", f"a window of {tree.name} opens, but no end is heard")
-            tree.windows += 1
-            self.windows.append(tree)
-            return
-        tree.windows -= 1
-        if tree in self.windows:
+            self._open_window(tree)
+        elif tree in self.windows:
+            tree.windows -= 1
             self.windows.remove(tree)
+        else:
+            self.report(15, "C3", f"a window of {tree.name} closes, which is not open")
+
+    def _open_window(self, tree: Tree) -> None:
+        """C3: for an end that is heard, or as the stream waits suspended or goes on (C2)."""
+        if self.windows:
+            self.report(15, "C3", f"a window of {tree.name} opens within another")
+        if self.owed[tree.name]:
+            self.owed[tree.name] -= 1
+        turned = self.turns.get(tree.name, -self.second)
+        if self.heard[tree.name] > 0:
+            self.heard[tree.name] -= 1
+        elif self.now - turned > A_MOMENT_LATER * self.second:
+            self.report(15, "O3", f"a window of {tree.name} opens, but no end is heard")
+        else:
+            del self.turns[tree.name]
+        tree.windows += 1
+        self.windows.append(tree)
+
+    def windows_told_rightly(self) -> None:
+        """C3 at the end of an instant: every window is closed, and who hears of an end had one."""
+        for tree in self.windows:
+            self.report(15, "C3", f"a window of {tree.name} is not closed")
+        for name in self.ordered(+self.owed):
+            if name.rpartition(":")[0] not in self.gone_apps:
+                self.report(15, "C3", f"an end of {name} is heard, but no window opens")
 
     def note_stream_end(self, record: Record) -> None:
         """C1: nothing is lost with a stream; its end is told when it ends, and once."""

@@ -1,0 +1,48 @@
+"""What each record says of itself: whose it is, of which stream and Command, by which rule."""
+
+from __future__ import annotations
+
+from tests.invariants.leaving import Leaving
+from tests.invariants.model import Record, base
+
+ALONE = {
+    "window": "C3",
+    "leave": "O3",
+    "stream-end": "C1",
+    "suspend": "C2",
+    "resume": "C2",
+    "stop": "F5",
+    "interrupt": "X2",
+    "held": "X3",
+    "substitute": "X6",
+}
+"""What is always done by one and the same rule."""
+SAME = ("app", "tree", "command", "text", "unit")
+"""Fields that every record of an AB has as its request has them."""
+
+
+class Telling(Leaving):
+    """Holds each record to the request, stream or rule that it is about."""
+
+    def tells_rightly(self, record: Record) -> None:
+        """Before a record is taken in."""
+        phase = record["phase"]
+        rule = ALONE.get(phase)
+        if rule is not None and record["rule"] != rule:
+            self.report(13, rule, f"a {phase} is told by {record['rule']}")
+        name = record.get("winner") or record.get("behavior")
+        if phase == "request":
+            self.requests.setdefault(name, record)
+        elif name is not None and base(name) in self.requests:
+            self._told_as_requested(record, base(name))
+        tree = record.get("tree")
+        if tree is not None and record["app"] != tree.rpartition(":")[0]:
+            self.report(13, "C1", f"a {phase} of {tree} is told of {record['app']}")
+
+    def _told_as_requested(self, record: Record, name: str) -> None:
+        request = self.requests[name]
+        for field in SAME:
+            told = record.get(field)
+            if told is not None and told != request.get(field):
+                text = f"a {record['phase']} of {name} has the {field} {told}"
+                self.report(13, "U1", f"{text}, not {request.get(field)}")
