@@ -58,6 +58,16 @@ def test_x1_a_stream_that_resumes_stands_where_it_stood() -> None:
     assert stage.rule("ea#3") == "S1"
 
 
+def test_x1_who_waits_for_its_own_way_back_is_kept_waiting_by_nobody_else() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    assert stage.select() == []
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#4.1"]
+    stage.at(90_000).end("ea#4.1", x=4.0, y=1.0, heading=10.0)
+    assert stage.select() == ["ea#3"] and stage.phases("starve") == []
+
+
 def test_x1_is_off_unless_it_is_asked_for() -> None:
     stage = at_a_panel("prima", say("Second."))
     stage.leave("fa")

@@ -150,9 +150,13 @@ class Memory:
         return sorted(found, key=lambda other: other.serial)
 
     def unwait(self, ab: Behavior) -> None:
-        """Let a waiting AB be linked again: something has been put before it (X1, X4)."""
+        """Let a waiting AB be linked again: something has been put before it (X1, X4).
+
+        What it waits for from here on is its own application's.
+        """
         del self.waiting[ab.name]
         ab.state = LINKED
+        ab.waits_from = ab.kept_from = -1
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.invariants.model import AB, Record, base
+from tests.invariants.model import AB, LINKED, WAITING, Record, base
 from tests.invariants.streams import Streams
 
 SECONDS = 60
@@ -32,13 +32,14 @@ class Patience(Streams):
     def note_keepers(self) -> None:
         """At the end of an instant: who is kept from the speaker from here on."""
         waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
-        self._kept = {name: time for name, time in self._kept.items() if name in waiting}
-        self._starving &= set(waiting)
+        kept = {name for name in self._kept if self.abs[name].phase in (WAITING, LINKED)}
+        self._kept = {name: time for name, time in self._kept.items() if name in kept}
+        self._starving &= kept | set(waiting)
         self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
         if self.halted:
             self._kept_now = set()
             return
-        for name in sorted(self._kept):
+        for name in sorted(kept & set(waiting)):
             if self.overdue(waiting[name]) and name not in self._starving:
                 self.report(13, "E6", f"{name} starves, and nothing says so")
 
