@@ -31,7 +31,7 @@ class Telling(Leaving):
         if rule is not None and record["rule"] != rule:
             self.report(13, rule, f"a {phase} is told by {record['rule']}")
         name = record.get("winner") or record.get("behavior")
-        if phase == "request":
+        if phase == "request" and name is not None:
             self.requests.setdefault(name, record)
         elif name is not None and base(name) in self.requests:
             self._told_as_requested(record, base(name))
