@@ -37,7 +37,7 @@ from prima.interpreter.frame import (
     Transfer,
 )
 from prima.interpreter.grammar import Answers
-from prima.interpreter.handling import Armed, Handling
+from prima.interpreter.handling import Handling
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.markup.tree import Node
@@ -102,7 +102,6 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self._timers: list[tuple[int, int, str, Data, int]] = []
         """Delayed events: when, serial number, name, data, and the state they belong to."""
         self._timer_serial = count(1)
-        self.armed: dict[int, Armed] = {}
         self.sensors: dict[str, Json] = {}
         self.untold = False
         """Whether the variable ``sensor`` has old values: it is told the new ones when code runs."""
@@ -575,8 +574,7 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         Events that are raised so are handled before the form's content begins, which
         :meth:`go_on_entering` lets begin: a handler may leave the form (O3).
         """
-        for watch in frame.form.watches:
-            self.armed.pop(id(watch), None)
+        self.handling.forget_watches(frame.form.watches)
         if frame.form.watches and self.sensors:
             self.untold = True
             names = self.handling.check_watches(frame.form.watches)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from prima.errors import Place
 from prima.interpreter.elements import (
@@ -41,14 +41,12 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
+from prima.interpreter.owner import Owner
 from prima.interpreter.plain import PlainEngine
 from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
 from prima.script.evaluation import RESULT_LIMIT, EngineLost, Scope, ScriptError
-
-if TYPE_CHECKING:
-    from prima.interpreter.application import Interpreter
 
 MAX_TEXT = 4000
 """Characters that a Command may say."""
@@ -61,7 +59,7 @@ MAX_REPEATS = 10_000
 class Executor:
     """Runs content for one application."""
 
-    def __init__(self, owner: Interpreter) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.engine = owner.engine
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import (
@@ -28,12 +27,10 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
+from prima.interpreter.owner import Owner
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
 from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
 from prima.script.evaluation import ScriptError
-
-if TYPE_CHECKING:
-    from prima.interpreter.application import Interpreter
 
 
 def confidence_level(document: Document, form: Form, field: Field | None = None) -> float:
@@ -53,7 +50,7 @@ def _shadow(notice: Notice) -> dict[str, Json]:
 class Algorithm:
     """Selects, visits and processes the items of forms, for one application."""
 
-    def __init__(self, owner: Interpreter) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
 
     def interpret(self, frame: Frame, fiber: Fiber, setup: bool) -> Content:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Handler, Item, Watch
 from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
+from prima.interpreter.owner import Owner
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.interpreter.sensors import hides_sensors, sensors_of
 from prima.messages import Event, Json, Notice
 from prima.script.evaluation import Scope, ScriptError
-
-if TYPE_CHECKING:
-    from prima.interpreter.application import Interpreter
 
 MAX_FIBERS = 64
 """Handlers that may be under way at once in a state."""
@@ -36,8 +33,9 @@ def key_of(item: Item | None, event: str) -> Key:
 class Handling:
     """Finds and runs the handlers of one application's events."""
 
-    def __init__(self, owner: Interpreter) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
+        self._armed: dict[int, Armed] = {}
         self._hidden: bool | None = None
         """Whether the document declares what conditions take for granted; None if nobody asked."""
 
@@ -272,17 +270,22 @@ class Handling:
             held[last] = value
         self.owner.engine.set(self.owner.application, "sensor", tree)
 
+    def forget_watches(self, watches: Iterable[Watch]) -> None:
+        """C6: what is watched for counts from here on, true already or not."""
+        for watch in watches:
+            self._armed.pop(id(watch), None)
+
     def check_watches(self, watches: Iterable[Watch]) -> list[str]:
         """C6: raised when the condition turns true, armed again when it turns false.
 
         A condition that looks at sensors alone is as it was while none of them has new values.
         """
         raised = []
-        frame, armed = self.owner.frame, self.owner.armed
+        frame = self.owner.frame
         assert frame is not None
         fiber = Fiber(frame)
         for watch in watches:
-            told = armed.setdefault(id(watch), Armed())
+            told = self._armed.setdefault(id(watch), Armed())
             looked_at = self._sensors_of(watch) if told.report >= 0 else None
             if looked_at is not None and all(
                 self.owner.reported.get(name, 0) <= told.report for name in looked_at

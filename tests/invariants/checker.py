@@ -76,7 +76,7 @@ class Checker(Telling):
 
     def _unload(self, record: Record) -> None:
         if record["actor"] == "mediator":
-            self.left_at_end(record["app"])
+            self.left_at_end(record["app"], record.get("outcome") or "")
             self.gone_apps.add(record["app"])
             self.unloaded.add(record["app"])
             self.taken_out.discard(record["app"])

@@ -38,8 +38,13 @@ class Leaving(Endings):
                 self._is_left(app, before, f"state {state} asks for {record['behavior']}")
         states.add(state)
 
-    def left_at_end(self, app: str) -> None:
-        """O3: an application that ends leaves its state, and all that have called that."""
+    def left_at_end(self, app: str, outcome: str) -> None:
+        """O3: an application that ends leaves its state, and all that have called that.
+
+        One that is ended for an error or a limit may be cut off from them (E2).
+        """
+        if "error." in outcome or "defect" in outcome:
+            return
         states = sorted(self.asked.get(app, ()))
         for state in states[-1:] if app in self.calling else states:
             self._is_left(app, state, "it has ended")

@@ -30,11 +30,11 @@ class Telling(Leaving):
         rule = ALONE.get(phase)
         if rule is not None and record["rule"] != rule:
             self.report(13, rule, f"a {phase} is told by {record['rule']}")
-        name = record.get("winner") or record.get("behavior")
-        if phase == "request" and name is not None:
+        name = base(record.get("winner") or record.get("behavior") or "")
+        if phase == "request":
             self.requests.setdefault(name, record)
-        elif name is not None and base(name) in self.requests:
-            self._told_as_requested(record, base(name))
+        elif name in self.requests:
+            self._told_as_requested(record, name)
         tree = record.get("tree")
         if tree is not None and record["app"] != tree.rpartition(":")[0]:
             self.report(13, "C1", f"a {phase} of {tree} is told of {record['app']}")
