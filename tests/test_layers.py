@@ -88,7 +88,7 @@ INSIDE = {
         {"events", "plain", "selection", "sensors"},
         {"naming"},
         {"entering", "rounds", "surroundings", "units"},
-        {"ways"},
+        {"returning", "ways"},
         {"repeats"},
         {"build", "checks", "frame"},
         {"reader", "owner"},

@@ -570,6 +570,9 @@ AGAIN = {
     "anywhere from elsewhere": (
         CALLED_BACK + THEN.format(f"<block>{BY.format('n')}</block>"), "may be told twice"),
     "anywhere, of the document": (form_of(SAYS) + TO.format(BY.format("n")), "may be told twice"),
+    "a subdialog returns with an event": (
+        '<form id="s"><subdialog name="d" src="#a"><on event="bang"><log>x</log></on></subdialog></form>'
+        + ASKS.format("", TO.format('<return event="bang"/>')), "calls it again"),
     "a subdialog": (CALLED_BACK + CALLS.format("", BACK_THEN, RETURNS), "leads back"),
     "what was called is over": (
         CALLED_BACK + CALLS.format(f"<filled>{BACK_THEN}</filled>", "", RETURNS), "leads back"),
@@ -635,7 +638,14 @@ def assert_said_twice(bench: Bench) -> None:
     assert bench.said()[1:] in ([first], ["Oh.", first])
 
 
+CALLER = '<form id="s"><subdialog name="d" src="#a"><on event="bang">{}</on></subdialog></form>'
+BANG = ASKS.format("", TO.format('<return event="bang"/>'))
 NEVER_AGAIN = {
+    "who called goes elsewhere": CALLER.format("<goto next='#end'/>") + END + BANG,
+    "who called ends": CALLER.format("<exit/>") + BANG,
+    "who called takes it for answered": CALLER.format("<assign name='d' expr='1'/>") + BANG,
+    "who called handles another event": CALLER.replace("bang", "other").format("") + BANG,
+    "returns with no event": CALLER.format("") + ASKS.format("", TO.format("<return/>")),
     "a text": form_of(SAYS + TO.format(BY.format("'#end'"))) + END,
     "one of two": form_of(SAYS + TO.format(BY.format("n ? 'end' : 'other'"))) + END + form_of(SAYS, "other"),
     "begins otherwise": form_of(SAYS + TO.format(BY.format("'#en' + n"))) + END,

@@ -30,6 +30,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.entering import Source, Target, is_left, is_open
 from prima.interpreter.events import beginnings
+from prima.interpreter.returning import callers_of, calls_again, returns_of, told_again
 from prima.interpreter.ways import Ways
 from prima.markup.tree import Node
 from prima.script.choices import choices
@@ -84,6 +85,18 @@ def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Prob
         if one.certain or id(one.way.node) not in told:  # of a guess one example will do
             told.add(id(one.way.node))
             yield _problem(one, remedy)
+    yield from _returning(sources)
+
+
+def _returning(sources: Sequence[Source]) -> Iterator[Problem]:
+    """Warn of handlers that end a subdialog while it speaks, when it will be called again."""
+    callers = callers_of(sources)
+    for source in sources if callers else ():
+        for form in source.document.forms.values():
+            said, calls = said_first(form), callers.get(source.target(form), ())
+            for event, way in returns_of(form, source) if said is not None and calls else ():
+                if said is not None and any(calls_again(*one, way.event) for one in calls):
+                    yield told_again(event, said[0].place.line, said[1], way)
 
 
 class _Leavings:

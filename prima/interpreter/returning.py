@@ -1,0 +1,65 @@
+"""What a subdialog says a second time because a handler ends it with an event (O3).
+
+The form that called it handles the event, goes on, and calls it again.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+from prima.errors import Problem
+from prima.interpreter.elements import Assign, Form, Handler, Return, Subdialog, all_acts, all_items
+from prima.interpreter.entering import Source, Target, is_left
+from prima.interpreter.events import beginnings
+
+REMEDY = "Handle the event here without <return>: what is said goes on then. Or give what is said a cond."
+
+Callers = dict[Target, list[tuple[Source, Form, Subdialog]]]
+
+
+def callers_of(sources: Sequence[Source]) -> Callers:
+    """The items by which each form is called as a subdialog."""
+    found: Callers = defaultdict(list)
+    for source in sources:
+        for form in source.document.forms.values():
+            for item in all_items(form.items):
+                if isinstance(item, Subdialog) and item.expr is None:
+                    for target in source.leads(item):
+                        found[target].append((source, form, item))
+    return found
+
+
+def returns_of(form: Form, source: Source) -> Iterator[tuple[str, Return]]:
+    """Events from outside at which handlers of a form return with an event, and how."""
+    inner = [handler for item in all_items(form.items) for handler in item.handlers]
+    for handler in (*form.handlers, *inner):
+        event = next(filter(source.foreign, handler.events), "")
+        for act in all_acts(handler.content) if event else ():
+            if isinstance(act, Return) and act.event:
+                yield event, act
+
+
+def calls_again(source: Source, form: Form, item: Subdialog, event: str) -> bool:
+    """Whether a form handles an event of what it has called, and then visits the item again."""
+    names = set(beginnings(event))
+    scope = (*item.handlers, *form.handlers, *source.document.handlers)
+    taking = next((one for one in scope if not names.isdisjoint(one.events)), None)
+    return taking is not None and _goes_on(taking, item)
+
+
+def _goes_on(handler: Handler, item: Subdialog) -> bool:
+    """Whether a handler neither leaves the form nor gives the item a value."""
+    if handler.cond is not None or handler.count > 1 or is_left(handler.content):
+        return False
+    given = (act.name for act in all_acts(handler.content) if isinstance(act, Assign))
+    return item.name not in given
+
+
+def told_again(event: str, line: int, asks: bool, way: Return) -> Problem:
+    """The warning of one way."""
+    message = (
+        f'If "{event}" comes while this is {"asked" if asks else "said"} (line {line}), it is told'
+        f' twice: the form that called this one handles "{way.event}" and calls it again.'
+    )
+    return Problem(way.node.place, "warning", "told-twice", message, REMEDY)
