@@ -1,1 +1,1 @@
-"""What is told of documents before they run: warnings that are left out, and certificates."""
+"""Checks before a run: warnings that comments leave out, and what parts of documents cost."""
