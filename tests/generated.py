@@ -323,6 +323,7 @@ LOOPS = (
 )
 HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}</on></speak>'
 THROWN = "thrown.here"
+TURNS = ("suspended", "resumed")
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
 
 
@@ -374,7 +375,7 @@ class Author:
     def form(self, index: int) -> str:
         items = "".join(self.item(index) for _ in range(self.some(0, 2)))
         handlers = "".join(
-            self.handler(index, self.one((*EVENTS, "own", "end", "cancel", "error")))
+            self.handler(index, self.one((*EVENTS, *TURNS, "own", "end", "cancel", "error")))
             for _ in range(self.some(0, 2))
         )
         hints = self.hold(4) + self.connect(4)
@@ -464,9 +465,10 @@ class Author:
     def handler(self, index: int, event: str, unit: bool = False) -> str:
         reactive = self.one(("", "", ' reactive="true"', ' reactive="false"'))
         # Ends and errors may come for ever, so what is done about them asks for nothing;
-        # the application's own event is sent by what comes from outside or once, and leads ahead.
+        # the application's own event is sent by what comes from outside or once, and leads ahead;
+        # so does what its stream comes to.
         simple = event in ("end", "cancel", "error")
-        external = not simple and event != "own"
+        external = not simple and event not in ("own", *TURNS)
         content = self.content(index, unit=unit, simple=simple, external=external, sends=external)
         return f'<on event="{event}"{reactive}>{content}</on>'
 

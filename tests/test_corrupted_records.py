@@ -216,12 +216,24 @@ LEFT_MOVING = play(
     events=(at(300),),
 )
 """A state is left, and the move of the next one is stopped, suspended and resumed."""
+TOLD = play(
+    form(SAY.format("One") + SAY.format("Two"), on("suspended", "<log>so</log>")),
+    SPEAKS,
+    events=(at(10),),
+)
+"""An application hears that its stream has to wait (C2)."""
 TAKEN_OUT = play(form(SAY.format("Long.")), IDLE, events=((10, Unloaded("ea")),))
 
 
 def listens_on(records: Records) -> Records:
     """A question whose state was left listens; cut off there."""
     return records[: indexes(records, phase="cancel", rule="O3")[0]]
+
+
+def told_late(records: Records) -> Records:
+    """The window in which an application hears that its stream waits comes 5 ms too late."""
+    time = records[indexes(records, phase="log")[0]]["time"]
+    return [{**one, "time": time + 5} if one["time"] == time else one for one in records]
 
 
 def without_windows(records: Records) -> Records:
@@ -324,6 +336,7 @@ FALSEHOODS = (
     Falsehood("never-open", RIVALS, drop(0, phase="window", outcome="open"), "15 (C3)"),
     Falsehood("never-closed", RIVALS, drop(0, phase="window", outcome="closed"), "15 (C3)"),
     Falsehood("unheard", RIVALS, without_windows, "15 (C3)"),
+    Falsehood("told-late", TOLD, told_late, "15 (O3)"),
     Falsehood("two-at-once", RIVALS, double({}, phase="window", outcome="open"), "15 (C3)"),
     # Reasons to wait, as long as one waits.
     Falsehood("still-said", HELD_TWICE, drop(1, phase="hold", app="xa"), "13 (S1)"),
