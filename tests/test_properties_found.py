@@ -491,3 +491,15 @@ def test_s2c_what_cancels_a_tree_follows_nothing_that_has_ended() -> None:
     events = ((5, Occurred("corner")), (10, Occurred("touch", "user")))
     run = perform(Play(documents, (0, 0), events, World()))
     assert check(run.records, declared=IN_ORDER) == []
+
+
+def test_x2_what_is_linked_behind_what_waits_in_an_interrupted_unit_is_told_as_linked() -> None:
+    stage = Stage("prima+x2")
+    steps = [Step(say("One.")), Step(say("Two.")), Step(say("Three."), (1,))]
+    stage.request("ea", Group(steps, restartable=True))
+    stage.select()
+    stage.at(100).request("fa", say("Ouch."), cause=1)
+    assert stage.select() == ["fa#1"]
+    outcomes = [r["outcome"] for r in stage.phases("cancel")]
+    assert outcomes == ["running", "waiting", "linked"]
+    assert check(stage.records, "prima+x2") == []

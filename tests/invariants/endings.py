@@ -92,7 +92,9 @@ class Endings(Selection):
             self.wait(ab)
             return
         # What is taken out at once, a failed tree or a unit, may be told as it was before.
-        behind = rule in ("E1", "X2") and was == WAITING and ab.followed_at == self.now
+        behind = (
+            rule in ("E1", "X2") and was == WAITING and self.now in (ab.followed_at, ab.freed_at)
+        )
         if record["outcome"] not in ((was, LINKED) if behind else (was,)):
             self.report(13, rule, f"{ab.shown} is {was} when cancelled, not {record['outcome']}")
         # What the tree wanted when the first of it was taken out, and what it was asked since.

@@ -189,6 +189,7 @@ class Memory:
             other.parents.discard(ab.name)
             if not other.parents and other.phase == LINKED:
                 other.followed_at = self.now if ended else -1
+                other.freed_at = self.now
                 self.wait(other)
 
     def has_left(self, ab: AB) -> bool:

@@ -57,6 +57,8 @@ class AB:
     """The event that it reacted to when it started last."""
     followed_at: float = -1
     """When a parent of it ended, its loop ended, or a window asked for it (S2c)."""
+    freed_at: float = -1
+    """When the last of its parents ended or was cancelled."""
     interrupted: bool = False
     """Whether it has to start again from its beginning (X2)."""
     broken: bool = False
