@@ -131,16 +131,16 @@ def memory(hours: float) -> tuple[float, float, int]:
         WrongAnswer: he came less than twenty times an hour, or was not answered.
     """
     from prima import api
-    from prima.sim import rehearsal
+    from prima.devices import loop
 
     sink = Sink(hours * HOUR / 10)
     with tempfile.TemporaryDirectory() as folder:
         loaded = days(Path(folder), hours)
-    allowed, rehearsal.MAX_RECORDS = rehearsal.MAX_RECORDS, ALWAYS
+    allowed, loop.MAX_RECORDS = loop.MAX_RECORDS, ALWAYS
     try:
         run = api.rehearse(loaded, sink=sink, keep=False)
     finally:
-        rehearsal.MAX_RECORDS = allowed
+        loop.MAX_RECORDS = allowed
     gc.collect()
     check(run.outcome == "until" and not run.failures, f"{run.outcome}: {run.failures}")
     visits = sink.seen["came"]

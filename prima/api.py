@@ -225,7 +225,7 @@ def rehearse(
 
 def _unfinished(rehearsal: Rehearsal) -> list[str]:
     """What each application that has not ended does as a run is stopped, as ``NAME is ...``."""
-    memory, owed = rehearsal.session.mediator.memory, rehearsal.services.owed
+    memory, owed = rehearsal.session.mediator.memory, rehearsal.devices.services.owed
     there = [name for name, app in rehearsal.session.apps.items() if not app.over]
     return [
         f"{name} is {_doing(memory.apps[name], name in owed)}"

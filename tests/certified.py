@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from prima.certificate import Certificate, Delay, Starving
+from prima.devices.voice import duration
 from prima.interpreter.selection import takes
 from prima.messages import Record
-from prima.sim.voice import duration
 from prima.transcript.criteria import observe
 
 SLACK = 0.002

@@ -24,8 +24,8 @@ from typing import Any
 import pytest
 
 from prima import api, cli
+from prima.devices import loop
 from prima.language.commands import DEVICES
-from prima.sim import rehearsal
 
 DOCUMENTS = api.documents_folder()
 WORLD, ROBOT = DOCUMENTS / "worlds" / "office.xml", DOCUMENTS / "robots" / "papero.xml"
@@ -688,7 +688,7 @@ def test_an_application_with_a_dot_in_its_name(prima: Prima, tmp_path: Path) -> 
 def test_nobody_answers_all_day(
     prima: Prima, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rehearsal, "MAX_RECORDS", 5_000)
+    monkeypatch.setattr(loop, "MAX_RECORDS", 5_000)
     body = form('<field name="q" type="text"><prompt timeout="0s"/></field>')
     path = stage(tmp_path, app(body), attributes='until="86400s"')
     prima("run", path, "-o", "t").check(

@@ -9,8 +9,8 @@ import jsonschema
 import pytest
 
 from prima import api
+from prima.devices import voice
 from prima.messages import Record
-from prima.sim import voice
 from prima.transcript.diff import compare, format_difference, summary_line
 from prima.transcript.lines import ORDER, finished, line
 from prima.transcript.record import FIELDS

@@ -11,8 +11,8 @@ from random import Random
 import pytest
 
 from prima import api
+from prima.devices.voice import PAUSE_MS, SENTENCE_MS, duration, timeline
 from prima.messages import Cue, Record
-from prima.sim.voice import PAUSE_MS, SENTENCE_MS, duration, timeline
 from prima.voicexml.cues import MAX_CUES, fold, rate_of
 from prima.voicexml.document import read_page
 from prima.voicexml.recordings import length_ms

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import prima
+from prima.devices import loop
 from prima.errors import LONGEST_TEXT, UsageError
 from prima.errors.codes import CODES
 from prima.handbook import examples
@@ -47,7 +48,6 @@ from prima.markup.schema import (
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, selector
 from prima.script import budget, evaluation, host, parse, prelude, syntax
-from prima.sim import rehearsal
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
 from prima.transcript.record import Record
@@ -271,7 +271,7 @@ def limits() -> str:
         ),
         (
             "what all applications say, log and send in a run",
-            f"{rehearsal.MAX_WRITTEN:,} characters",
+            f"{loop.MAX_WRITTEN:,} characters",
             "the run ends (exit code 3)",
         ),
         (
@@ -328,7 +328,7 @@ def limits() -> str:
             f"{selector.STARVING_LOOPS}",
             "a `starve` record",
         ),
-        ("records of a run", f"{rehearsal.MAX_RECORDS:,}", "the run ends with exit code 3"),
+        ("records of a run", f"{loop.MAX_RECORDS:,}", "the run ends with exit code 3"),
         (
             "a line of a transcript that is read",
             f"{lines.MAX_LINE:,} characters",

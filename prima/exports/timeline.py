@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import count
 
+from prima.devices import voice
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.errors.visible import visible
 from prima.language.values import LONGEST_MS
 from prima.messages import Json, Record
-from prima.sim import voice
 from prima.transcript.table import describe
 
 TAG = re.compile(r"[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*")

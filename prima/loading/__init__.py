@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from prima.markup.tree import Node
     from prima.session import AnyDocument
-    from prima.sim.rehearsal import Cast
+    from prima.sim.devices import Cast
     from prima.sim.scenario import Area, Map, Profile, Scenario
     from prima.voicexml.document import Page
     from prima.voicexml.site import Site
@@ -647,8 +647,9 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
 @few_guesses()
 def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
+    from prima.sim.devices import Cast
     from prima.sim.hearing import check_hearing
-    from prima.sim.rehearsal import Cast, check_cast, check_names
+    from prima.sim.rehearsal import check_cast, check_names
     from prima.sim.scenario import look_at_scenario, read_robot, read_world
 
     scenario, told = look_at_scenario(str(path), data)

@@ -124,7 +124,7 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
         rehearsal = Rehearsal(loaded.cast, policy, bound, patience=round(patience * 1000))
     except UsageError:
         return None
-    watch = Watch(rehearsal.world)
+    watch = Watch(rehearsal.devices.world)
     expected: Sequence[Record] = transcript.records
     place = 1
     for records in rehearsal.run():

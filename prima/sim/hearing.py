@@ -21,7 +21,7 @@ from prima.interpreter.surroundings import (
 from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.tree import Node
-from prima.sim.rehearsal import Cast
+from prima.sim.devices import Cast
 from prima.sim.scenario import Map
 from prima.sim.world import room_beside
 from prima.voicexml.caught import caught_in, thrown_in

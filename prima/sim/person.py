@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
+from prima.devices import voice
 from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes
 from prima.messages import (
@@ -20,7 +21,6 @@ from prima.messages import (
     Record,
     Unloaded,
 )
-from prima.sim import voice
 from prima.sim.robot import Robot
 from prima.sim.scenario import Doing, Scenario, When
 from prima.sim.world import World, distance
@@ -180,7 +180,7 @@ class Person:
                 told = {**self.robot.marks_passed(script.began), **script.told}
                 made.append(Heard(script.speaking, told))
                 script.speaking = ""
-                self.robot.speech_ends()
+                self.robot.ear.speech_ends()
             if not script.left:
                 break
             doing = script.left.pop(0)
@@ -224,7 +224,7 @@ class Person:
         """Begin to say something; what is recorded is over after a silence, or cut off."""
         self.robot.speech_begins(now)
         script.began, script.speaking, script.told = now, text, {}
-        bounds = self.robot.records()
+        bounds = self.robot.ear.recording()
         said = self._timeline(text.rstrip(KEYS_THAT_END) if bounds is not None else text)
         script.lasts, silence = said.total, 0
         if bounds is not None:
@@ -254,7 +254,7 @@ class Person:
                 data = {"recorded": said, "duration": spoken}
             if script.speaking:
                 script.speaking, script.time = "", now
-                self.robot.speech_ends()
+                self.robot.ear.speech_ends()
         return Occurred("connection.disconnect.hangup", "user", data)
 
     def _happen(self, doing: Doing) -> list[Inbound]:

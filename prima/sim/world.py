@@ -22,8 +22,6 @@ THICK = 0.7
 FAR = 3.0
 """How far (m) walls are looked for around the robot."""
 EPSILON = 1e-6
-LOST_AFTER_MS = 1000
-"""How long a human must be out of sight before the camera has lost him."""
 
 
 distance: Callable[[Point, Point], float] = math.dist

@@ -14,8 +14,9 @@ from prima.loading import Loaded, favourite_problem
 from prima.messages import Record
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.selection import policy_named
+from prima.sim.devices import Cast
 from prima.sim.hearing import check_hearing
-from prima.sim.rehearsal import Cast, Rehearsal, check_cast
+from prima.sim.rehearsal import Rehearsal, check_cast
 from prima.sim.scenario import Doing, Scenario, read_scenario
 from prima.sim.services import Web
 from prima.talk.phrases import phrases
@@ -111,7 +112,7 @@ class Game:
         """The question that the user lets pass."""
         self._busy: Callable[[], bool] | None = None
         for line in self.lines:
-            self.rehearsal.person.play(line.at, line.doings)
+            self.rehearsal.devices.person.play(line.at, line.doings)
 
     # What is going on ---------------------------------------------------------------
 
@@ -223,9 +224,14 @@ class Game:
 
     def _is_answered(self, asks: Behavior) -> bool:
         """Whether the scenario's own user does something before a question has timed out."""
-        due = self.rehearsal.person.due()
-        task = self.rehearsal.robot.tasks.get(asks.id)
-        return due is not None and (task is None or task.ends is None or due <= task.ends)
+        due = self.rehearsal.devices.person.due()
+        until = self._answer_until(asks)
+        return due is not None and (until is None or due <= until)
+
+    def _answer_until(self, asks: Behavior) -> int | None:
+        """When the time for an answer to a question is over (ms), if it is."""
+        question = self.rehearsal.devices.robot.ear.questions.get(asks.id)
+        return question.until if question is not None else None
 
     def let_pass(self) -> None:
         """The user says nothing to the question that listens."""
@@ -261,15 +267,15 @@ class Game:
         if self.over:
             self.rehearsal.outcome = ""  # what is put in again goes on
         self.lines.append(Played(at, line.xml, doings, self._last_row()))
-        self._busy = self.rehearsal.person.play(at, doings)
+        self._busy = self.rehearsal.devices.person.play(at, doings)
         return at
 
     def _thinking(self) -> int:
         """How long the user thinks before he answers the question for which time has stopped."""
         if self.asks is None or self.clock > self.rehearsal.now:
             return 0
-        task = self.rehearsal.robot.tasks.get(self.asks.id)
-        left = task.ends - self.clock if task is not None and task.ends else 2 * THINKING_MS
+        until = self._answer_until(self.asks)
+        left = until - self.clock if until is not None else 2 * THINKING_MS
         return min(THINKING_MS, max(left // 2, 0))
 
     def end_line(self) -> Iterator[list[Row]]:
@@ -290,7 +296,7 @@ class Game:
                 "Every application has ended. Put one in again"
                 f" (/load {one_of(self.names.applications)}), or type /quit."
             )
-        if self.rehearsal.world.person is None:
+        if self.rehearsal.devices.world.person is None:
             for doing in doings:
                 if doing.name in MOVES:
                     raise UsageError(f'Nobody is there to do "/{doing.name}".')

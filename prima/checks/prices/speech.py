@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
+from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
-from prima.sim.voice import timeline
 from prima.voicexml.cues import break_ms, fold, milliseconds, rate_of
 from prima.voicexml.inputs import words_of
 from prima.voicexml.prompts import APART, SENTENCE, SILENT, UNKNOWN_MS

@@ -1,0 +1,128 @@
+"""The ear: which question listens, how long it waits, and when the user may interrupt it.
+
+It needs to know when the robot begins and ends to ask, and when the user begins and ends to
+speak. What was said is none of its business.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from prima.messages import Command, Ended, Inbound
+
+
+@dataclass(slots=True)
+class Question:
+    """A question that the robot asks."""
+
+    id: str
+    command: Command
+    listens: bool = False
+    """Whether it has been asked: the user may answer."""
+    until: int | None = None
+    """When its time for an answer is over (ms); None while somebody speaks."""
+    lost: bool = False
+    """Whether another Command has taken its recogniser (only without a mediator)."""
+
+
+class Ear:
+    """The questions that are being asked, and what the user is saying meanwhile."""
+
+    def __init__(self) -> None:
+        self.questions: dict[str, Question] = {}
+        self._voices = 0
+        """How many things the user is saying."""
+
+    def ask(self, behavior: str, command: Command) -> None:
+        """The robot begins to ask a question."""
+        self.questions[behavior] = Question(behavior, command)
+
+    def listen(self, now: int, behavior: str) -> None:
+        """A question has been asked: its time for an answer begins, unless the user speaks."""
+        question = self.questions[behavior]
+        question.listens = True
+        if not self._voices:
+            self._wait(now, question)
+
+    def drop(self, behavior: str) -> None:
+        """A question is over, or was broken off."""
+        self.questions.pop(behavior, None)
+
+    def deafen(self, behavior: str) -> None:
+        """The recogniser hangs: nothing more comes of a question."""
+        if question := self.questions.get(behavior):
+            question.listens, question.until = False, None
+
+    def lose(self, behavior: str) -> None:
+        """Another Command has taken a question's recogniser."""
+        if question := self.questions.get(behavior):
+            question.lost = True
+
+    @property
+    def question(self) -> Question | None:
+        """The question that an answer would go to."""
+        return next((one for one in self.questions.values() if not one.lost), None)
+
+    @staticmethod
+    def _wait(now: int, question: Question) -> None:
+        question.until = now + max(int(question.command.args["timeout"]), 1)
+
+    # The user -----------------------------------------------------------------------
+
+    def speech_begins(self) -> str:
+        """The user begins to speak: a question that listens waits for them to end.
+
+        Returns:
+            The question whose prompt has to be broken off, or nothing. With hotword bargein
+            the robot speaks on until it has understood (VoiceXML 2.0, 4.1.5.1).
+        """
+        self._voices += 1
+        question = self.question
+        if question is None:
+            return ""
+        if question.listens:
+            question.until = None
+            return ""
+        command = question.command
+        return (
+            question.id if command.args.get("bargein", True) and not command.cued("hotword") else ""
+        )
+
+    def speech_ends(self) -> None:
+        """The user has said something to its end, or has broken off."""
+        self._voices -= 1
+
+    def listen_on(self, now: int) -> None:
+        """What the user said was nobody's answer: their time for one begins again."""
+        if self._voices:
+            return
+        for question in self.questions.values():
+            if question.listens and question.until is None:
+                self._wait(now, question)
+
+    def recording(self) -> tuple[int, int] | None:
+        """The longest time and the final silence (ms) of an answer that is recorded.
+
+        As :class:`prima.messages.Cue` has them; 0 where there is no such bound. None if the
+        answer is not recorded.
+        """
+        question = self.question
+        if question is None or not question.command.cued("record"):
+            return None
+        values = {cue.kind: int(cue.value or 0) for cue in question.command.cues if cue.at == 0}
+        return values["record"], values.get("finalsilence", 0)
+
+    # Time ---------------------------------------------------------------------------
+
+    def due(self) -> int | None:
+        """When the next question's time is over, if ever."""
+        ends = [one.until for one in self.questions.values() if one.until is not None]
+        return min(ends, default=None)
+
+    def unanswered(self, now: int, behavior: str) -> list[Inbound]:
+        """The end of a question, if its time for an answer is over (V3, noinput)."""
+        question = self.questions.get(behavior)
+        if question is None or question.until is None or question.until > now:
+            return []
+        self.drop(behavior)
+        return [Ended(behavior, True, {"outcome": "noinput"})]

@@ -1,0 +1,103 @@
+"""The loop between a session and its devices: for virtual time, real time and ``prima talk``.
+
+It has no clock. Whoever drives it jumps to what is due next, or waits until then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.devices.protocol import Devices
+from prima.interpreter.bounds import Visit
+from prima.messages import Record
+from prima.session import Session
+
+MAX_RECORDS = 500_000
+"""Records that a run may make."""
+MAX_WRITTEN = 50_000_000
+"""Characters that the applications of a run may say, log and send."""
+
+
+class Loop:
+    """One run: a session on its devices, instant by instant. Times are ms from its start."""
+
+    def __init__(self, session: Session, devices: Devices, until: int) -> None:
+        self.session = session
+        self.devices = devices
+        self.until = until
+        """When the run ends at the latest."""
+        self.now = 0
+        """The instant that was carried out last."""
+        self.outcome = ""
+        """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+        self.visits: list[Visit] = []
+        """What applications came to in the latest instant."""
+        self._made = 0
+        self._deadline = session.deadline()
+        """When the session has to be stepped even if nothing happens: only a step changes it."""
+        self._ended = session.over
+        """Whether every application has ended, likewise."""
+        self._full = False
+        """Whether the run has made as much as it may."""
+
+    def run(self) -> Iterator[list[Record]]:
+        """Run to the end, giving the records of each instant as they are made."""
+        while (records := self.advance(self.until)) is not None:
+            yield records
+        yield self.finish(self.until)
+
+    def advance(self, until: int) -> list[Record] | None:
+        """Carry out the next instant up to a time.
+
+        Returns:
+            Its records, or None if there is no such instant: nothing is due by then, or
+            ``outcome`` says why the run has ended.
+        """
+        if self.over:
+            self.outcome = "over"
+        due = None if self.outcome else self.due()
+        if due is None or due > until:
+            return None
+        if self._full:
+            self.outcome = "limit"
+            return None
+        return self.step(max(due, self.now))
+
+    def finish(self, until: int) -> list[Record]:
+        """End the run at a time by which nothing is due any more; gives its last records."""
+        due = None if self.outcome else self.due()
+        if not self.outcome:
+            self.outcome = "quiet" if due is None else "until"
+        if self.outcome == "until":
+            self.now = until
+        self.session.recorder.now = self.now
+        self.session.recorder.add("over", "mediator", outcome=self.outcome)
+        self.visits = self.session.drain_visits()
+        self.session.close()
+        return self.session.drain()
+
+    @property
+    def over(self) -> bool:
+        """Whether every application has ended, and none is still to come."""
+        return self._ended and not self.devices.awaits
+
+    def due(self) -> int | None:
+        """When the next instant is, if ever."""
+        due, deadline = self.devices.due(), self._deadline
+        return due if deadline is None else deadline if due is None else min(due, deadline)
+
+    def step(self, now: int) -> list[Record]:
+        """One instant. Where a body only moved on, nobody is told and nothing is decided."""
+        self.now, self.visits = now, []
+        inbound = self.devices.collect(now)
+        if not inbound and (self._deadline is None or now < self._deadline):
+            return []
+        session = self.session
+        for order in session.step(now, inbound):
+            self.devices.order(now, order)
+        self._deadline, self._ended = session.deadline(), session.over
+        records, self.visits = session.drain(), session.drain_visits()
+        self._made += len(records)
+        self._full = self._made > MAX_RECORDS or session.written > MAX_WRITTEN
+        self.devices.observe(now, records)
+        return records

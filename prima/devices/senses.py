@@ -1,0 +1,65 @@
+"""The senses: whether the camera sees the user, and which sensors' values have changed."""
+
+from __future__ import annotations
+
+from prima.messages import Data, Inbound, Json, Occurred, Sensed
+
+LOST_AFTER_MS = 1000
+"""How long a user must be out of sight before the camera has lost them."""
+
+
+class Sight:
+    """Finds and loses the user, whatever comes between for a moment (V4)."""
+
+    def __init__(self, lost_after: int = LOST_AFTER_MS) -> None:
+        self._lost_after = lost_after
+        self._found = False
+        self._unseen_since: int | None = None
+
+    def due(self, now: int, visible: bool) -> int | None:
+        """When to look again though nothing moves (ms), if ever."""
+        if self._unseen_since is not None:
+            return self._unseen_since + self._lost_after
+        return now + 1 if self._found and not visible else None
+
+    def look(self, now: int, visible: bool, where: Data, searching: bool = False) -> list[Inbound]:
+        """Take in whether the user is visible; gives ``human.found`` or ``human.lost``.
+
+        Args:
+            now: the time.
+            visible: whether the camera sees the user.
+            where: their ``distance`` (m) and ``angle`` (degrees).
+            searching: whether a Command is looking for them, which reports by itself.
+        """
+        if visible:
+            self._unseen_since = None
+            if self._found or searching:
+                return []
+            self._found = True
+            return [Occurred("human.found", "robot", where)]
+        if not self._found:
+            return []
+        if self._unseen_since is None:
+            self._unseen_since = now
+        elif now - self._unseen_since >= self._lost_after:
+            self._found, self._unseen_since = False, None
+            return [Occurred("human.lost", "robot")]
+        return []
+
+    def find(self, where: Data) -> Inbound:
+        """A Command that looks for the user has found them."""
+        self._found, self._unseen_since = True, None
+        return Occurred("human.found", "robot", {**where, "sensed": True})
+
+
+class Sensors:
+    """What the sensors have said last, so that only changes are told (C6)."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, Json] = {}
+
+    def take(self, values: Data) -> list[Inbound]:
+        """Take in what sensors say now; gives what has changed."""
+        changed = {key: one for key, one in values.items() if self.values.get(key, ...) != one}
+        self.values.update(changed)
+        return [Sensed(changed)] if changed else []

@@ -1,0 +1,165 @@
+"""All that is simulated around a session: robot, user, services, telephone, and the world's areas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from prima.interpreter.elements import Document
+from prima.interpreter.sensors import sensors_read
+from prima.messages import Inbound, Loaded, Order, Record, Unloaded
+from prima.session import AnyDocument
+from prima.sim.person import Person
+from prima.sim.robot import Robot
+from prima.sim.routes import Routes
+from prima.sim.scenario import Area, Map, Point, Profile, Scenario
+from prima.sim.services import Services, Web
+from prima.sim.telephone import Telephone
+from prima.sim.world import STEP_MS, World
+
+THRESHOLD = 0.5
+"""How far (m) outside an area the robot has left it."""
+
+
+@dataclass(slots=True)
+class Cast:
+    """All that a run needs, read and checked."""
+
+    scenario: Scenario
+    documents: list[AnyDocument]
+    """Those of the scenario's applications, then those that areas of the world offer."""
+    world: Map
+    robot: Profile
+    offers: list[tuple[Area, str]] = field(default_factory=list)
+    """Areas that offer an application, with the application's id."""
+
+
+class SimulatedDevices:
+    """The :class:`~prima.devices.protocol.Devices` of a scenario."""
+
+    def __init__(self, cast: Cast, web: Web | None = None) -> None:
+        scenario = cast.scenario
+        self.cast = cast
+        self.world = _world(cast)
+        self.robot = Robot(cast.robot, self.world, Routes(cast.world))
+        self.person = Person(scenario, self.world, self.robot)
+        self.services = Services(scenario.services, web)
+        self.telephone = Telephone(scenario.transfers)
+        native = [doc for doc in cast.documents if isinstance(doc, Document)]
+        self._native = {doc.id for doc in native}
+        """Applications of PRIMA's own language."""
+        self._watched = _watch_sensors(native, self.robot)
+        self._loads = sorted(
+            (start, index, doc.id)
+            for index, ((_, start, _), doc) in enumerate(
+                zip(scenario.applications, cast.documents, strict=False)
+            )
+        )
+        self._inside: set[str] = set()
+        """Areas that the robot is in."""
+        self._crossed: Point | None = None
+        """Where the robot was when areas were compared with its place last."""
+        self._said = False
+        """Whether something of what came in last was the user's doing."""
+
+    @property
+    def awaits(self) -> bool:
+        """Whether an application is still to be loaded."""
+        return bool(self._loads) or self.person.will_load
+
+    def due(self) -> int | None:
+        """The next instant at which something is to be collected (ms), if ever."""
+        moves = self.world.moving or self.robot.moves_on
+        due: int | None = None
+        for time in (
+            0 if self._crossed is None and self.cast.offers else None,
+            self._loads[0][0] if self._loads else None,
+            self.robot.due(),
+            self.person.due(),
+            self.services.due(),
+            self.telephone.due(),
+            self.world.time + STEP_MS if moves else None,
+        ):
+            if time is not None and (due is None or time < due):
+                due = time
+        return due
+
+    def collect(self, now: int) -> list[Inbound]:
+        """All that happens by ``now``, in order."""
+        self.world.advance(now)
+        inbound: list[Inbound] = []
+        while self._loads and self._loads[0][0] <= now:
+            inbound.append(self._loaded(self._loads.pop(0)[2]))
+        if self.cast.offers:
+            inbound += self._cross()
+        inbound += self.robot.collect(now)
+        said = self.person.collect(now)
+        self._said = bool(said)
+        for value in said:
+            inbound.append(self._loaded(value.app) if isinstance(value, Loaded) else value)
+        inbound += self.services.collect(now)
+        inbound += self.telephone.collect(now)
+        if self._watched:
+            inbound += self.robot.sense(self.person.sensors)
+        return inbound
+
+    def order(self, now: int, order: Order) -> None:
+        """Give an order to whom it is for."""
+        if order.verb != "send":
+            self.robot.order(now, order)
+        elif "transfer" in order.data:
+            self.telephone.order(now, order)
+        else:
+            self.services.order(now, order)
+
+    def observe(self, now: int, records: list[Record]) -> None:
+        """Let the user see what has happened; the robot listens on."""
+        if self._said:
+            self.robot.ear.listen_on(now)
+        self.person.observe(now, records)
+
+    def _loaded(self, name: str, place: str = "") -> Loaded:
+        """An application starts; one of VoiceXML is told of the user's call."""
+        native = name in self._native
+        return Loaded(name, place, {} if native else self.cast.scenario.connection)
+
+    def _cross(self) -> list[Inbound]:
+        """Load what an area offers that the robot has come into, and unload what it has left."""
+        here = self.world.position
+        if here is self._crossed:
+            return []
+        self._crossed = here
+        crossed: list[Inbound] = []
+        for area, name in self.cast.offers:
+            inside = area.id in self._inside
+            if not inside and area.holds(here):
+                self._inside.add(area.id)
+                crossed.append(self._loaded(name, area.title))
+            elif inside and not area.holds(here, THRESHOLD):
+                self._inside.discard(area.id)
+                crossed.append(Unloaded(name, area.title))
+        return crossed
+
+
+def _world(cast: Cast) -> World:
+    """The world, with robot and user where the scenario lets them begin."""
+    scenario, plan = cast.scenario, cast.world
+    first = next(iter(plan.places.values()), (0.0, 0.0))
+    at = plan.places.get(scenario.robot_at, first)
+    heading = scenario.robot_heading
+    if heading is None:
+        heading = plan.headings.get(scenario.robot_at, 0.0)
+    world = World(plan, cast.robot, at, heading)
+    world.person = scenario.person_point or plan.point(scenario.person_at)
+    return world
+
+
+def _watch_sensors(documents: list[Document], robot: Robot) -> bool:
+    """Whether an application watches sensors; the robot is told which, where that is known."""
+    if not any(
+        doc.watches or any(form.watches for form in doc.forms.values()) for doc in documents
+    ):
+        return False
+    read = [sensors_read(doc) for doc in documents]
+    known = [one for one in read if one is not None]
+    robot.told_of = frozenset().union(*known) if len(known) == len(read) else None
+    return True

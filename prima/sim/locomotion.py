@@ -1,0 +1,268 @@
+"""How the simulated robot moves its body, loop by loop: the wheels' speeds for each Command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from prima.messages import Command, Json
+from prima.sim.plan import off_line
+from prima.sim.routes import Routes
+from prima.sim.scenario import Motion, Point, Profile
+from prima.sim.world import World, bearing, difference, distance
+
+ARRIVED = 0.1
+"""How near a goal is reached (m)."""
+PASSED = 0.25
+"""How near a point on the way is passed (m)."""
+BLOCKED_MS = 10_000
+"""How long a way may be blocked before the move has failed."""
+IN_THE_WAY = 0.8
+"""How near a person in front makes the robot go round them (m)."""
+TOO_NEAR = 0.1
+"""How near (m) its body may come to them in front."""
+PASSING = 70.0
+"""How many degrees off the person's direction it passes them."""
+ALIGNED = 1.5
+"""How many degrees off a direction counts as turned to it."""
+REACTING_S = 0.2
+"""How long the robot goes on off its way after a dance has stopped taking it there (X5)."""
+AFTERMATH_MS = 1000
+"""How long after it moved the body a dance answers for where the robot is (X5)."""
+
+
+@dataclass(slots=True)
+class Plan:
+    """What a locomotion Command remembers from loop to loop; forgotten when interrupted."""
+
+    path: list[Point] | None = None
+    turn_left: float = 0.0
+    since: int = -1_000_000
+    last: tuple[Point, float] | None = None
+    stuck: int = 0
+    sought: Point | None = None
+    scanned: float = 0.0
+    goal: bool = False
+    """Whether it has got where it was to go."""
+    track: list[Point] = field(default_factory=list)
+    """The whole way of a move, from where it began."""
+    strayed: float = 0.0
+    """How far (m) a motion composed with a move has taken the robot off its way (X5)."""
+
+
+class Locomotion:
+    """Sets the wheels. A motion gives True when it has nothing left to do."""
+
+    def __init__(self, profile: Profile, world: World, routes: Routes) -> None:
+        self.profile = profile
+        self.world = world
+        self.routes = routes
+        self._stopped: dict[str, tuple[Point, list[Point]]] = {}
+        """By the places it was on the way to: where it stopped, and which way was left."""
+
+    def stand(self) -> None:
+        """Stop the wheels."""
+        self.world.drive = (0.0, 0.0)
+
+    # Ways ---------------------------------------------------------------------------
+
+    def way(self, to: str) -> list[Point] | None:
+        """The way to a place: the one it was on, where the robot still is where it stopped.
+
+        Else a pause would let it cut a corner, and nobody would hear of that corner.
+        """
+        at, left = self._stopped.get(to, (self.world.position, []))
+        if left and distance(at, self.world.position) <= ARRIVED:
+            return list(left)
+        return self.routes.route(self.world, to)
+
+    def note_way(self, to: str, plan: Plan) -> None:
+        """Note where a move has stopped, and its way from there."""
+        self._stopped[to] = self.world.position, list(plan.path or ())
+
+    def blocked(self, plan: Plan) -> bool:
+        """Whether a move has not got on for too long; another try may find another way."""
+        position, heading = self.world.position, self.world.heading
+        if plan.last is not None:
+            moved = distance(position, plan.last[0]) > 0.02
+            turned = abs(difference(heading, plan.last[1])) > 2.0
+            plan.stuck = 0 if moved or turned else plan.stuck + self.profile.loop
+        plan.last = (position, heading)
+        if plan.stuck < BLOCKED_MS:
+            return False
+        self.stand()
+        self._stopped.clear()
+        return True
+
+    def turn_needed(self, command: Command) -> float | None:
+        """How far (degrees) to turn to the direction or place of a Command; None if unknown."""
+        if "toward" in command.args:
+            point = self.world.map.point(str(command.args["toward"]))
+            if point is None:
+                return None
+            heading = bearing(self.world.position, point)
+        else:
+            heading = float(command.args["heading"])
+        return difference(heading, self.world.heading)
+
+    # Motions ------------------------------------------------------------------------
+
+    def _rotate(self, left: float) -> None:
+        limit = self.profile.turn_speed
+        speed = max(min(left * 4.0, limit), -limit)
+        if abs(speed) < 10.0:
+            speed = 10.0 if left > 0 else -10.0
+        self.world.drive = (0.0, speed)
+
+    def _turned(self, plan: Plan) -> float:
+        """How far the robot has turned since the last time (degrees)."""
+        heading = self.world.heading
+        before = plan.last[1] if plan.last else heading
+        plan.last = (self.world.position, heading)
+        return difference(heading, before)
+
+    def turn(self, plan: Plan) -> bool:
+        """Turn by what is left of an angle."""
+        plan.turn_left -= self._turned(plan)
+        if abs(plan.turn_left) <= ALIGNED:
+            self.world.drive = (0.0, 0.0)
+            return True
+        self._rotate(plan.turn_left)
+        return False
+
+    def face(self, plan: Plan) -> bool:
+        """Turn to the user, looking for them all round."""
+        world = self.world
+        plan.scanned += abs(self._turned(plan))
+        if world.sees_person() and world.person is not None:
+            off = difference(bearing(world.position, world.person), world.heading)
+            if abs(off) <= 5.0:
+                world.drive = (0.0, 0.0)
+                return True
+            self._rotate(off)
+            return False
+        if plan.scanned >= 360.0:
+            world.drive = (0.0, 0.0)
+            return True
+        self._rotate(90.0)
+        return False
+
+    def _toward(self, point: Point, near: float) -> None:
+        """Drive toward a point: turn on the spot first, then go, slower when near."""
+        self._go(*self._round_person(bearing(self.world.position, point), point), near)
+
+    def _go(self, heading: float, fastest: float, near: float) -> None:
+        world, profile = self.world, self.profile
+        off = difference(heading, world.heading)
+        turning = max(min(off * 3.0, profile.turn_speed), -profile.turn_speed)
+        if abs(off) > 30.0:
+            world.drive = (0.0, turning)
+        else:
+            world.drive = (min(fastest, max(near * 1.5, 0.1)), turning)
+
+    def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
+        """The direction and speed that pass a person who stands in the way, if one does."""
+        world, profile = self.world, self.profile
+        person = world.person
+        if person is None or distance(person, goal) < 0.05:
+            return heading, profile.speed
+        gap = distance(world.position, person)
+        toward = bearing(world.position, person)
+        aside = difference(heading, toward)
+        if gap > IN_THE_WAY or gap > distance(world.position, goal) or abs(aside) > PASSING:
+            return heading, profile.speed
+        if gap < profile.radius + TOO_NEAR and abs(difference(toward, world.heading)) < 60.0:
+            return toward + (PASSING if aside >= 0 else -PASSING), 0.0
+        return toward + (PASSING if aside >= 0 else -PASSING), profile.speed / 2
+
+    def drive_path(self, plan: Plan, command: Command) -> bool:
+        """Go through the points of the way, and turn to the heading asked for."""
+        world, path = self.world, plan.path
+        if path is None:
+            return True
+        while path:
+            left = distance(world.position, path[0])
+            if left > (ARRIVED if len(path) == 1 else PASSED):
+                self._toward(path[0], left if len(path) == 1 else 10.0)
+                return False
+            path.pop(0)
+        heading = command.args.get("heading")
+        if heading is not None:
+            off = difference(float(heading), world.heading)
+            if abs(off) > ALIGNED:
+                self._rotate(off)
+                return False
+        world.drive = (0.0, 0.0)
+        plan.goal = True
+        return True
+
+    def track(self, plan: Plan, command: Command) -> bool:
+        """Stay at a distance (m) from the user."""
+        world, keep = self.world, float(command.args["distance"])
+        if world.sees_person():
+            plan.sought = world.person
+        if plan.sought is None:
+            self._rotate(90.0)
+            return False
+        seen = plan.sought == world.person
+        left = distance(world.position, plan.sought) - (keep if seen else 0.0)
+        if seen and left <= 0.05:
+            off = difference(bearing(world.position, plan.sought), world.heading)
+            if abs(off) > 5.0:
+                self._rotate(off)
+            else:
+                world.drive = (0.0, 0.0)
+        elif not seen and left <= PASSED:
+            plan.sought = None  # they are not where they were seen last: look around
+        else:
+            toward = bearing(world.position, plan.sought)
+            heading, fastest = self._round_person(toward, plan.sought)
+            self._go(world.beside_walls(heading), fastest, left)
+        return False
+
+    def search(self, plan: Plan) -> bool:
+        """Turn on while the user is not to be seen."""
+        plan.turn_left -= self._turned(plan)
+        if abs(plan.turn_left) > ALIGNED and not self.world.sees_person():
+            self._rotate(plan.turn_left)
+        else:
+            plan.turn_left = 0.0
+            self.world.drive = (0.0, 0.0)
+        return False
+
+    def dance(self, plan: Plan, motion: Motion, now: int, began: int, track: list[Point]) -> bool:
+        """Go through the steps of an added motion, on top of a move that goes on (X5).
+
+        Args:
+            plan: the motion's.
+            motion: its steps.
+            now: the time (ms).
+            began: when it began.
+            track: the whole way of that move; empty if there is none.
+        """
+        speed, turning = motion.at(now - began)
+        if not track:
+            self.world.drive = (speed, turning)
+            return False
+        off = min((off_line(self.world.position, *ends) for ends in pairwise(track)), default=0.0)
+        if now - plan.since <= AFTERMATH_MS:
+            plan.strayed = max(plan.strayed, off)
+        if off < motion.stray - self.profile.speed * REACTING_S:
+            plan.since = now
+            forward, left = self.world.drive
+            limit = self.profile.turn_speed
+            forward = min(max(forward + speed, -self.profile.speed), self.profile.speed)
+            self.world.drive = (forward, min(max(left + turning, -limit), limit))
+        return False
+
+    # What it measures ---------------------------------------------------------------
+
+    def whereabouts(self) -> dict[str, Json]:
+        """Where the user is from here: ``distance`` (m) and ``angle`` (degrees)."""
+        person, position = self.world.person, self.world.position
+        if person is None:
+            return {}
+        return {
+            "distance": round(distance(position, person), 2),
+            "angle": round(difference(bearing(position, person), self.world.heading), 1),
+        }
