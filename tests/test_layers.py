@@ -56,7 +56,7 @@ INSIDE = {
     ],
     "errors": [{"codes", "visible"}, {"rendering"}, {"__init__"}],
     "language": [{"values"}, {"commands"}, {"__init__"}],
-    "loading": [{"web", "writing"}, {"__init__"}],
+    "loading": [{"files", "web", "writing"}, {"__init__"}],
     "experiments": [{"batch", "study"}, {"__init__"}],
     "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [
@@ -134,7 +134,9 @@ INSIDE = {
         {"__init__"},
     ],
     "sim": [
-        {"vocabulary", "plan"},
+        {"vocabulary", "plan", "reading"},
+        {"map", "profile", "happenings"},
+        {"expectations"},
         {"scenario"},
         {"world"},
         {"routes"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import pickle
 import sys
 from collections import Counter
 from collections.abc import Collection
@@ -18,10 +19,11 @@ from prima.errors import DocumentError
 from prima.messages import Inbound, Order
 from prima.scheduler.selection import policy_named
 from prima.session import Session
-from prima.sim import rehearsal as simulation
+from prima.sim import devices
+from prima.sim.map import Map
+from prima.sim.profile import Profile
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
-from prima.sim.scenario import Map, Profile
 from prima.sim.world import World
 from prima.transcript import criteria
 
@@ -383,7 +385,7 @@ def test_only_sensors_that_somebody_looks_at_are_told_after_the_first_report(
     other = '<form id="f"><watch name="m" when="sensor.moving"/></form>'
     _, *more = reports(rehearse(tmp_path, WATCHING, TURNS, other=other))
     assert more == [*[{"moving"}] * 4, {"battery.level"}], "it turns there and back"
-    monkeypatch.setattr(simulation, "sensors_read", lambda document: None)
+    monkeypatch.setattr(devices, "sensors_read", lambda document: None)
     everything = rehearse(tmp_path, WATCHING, TURNS)
     assert len(reports(everything)) > 20
     assert [one for one in everything.records if one["phase"] != "sensed"] == [
@@ -706,3 +708,10 @@ def test_whenever_touch_and_message_come_the_room_is_reached(
     transcript = api.rehearse(tmp_path / "s.xml")
     assert transcript.records[-1]["outcome"] == "quiet"
     assert '"I\'ve just reached the goal."' in told(transcript)
+
+
+@pytest.mark.parametrize("name", ["follow-during-navigation.xml", "pizza-and-follow.xml"])
+def test_what_a_run_needs_can_be_sent_to_another_process(name: str) -> None:
+    loaded = api.load_scenario(ROOT / "documents" / "scenarios" / name)
+    again = pickle.loads(pickle.dumps(loaded))
+    assert api.rehearse(again).records == api.rehearse(loaded).records

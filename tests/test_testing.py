@@ -21,8 +21,9 @@ import pytest
 
 from prima import api
 from prima.errors import DocumentError, RunError, UsageError
+from prima.sim.happenings import When
 from prima.sim.person import PHASES, Person
-from prima.sim.scenario import When, read_scenario
+from prima.sim.scenario import read_scenario
 from prima.testing.checking import check, make_run, triggers
 from prima.testing.coverage import Coverage, merge, total
 from prima.testing.finding import find, is_scenario

@@ -13,9 +13,10 @@ from prima.checks.prices.bounds import Busy, busy_at_all
 from prima.errors import DocumentError, Place, UsageError
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
-from prima.loading import documents_folder, read_application, read_file
+from prima.loading import documents_folder, read_application
+from prima.loading.files import read_file
 from prima.session import AnyDocument
-from prima.sim.scenario import Profile, read_robot
+from prima.sim.profile import Profile, read_robot
 
 __all__ = [
     "Certificate",

@@ -180,7 +180,7 @@ class SourceLines:
         """A file's lines; none where it cannot be read."""
         if file not in self._held:
             from prima.errors import DocumentError
-            from prima.loading import read_file
+            from prima.loading.files import read_file
             from prima.markup.reader import decode
 
             try:

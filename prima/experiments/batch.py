@@ -325,7 +325,7 @@ def _few(messages: list[str]) -> list[str]:
 def _run(options: Options, job: Job) -> Row:
     """Make a run; its transcript has its name when it is complete, and then its ledger."""
     from prima import api
-    from prima.loading import in_place_of_files
+    from prima.loading.files import in_place_of_files
 
     if job.stem:
         _make_room(job)

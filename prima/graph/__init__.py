@@ -80,7 +80,8 @@ def picture(
 
 def _root(path: str | Path) -> str:
     """The tag with which a document begins; empty where it is none of PRIMA's."""
-    from prima.loading import is_grammar, is_voicexml, read_file
+    from prima.loading import is_grammar, is_voicexml
+    from prima.loading.files import read_file
     from prima.markup.reader import parse
 
     data = read_file(path)
@@ -95,8 +96,8 @@ def world_map(path: str | Path, to: str = "svg") -> str:
         DocumentError: the world is wrong.
     """
     from prima.graph import worldmap
-    from prima.loading import read_file
-    from prima.sim.scenario import read_world
+    from prima.loading.files import read_file
+    from prima.sim.map import read_world
 
     world = read_world(str(path), read_file(path))
     marks = len(world.places) + len(world.things) + len(world.corners)
@@ -115,7 +116,8 @@ def states(path: str | Path) -> Graph:
         DocumentError: the application is wrong.
     """
     from prima.interpreter.elements import Document
-    from prima.loading import read_application, read_file
+    from prima.loading import read_application
+    from prima.loading.files import read_file
 
     data = read_file(path)
     _refuse_others(path, data)
@@ -160,7 +162,7 @@ def _refuse_others(path: str | Path, data: bytes) -> None:
 
 def _transcript(path: str | Path) -> bool:
     """Whether a file begins as a transcript does, and not as XML."""
-    from prima.loading import read_file
+    from prima.loading.files import read_file
 
     try:
         if not Path(path).is_file():

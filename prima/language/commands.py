@@ -72,7 +72,7 @@ class CommandType:
     engages: bool = False
     text: Literal["none", "optional", "required"] = "none"
     now: bool = False
-    arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+    arguments: Mapping[str, Argument] = field(default_factory=dict)
     effects: frozenset[str] = frozenset()
     """What later Commands of a stream may rely on once it has ended (rule X1): :data:`EFFECTS`."""
     motion: Literal["", "faithful", "free"] = ""
@@ -115,9 +115,7 @@ def _row(
         effects=frozenset(effects.split()),
         motion="free" if "leaves" in marks else "",
         text=text,
-        arguments=MappingProxyType(
-            {key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()}
-        ),
+        arguments={key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()},
     )
 
 

@@ -9,11 +9,9 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from itertools import islice
-from os.path import exists, getsize, isfile, normpath
+from os.path import exists, normpath
 from typing import TYPE_CHECKING, TypeVar
 
 from prima.checks.ignores import Ignores
@@ -34,10 +32,11 @@ from prima.interpreter.elements import Document
 from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading.files import Folder, path_of, read_file
 from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
 from prima.markup.opening import root_of
-from prima.markup.reader import parse, too_large
+from prima.markup.reader import parse
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,73 +44,13 @@ if TYPE_CHECKING:
     from prima.markup.tree import Node
     from prima.session import AnyDocument
     from prima.sim.devices import Cast
-    from prima.sim.scenario import Area, Map, Profile, Scenario
+    from prima.sim.map import Area, Map
+    from prima.sim.profile import Profile
+    from prima.sim.scenario import Scenario
     from prima.voicexml.document import Page
     from prima.voicexml.site import Site
 
 # What one use needs and another does not is imported where it is used: most commands are short.
-
-
-_texts: ContextVar[Mapping[Path, bytes] | None] = ContextVar("texts", default=None)
-"""What counts in place of files on the disk, by resolved paths."""
-
-
-@contextmanager
-def in_place_of_files(texts: Mapping[Path, bytes]) -> Iterator[None]:
-    """Let the bytes of documents that lie open in an editor count in place of their files.
-
-    Args:
-        texts: the bytes by resolved paths.
-    """
-    token = _texts.set(texts)
-    try:
-        yield
-    finally:
-        _texts.reset(token)
-
-
-def _path(path: str | Path) -> Path:
-    """A path as one object; whatever reads a file by its name does without these modules."""
-    from pathlib import Path
-
-    return Path(path)
-
-
-def _open_text(path: str | Path) -> bytes | None:
-    """What counts in place of a file, if anything does."""
-    texts = _texts.get()
-    if not texts:
-        return None
-    try:
-        return texts.get(_path(path).resolve())
-    except (OSError, ValueError, RuntimeError):
-        return None
-
-
-def read_file(path: str | Path) -> bytes:
-    """Read a document's bytes, up to the limit.
-
-    Raises:
-        DocumentError: the file is larger than any document may be.
-        UsageError: it cannot be read.
-    """
-    text = _open_text(path)
-    if text is not None:
-        if len(text) > LIMITS.bytes:
-            raise too_large(str(path), len(text))
-        return text
-    try:
-        if exists(path) and not isfile(path):
-            raise UsageError(f"{path}: cannot be read: it is not a file.")
-        with open(path, "rb") as stream:
-            data = stream.read(LIMITS.bytes + 1)
-            if len(data) > LIMITS.bytes:
-                raise too_large(str(path), max(getsize(path), len(data)))
-            return data
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except ValueError:
-        raise UsageError(f"{path!r} is not a file's name.") from None
 
 
 def read_application(
@@ -134,15 +73,13 @@ def read_application(
         return native, problems
     from prima.voicexml.document import VoiceDocument, read_page
 
-    file = _path(path)
+    file = path_of(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
-    folder = _path(site.folder) if site else file.parent
-    document = VoiceDocument(
-        own, kind or "ea", path, page, lambda uri: _fetch(folder, uri), page.root
-    )
-    document.glance = lambda uri, most: _glance(folder, uri, most)
-    return document, page.problems
+    folder = Folder(site.folder if site else str(file.parent))
+    return VoiceDocument(
+        own, kind or "ea", path, page, folder.fetch, page.root, folder.glance
+    ), page.problems
 
 
 VOICEXML = re.compile(rb"<(?:[\w.-]+:)?vxml[\s>/]")
@@ -169,52 +106,6 @@ def is_application(path: str) -> bool:
     except (DocumentError, UsageError):
         return False
     return is_voicexml(data) or DIALOGUE.namespace.encode() in data[:4096]
-
-
-def _fetch(folder: Path, uri: str) -> bytes:
-    """A resource of a VoiceXML application: a file inside its folder, and nothing else."""
-    from prima.voicexml.document import FetchError
-
-    target = _inside(folder, uri)
-    try:
-        return read_file(target)
-    except UsageError as error:
-        raise FetchError(str(error).removeprefix(f"{target}: ")) from None
-    except DocumentError as error:
-        raise FetchError(error.problems[0].message) from None
-
-
-def _glance(folder: Path, uri: str, most: int) -> tuple[bytes, int]:
-    """The first bytes of a file inside an application's folder, and how many it has."""
-    from prima.voicexml.document import FetchError
-
-    try:
-        target = _inside(folder, uri)
-        if not target.is_file():
-            raise FetchError("there is no such file")
-        with target.open("rb") as stream:
-            return stream.read(most), target.stat().st_size
-    except (OSError, ValueError) as error:
-        raise FetchError(str(error)) from None
-
-
-def _inside(folder: Path, uri: str) -> Path:
-    """Where a file of an application's folder is; nothing else is looked at."""
-    from urllib.parse import unquote, urlsplit
-
-    from prima.voicexml.document import FetchError
-
-    parts = urlsplit(uri)
-    if parts.scheme not in ("", "file"):
-        raise FetchError(f"{parts.scheme}: is not fetched: no network is used", "error.badfetch")
-    root = folder.resolve()
-    try:
-        target = (root / unquote(parts.path).lstrip("/")).resolve()
-    except (OSError, ValueError, RuntimeError) as error:  # a NUL, links that lead round
-        raise FetchError(f"it names no file: {error}", "error.badfetch") from None
-    if root != target and root not in target.parents:
-        raise FetchError("it is outside the application's folder")
-    return target
 
 
 def load(path: str | Path) -> Document:
@@ -304,10 +195,11 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
         if not application and is_voicexml(data):
             return list(_voicexml_problems(path, data, _mapped_site(path, maps)))
         if not application and (is_grammar(data) or path.lower().endswith(GRAMMAR_FILES)):
-            return _grammar_problems(_path(path), data)
+            return _grammar_problems(path_of(path), data)
         if application:
             return _application_problems(path, data)
-        from prima.sim.scenario import read_robot, read_world
+        from prima.sim.map import read_world
+        from prima.sim.profile import read_robot
         from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 
         kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO)
@@ -316,7 +208,7 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
             return _application_problems(path, data)
         if vocabulary is WORLD:
             world = read_world(path, data)
-            reading = _Reading(_path(path), {}, [*world.warnings])
+            reading = _Reading(path_of(path), {}, [*world.warnings])
             for area in world.areas:
                 if area.src not in reading.files:
                     reading.offered(area.src, area)
@@ -324,7 +216,7 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
         elif vocabulary is ROBOT:
             return read_robot(path, data).warnings
         else:
-            return _load(_path(path), data, whole=True).problems
+            return _load(path_of(path), data, whole=True).problems
     except DocumentError as error:
         return error.problems
     return []
@@ -381,14 +273,14 @@ def _voicexml_problems(
     from prima.voicexml.sketched import check_sketched
     from prima.voicexml.variables import check_variables
 
-    folder = _path(site.folder) if site else _path(path).parent
-    first = read_page(site.name(site.uri) if site else _path(path).name, path, data, site)
-    pages = Pages(first, path, lambda uri: _fetch(folder, uri))
+    folder = path_of(site.folder) if site else path_of(path).parent
+    first = read_page(site.name(site.uri) if site else path_of(path).name, path, data, site)
+    pages = Pages(first, path, Folder(str(folder)).fetch)
 
     def script(page: Page, node: Node) -> str | None:
         try:
             source = page.resolve(node.get("src"), node) if node.get("src") else ""
-            return _fetch(folder, source).decode("utf-8") if source else None
+            return Folder(str(folder)).fetch(source).decode("utf-8") if source else None
         except (FetchError, ValueError):
             return None
 
@@ -475,7 +367,7 @@ def _fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
 
     def fetch(uri: str) -> bytes:
         try:
-            return _fetch(folder, site.name(uri) if site else uri)
+            return Folder(str(folder)).fetch(site.name(uri) if site else uri)
         except FetchError as error:
             raise LookupError(str(error).rstrip(".")) from None
 
@@ -504,7 +396,7 @@ def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
 def _prices(document: Document) -> list[Problem]:
     """What an application's units cost others, on the demo's robot, as notes."""
     from prima.checks.prices import notes
-    from prima.sim.scenario import read_robot
+    from prima.sim.profile import read_robot
 
     robot = documents_folder() / "robots" / "papero.xml"
     return notes(document, read_robot(str(robot), read_file(robot)))
@@ -517,7 +409,7 @@ def load_scenario(path: str | Path) -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _without_ignored(_load(_path(path), read_file(path)))
+    return _without_ignored(_load(path_of(path), read_file(path)))
 
 
 def _without_ignored(loaded: Loaded) -> Loaded:
@@ -571,7 +463,7 @@ def stage(
         f"{_standing(world)}{''.join(applications + answers)}</scenario>"
     )
     try:
-        loaded = _load(_path("stage.xml"), text.encode())
+        loaded = _load(path_of("stage.xml"), text.encode())
     except DocumentError as error:
         if any(
             one.code == "duplicate-id" and one.place.file == "stage.xml" for one in error.problems
@@ -597,7 +489,7 @@ def _standing(world: str) -> str:
     from html import escape
     from math import cos, radians, sin
 
-    from prima.sim.scenario import read_world
+    from prima.sim.map import read_world
 
     there = read_world(world, read_file(world))
     if not there.places:
@@ -649,8 +541,10 @@ def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.devices import Cast
     from prima.sim.hearing import check_hearing
+    from prima.sim.map import read_world
+    from prima.sim.profile import read_robot
     from prima.sim.rehearsal import check_cast, check_names
-    from prima.sim.scenario import look_at_scenario, read_robot, read_world
+    from prima.sim.scenario import look_at_scenario
 
     scenario, told = look_at_scenario(str(path), data)
     reading = _Reading(path, {path.name: _digest(data)}, [*told], whole=whole)
@@ -703,7 +597,7 @@ class _Reading:
         """A document that the scenario names, or None where it cannot be had."""
         if not name:
             return None  # told already, as a problem of the schema
-        target = _path(normpath(self.path.parent / name))
+        target = path_of(normpath(self.path.parent / name))
         content = b""
         try:
             content = read_file(target)
@@ -886,11 +780,11 @@ def _digest(data: bytes) -> str:
 
 def schemas_folder() -> Path:
     """The folder of the schemas that come with the package."""
-    inside = _path(__file__).parent.parent / "schemas"
-    return inside if inside.is_dir() else _path(__file__).parent.parent.parent / "schemas"
+    inside = path_of(__file__).parent.parent / "schemas"
+    return inside if inside.is_dir() else path_of(__file__).parent.parent.parent / "schemas"
 
 
 def documents_folder() -> Path:
     """The folder of the demo documents that come with the package."""
-    inside = _path(__file__).parent.parent / "documents"
-    return inside if inside.is_dir() else _path(__file__).parent.parent.parent / "documents"
+    inside = path_of(__file__).parent.parent / "documents"
+    return inside if inside.is_dir() else path_of(__file__).parent.parent.parent / "documents"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, in_order
+from prima.loading.files import in_place_of_files
 from prima.lsp.desk import Desk
 from prima.lsp.scan import Page
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
@@ -48,7 +49,7 @@ def check(desk: Desk, path: Path) -> dict[Path, list[Problem]]:
     text = desk.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with loading.in_place_of_files(desk.unsaved()):
+    with in_place_of_files(desk.unsaved()):
         try:
             problems = loading.validate([path])
         except DocumentError as error:

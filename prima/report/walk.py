@@ -18,7 +18,7 @@ from prima.messages import Json, Record
 if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.loading import Loaded
-    from prima.sim.scenario import Map
+    from prima.sim.map import Map
     from prima.sim.world import World
 
 MOST_POSES = 60_000

@@ -8,10 +8,12 @@ from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.session import AnyDocument
+from prima.sim.map import Area, Map, Point
 from prima.sim.person import Person
+from prima.sim.profile import Profile
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
-from prima.sim.scenario import Area, Map, Point, Profile, Scenario
+from prima.sim.scenario import Scenario
 from prima.sim.services import Services, Web
 from prima.sim.telephone import Telephone
 from prima.sim.world import STEP_MS, World

@@ -8,7 +8,9 @@ from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
 from prima.session import AnyDocument
-from prima.sim.scenario import Expectation, Profile, Scenario
+from prima.sim.expectations import Expectation
+from prima.sim.profile import Profile
+from prima.sim.scenario import Scenario
 
 COMMANDS = ("does", "finishes", "doing", "done")
 """Attributes that name a Command."""

@@ -22,7 +22,7 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.sim.devices import Cast
-from prima.sim.scenario import Map
+from prima.sim.map import Map
 from prima.sim.world import room_beside
 from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from prima.messages import Command, Json
+from prima.sim.map import Point
 from prima.sim.plan import off_line
+from prima.sim.profile import Motion, Profile
 from prima.sim.routes import Routes
-from prima.sim.scenario import Motion, Point, Profile
 from prima.sim.world import World, bearing, difference, distance
 
 ARRIVED = 0.1

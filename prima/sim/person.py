@@ -21,8 +21,9 @@ from prima.messages import (
     Record,
     Unloaded,
 )
+from prima.sim.happenings import Doing, When
 from prima.sim.robot import Robot
-from prima.sim.scenario import Doing, Scenario, When
+from prima.sim.scenario import Scenario
 from prima.sim.world import World, distance
 
 KEYS = frozenset("0123456789*# ")

@@ -10,7 +10,9 @@ from prima.scheduler.selection import Policy
 from prima.session import AnyDocument, Session
 from prima.sim.devices import Cast, SimulatedDevices
 from prima.sim.expected import check_expectations
-from prima.sim.scenario import Map, Profile, Scenario
+from prima.sim.map import Map
+from prima.sim.profile import Profile
+from prima.sim.scenario import Scenario
 from prima.sim.services import Web
 
 NAMING_APPLICATIONS = (

@@ -21,8 +21,8 @@ from prima.messages import (
     Order,
 )
 from prima.sim.locomotion import Locomotion, Plan
+from prima.sim.profile import POINTING_MS, Profile
 from prima.sim.routes import Routes
-from prima.sim.scenario import POINTING_MS, Profile
 from prima.sim.world import World, distance
 
 BRAKING_MS = 200

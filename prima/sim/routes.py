@@ -7,7 +7,7 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
-from prima.sim.scenario import Map, Point
+from prima.sim.map import Map, Point
 from prima.sim.world import World, distance
 
 if TYPE_CHECKING:

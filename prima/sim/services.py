@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 from prima.language.values import shown
 from prima.messages import Data, Fetched, Inbound, Occurred, Order
-from prima.sim.scenario import Reply, Service
+from prima.sim.happenings import Reply, Service
 
 SCHEME = "service:"
 """How the URI of a scenario's service begins."""

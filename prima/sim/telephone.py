@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from heapq import heappop, heappush
 
 from prima.messages import Inbound, Order, Transferred
-from prima.sim.scenario import UNANSWERED, Transfer
+from prima.sim.happenings import UNANSWERED, Transfer
 
 ANSWERED = "answered"
 NOBODY = Transfer("", "noanswer", 1, 1)

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import pymunk
 
+from prima.sim.map import Corner, Map, Point
 from prima.sim.plan import crosses, off_line
-from prima.sim.scenario import Corner, Map, Point, Profile
+from prima.sim.profile import Profile
 
 STEP_MS = 50
 """The longest step of physics."""

@@ -15,9 +15,10 @@ from prima.messages import Record
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.selection import policy_named
 from prima.sim.devices import Cast
+from prima.sim.happenings import Doing
 from prima.sim.hearing import check_hearing
 from prima.sim.rehearsal import Rehearsal, check_cast
-from prima.sim.scenario import Doing, Scenario, read_scenario
+from prima.sim.scenario import Scenario, read_scenario
 from prima.sim.services import Web
 from prima.talk.phrases import phrases
 from prima.talk.scene import Scene, comment, seconds, when

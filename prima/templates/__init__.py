@@ -9,9 +9,10 @@ from pathlib import Path
 
 from prima.errors import DocumentError, UsageError
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.loading import is_voicexml, read_file, validate
+from prima.loading import is_voicexml, validate
+from prima.loading.files import read_file
 from prima.markup.reader import parse
-from prima.sim.scenario import read_world
+from prima.sim.map import read_world
 from prima.sim.vocabulary import ROBOT, WORLD
 
 TEMPLATES = Path(__file__).parent

@@ -12,7 +12,8 @@ from prima.interpreter.grammar import fold
 from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
 from prima.messages import Record
-from prima.sim.scenario import Expectation, Scenario
+from prima.sim.expectations import Expectation
+from prima.sim.scenario import Scenario
 from prima.testing.tracing import Change, States
 from prima.transcript.table import Row, describe, format_head, format_row, shape_of
 

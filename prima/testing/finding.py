@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from prima.errors import DocumentError, UsageError, did_you_mean
-from prima.loading import read_file
+from prima.loading.files import read_file
 from prima.markup.opening import root_of
 from prima.markup.reader import parse
 from prima.testing.golden import golden_of

@@ -6,7 +6,7 @@ from difflib import unified_diff
 from pathlib import Path
 
 from prima.errors import DocumentError, UsageError
-from prima.loading import read_file
+from prima.loading.files import read_file
 from prima.loading.writing import write_whole
 from prima.transcript.diff import Difference, compare, format_difference
 from prima.transcript.table import Row, format_rows, read_table, width

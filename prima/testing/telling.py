@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from prima.errors import DocumentError, UsageError
 from prima.errors.rendering import excerpt
 from prima.errors.visible import visible
-from prima.loading import read_file
+from prima.loading.files import read_file
 from prima.markup.reader import decode
 from prima.testing.checking import Failure
 from prima.testing.running import Result

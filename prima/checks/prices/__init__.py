@@ -9,7 +9,7 @@ from __future__ import annotations
 from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
 from prima.errors import Problem
 from prima.interpreter.elements import Document
-from prima.sim.scenario import Profile
+from prima.sim.profile import Profile
 from prima.voicexml.document import VoiceDocument
 
 __all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "prices", "worst"]

@@ -50,7 +50,7 @@ from prima.interpreter.events import takes
 from prima.interpreter.rounds import leads_round, raised_in
 from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
-from prima.sim.scenario import Profile
+from prima.sim.profile import Profile
 
 UNKNOWN_LETTERS = 20
 """How much an expression in a text is taken to say."""

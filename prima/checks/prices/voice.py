@@ -26,7 +26,7 @@ from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.sim.scenario import Profile
+from prima.sim.profile import Profile
 from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument

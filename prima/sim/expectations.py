@@ -1,0 +1,177 @@
+"""What a scenario expects of its run (``expect``, ``never``, ``in-order``)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from prima.errors import did_you_mean, parted
+from prima.language.values import read_value
+from prima.markup.tree import Node
+from prima.sim.happenings import TRIGGERS
+from prima.sim.reading import RENAME, Reader
+
+SUBJECTS = ("says", "does", "finishes", "event", "logs", "sends", "state", "ends")
+"""What an expectation may be of."""
+WITH_DATA = ("does", "finishes", "event", "sends")
+"""Subjects that may be told closer by values."""
+MAX_EXPECTATIONS = 1000
+"""Expectations that a scenario may have."""
+
+
+@dataclass(slots=True, eq=False)
+class Expectation:
+    """What has to happen in a run, or must never; times in ms.
+
+    ``words`` are the subjects given, by the attribute's name. The rest says when: after
+    ``previous`` (the one before it in an ``in-order``), after or before another of that id,
+    from a trigger on (``what`` as in :class:`When`; ``end`` for the run's end), and ``within``
+    how long from there.
+    """
+
+    words: dict[str, str]
+    never: bool
+    by: str
+    reason: str
+    data: dict[str, str]
+    id: str
+    after: str
+    before: str
+    trigger: str
+    what: Any
+    count: int
+    within: int | None
+    times: int | None
+    previous: Expectation | None
+    node: Node
+
+
+def read_expectations(reader: Reader, root: Node) -> list[Expectation]:
+    """All that is expected of the run."""
+    found: list[Expectation] = []
+    ids: set[str] = set()
+
+    def read(node: Node, previous: Expectation | None, ordered: bool) -> Expectation:
+        made = _expectation(reader, node, previous, ordered, ids)
+        if made.id in ids:
+            reader.problem(node, "duplicate-id", f'"{made.id}" is there twice.', "id", RENAME)
+        ids.update({made.id} - {""})
+        found.append(made)
+        return made
+
+    for node in root.all("expect", "never", "in-order"):
+        previous = None
+        for child in node.all("expect") if node.tag == "in-order" else ():
+            previous = read(child, previous, True)
+        if node.tag != "in-order":
+            read(node, None, False)
+        elif not node.nodes:
+            message = "<in-order> holds nothing."
+            reader.problem(node, "empty", message, "", "Put <expect> elements into it.")
+    for extra in found[MAX_EXPECTATIONS:][:1]:
+        message = f"There are more than {MAX_EXPECTATIONS} expectations."
+        reader.problem(extra.node, "too-large", message, "", "Divide the scenario.")
+    return found
+
+
+def _expectation(
+    reader: Reader, node: Node, previous: Expectation | None, ordered: bool, ids: set[str]
+) -> Expectation:
+    given = [name for name in SUBJECTS if name in node.attributes]
+    triggers = [name for name in TRIGGERS if name in node.attributes]
+    _check_subject(reader, node, given)
+    if len(triggers) > 1:
+        message = f'<{node.tag}> has both "{triggers[0]}" and "{triggers[1]}".'
+        reader.problem(node, "exclusive", message, triggers[1], "Keep one of them.")
+    if ordered and "state" in given:
+        message = "A state lasts: it cannot stand in <in-order>."
+        remedy = "Write it outside, and say when by at, said, asked, doing, done or on."
+        reader.problem(node, "exclusive", message, "state", remedy)
+    for name in ("after", "before"):
+        _check_other(reader, node, name, ids)
+    trigger = triggers[0] if triggers else ""
+    if "count" in node.attributes and trigger in ("", "at"):
+        message = "count says which time of said, asked, doing, done or on is meant."
+        reader.problem(node, "exclusive", message, "count", "Name one of these, or remove it.")
+    return Expectation(
+        words={name: node.get(name) for name in given},
+        never=node.tag == "never",
+        by=node.get("by"),
+        reason=node.get("reason"),
+        data={child.get("name"): child.get("value") for child in node.all("data")},
+        id=node.get("id"),
+        after=node.get("after"),
+        before=node.get("before"),
+        trigger=trigger,
+        what=_opening(reader, node, given) if trigger == "at" else node.get(trigger),
+        count=reader.get(node, "count") or 1,
+        within=reader.get(node, "within"),
+        times=reader.get(node, "times"),
+        previous=previous,
+        node=node,
+    )
+
+
+def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
+    """One thing is expected, with what belongs to it."""
+    if node.key not in reader.vocabulary.elements:
+        return  # it is of another namespace; told already
+    known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
+    if not given and not set(node.attributes) <= known:
+        return  # a word is misspelt; told already
+    if not given:
+        message = f"<{node.tag}> does not say what."
+        remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."
+        reader.problem(node, "missing-attribute", message, "", remedy)
+        return
+    for name in given:
+        if not node.get(name).strip():
+            message = f'{name} "" is empty.'
+            reader.problem(node, "bad-value", message, name, "Write what is expected.")
+    if len(given) > 1 and given != ["says", "does"]:
+        message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'
+        remedy = "Write an element for each; an <in-order> holds those that follow one another."
+        reader.problem(node, "exclusive", message, given[1], remedy)
+    first = given[0]
+    if "reason" in node.attributes and first != "ends":
+        reader.problem(node, "exclusive", "reason says why an application ends.", "reason",
+                       "Name the application with ends, or remove it.")  # fmt: skip
+    if "by" in node.attributes and first == "ends":
+        message = "ends names the application itself."
+        reader.problem(node, "exclusive", message, "by", "Remove by.")
+    if node.all("data") and not set(given) & set(WITH_DATA):
+        message = f"What {first} expects has no values."
+        reader.problem(node.all("data")[0], "misplaced-element", message, "", "Remove the <data>.")
+    for name in ("times", "id"):
+        if name in node.attributes and first == "state":
+            message = "A state lasts: it is not counted, and nothing comes before or after it."
+            reader.problem(node, "exclusive", message, name, f"Remove {name}.")
+
+
+def _check_other(reader: Reader, node: Node, name: str, ids: set[str]) -> None:
+    """after and before name an expectation that stands above."""
+    other = node.get(name)
+    if not other or other in ids:
+        return
+    remedy = did_you_mean(other, ids)
+    if not remedy and name == "after" and other[:1].isdigit():
+        remedy = f'For a time write within="{other}".'
+    message = f'No expectation above has the id "{other}".'
+    reader.problem(node, "no-such-name", message, name, remedy)
+
+
+def _opening(reader: Reader, node: Node, given: list[str]) -> Any:
+    """The time of ``at`` (ms), or ``end``."""
+    text = node.get("at")
+    if text == "end":
+        if given and given != ["state"]:
+            message = 'at="end" is for a state: nothing happens any more then.'
+            reader.problem(node, "exclusive", message, "at", "Remove at.")
+        return "end"
+    try:
+        return read_value("duration", text)
+    except ValueError as error:
+        wrong, remedy = parted(str(error))
+        remedy = f'{remedy} Or write "end".'.lstrip()
+        reader.problem(node, "bad-value", f'at "{text}" {wrong}', "at", remedy)
+        return 0

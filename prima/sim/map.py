@@ -1,0 +1,129 @@
+"""Worlds as values, read from their documents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from prima.errors import Problem
+from prima.markup.tree import Node
+from prima.sim.plan import Plan
+from prima.sim.reading import RENAME, Reader
+from prima.sim.vocabulary import WORLD
+
+Point = tuple[float, float]
+MAX_AREAS = 256
+"""Areas that a world may have."""
+
+
+@dataclass(slots=True)
+class Corner:
+    """Where an event is raised when the robot comes near (radius in m)."""
+
+    id: str
+    at: Point
+    radius: float
+    event: str
+
+
+@dataclass(slots=True)
+class Area:
+    """Where an application is offered: its corners (m), and the application's document."""
+
+    id: str
+    title: str
+    low: Point
+    high: Point
+    src: str
+    node: Node
+
+    def holds(self, point: Point, margin: float = 0.0) -> bool:
+        """Whether a point lies inside, or outside by no more than a margin."""
+        return (
+            self.low[0] - margin <= point[0] <= self.high[0] + margin
+            and self.low[1] - margin <= point[1] <= self.high[1] + margin
+        )
+
+
+@dataclass(slots=True)
+class Map:
+    """A world: places with headings (degrees), ways, walls, things, corners, areas."""
+
+    id: str
+    places: dict[str, Point] = field(default_factory=dict)
+    headings: dict[str, float] = field(default_factory=dict)
+    ways: list[tuple[str, str]] = field(default_factory=list)
+    walls: list[tuple[Point, Point]] = field(default_factory=list)
+    things: dict[str, Point] = field(default_factory=dict)
+    corners: list[Corner] = field(default_factory=list)
+    areas: list[Area] = field(default_factory=list)
+    warnings: list[Problem] = field(default_factory=list)
+    """What is odd in its document, and no error."""
+    plan: Plan | None = None
+    """Its ways and walls with their elements, of a world that has been read."""
+
+    def point(self, name: str) -> Point | None:
+        """Where a place or thing is (m)."""
+        return self.places.get(name) or self.things.get(name)
+
+
+def read_world(file: str, data: bytes) -> Map:
+    """Read a world.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(WORLD, file, data)
+    world = Map(reader.root.get("id"))
+    seen: set[str] = set()
+    for node in reader.root.all("place", "thing", "corner"):
+        name = node.get("id")
+        if name in seen:
+            reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id", RENAME)
+        seen.add(name)
+        at = (reader.get(node, "x") or 0.0, reader.get(node, "y") or 0.0)
+        if node.tag == "place":
+            world.places[name] = at
+            world.headings[name] = reader.get(node, "heading") or 0.0
+        elif node.tag == "thing":
+            world.things[name] = at
+        else:
+            world.corners.append(
+                Corner(name, at, reader.get(node, "radius") or 0.8, node.get("event", "corner"))
+            )
+    for node in reader.root.all("way"):
+        for end in ("from", "to"):
+            reader.known(node, end, world.places, "place")
+        if node.get("from") == node.get("to") != "":
+            message = f'The way goes from "{node.get("from")}" to itself.'
+            reader.problem(node, "bad-value", message, "to", "Name another place.")
+        world.ways.append((node.get("from"), node.get("to")))
+    for node in reader.root.all("wall"):
+        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
+        world.walls.append(((x1, y1), (x2, y2)))
+    areas = reader.root.all("area")
+    for node in areas[MAX_AREAS:][:1]:
+        message = f"There are more than {MAX_AREAS} areas."
+        reader.problem(node, "too-large", message, "", "Divide the world.")
+    for node in areas[:MAX_AREAS]:
+        if node.get("id") in seen:
+            message = f'"{node.get("id")}" is there twice.'
+            reader.problem(node, "duplicate-id", message, "id", RENAME)
+        seen.add(node.get("id"))
+        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
+        title = node.get("title", node.get("id"))
+        low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
+        world.areas.append(Area(node.get("id"), title, low, high, node.get("application"), node))
+    world.plan = _plan(reader.root, world)
+    errors = {problem.code for problem in reader.problems if problem.severity == "error"}
+    if errors <= {"no-such-name"}:  # others may be about what stands where
+        reader.problems += world.plan.problems(whole=not errors)
+    reader.finish()
+    world.warnings = reader.problems
+    return world
+
+
+def _plan(root: Node, world: Map) -> Plan:
+    """A world's map with its elements."""
+    places = {node.get("id"): node for node in root.all("place")}
+    ways = [(node.get("from"), node.get("to"), node) for node in root.all("way")]
+    return Plan(world.places, places, ways, list(zip(world.walls, root.all("wall"), strict=True)))

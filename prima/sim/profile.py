@@ -1,0 +1,213 @@
+"""Robot profiles as values, read from their documents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from prima.errors import Problem, did_you_mean
+from prima.interpreter.events import near
+from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
+from prima.markup.tree import Node
+from prima.sim.reading import Reader
+from prima.sim.vocabulary import ROBOT
+
+POINTING_MS = 1000
+"""How long the robot holds its arm out."""
+
+
+@dataclass(slots=True)
+class Profile:
+    """A robot: sizes in m, speeds in m/s and degrees/s, times in ms."""
+
+    id: str
+    radius: float = 0.2
+    speed: float = 0.5
+    turn_speed: float = 90.0
+    head_speed: float = 120.0
+    loop: int = 500
+    absence: int = ABSENCE_MS
+    """After how long without being sensed the user is absent (rule K1)."""
+    devices: frozenset[str] = frozenset()
+    camera_angle: float = 60.0
+    camera_range: float = 4.0
+    voices: dict[str, float] = field(default_factory=dict)
+    touch: frozenset[str] = frozenset()
+    gestures: dict[str, int] = field(default_factory=dict)
+    commands: dict[str, CommandType] = field(default_factory=dict)
+    durations: dict[str, int] = field(default_factory=dict)
+    motions: dict[str, Motion] = field(default_factory=dict)
+    warnings: list[Problem] = field(default_factory=list)
+    """What is odd in its document, and no error."""
+
+
+@dataclass(slots=True)
+class Motion:
+    """How an added Command moves the body: steps of ms, m/s and degrees/s; ``stray`` in m (X5)."""
+
+    steps: list[tuple[int, float, float]]
+    stray: float
+
+    @property
+    def duration(self) -> int:
+        """How long it takes once (ms)."""
+        return sum(step[0] for step in self.steps)
+
+    def at(self, time: int) -> tuple[float, float]:
+        """Speed and turn speed at a time (ms); it is repeated as long as it lasts."""
+        time %= self.duration
+        for lasts, speed, turning in self.steps:
+            if time < lasts:
+                return speed, turning
+            time -= lasts
+        return (0.0, 0.0)
+
+
+def read_robot(file: str, data: bytes) -> Profile:
+    """Read a robot profile; its ``commands`` are those it can do.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(ROBOT, file, data)
+    root = reader.root
+    profile = Profile(
+        root.get("id"),
+        radius=reader.get(root, "radius") or 0.2,
+        speed=reader.get(root, "speed") or 0.5,
+        turn_speed=reader.get(root, "turn-speed") or 90.0,
+        head_speed=reader.get(root, "head-speed") or 120.0,
+        loop=reader.get(root, "loop") or 500,
+        absence=reader.get(root, "absence"),
+        devices=frozenset(node.get("name") for node in root.all("device")),
+        touch=frozenset(node.get("sensor") for node in root.all("touch")),
+    )
+    _check_devices(reader, profile)
+    for node in root.all("camera"):
+        profile.camera_angle = reader.get(node, "angle") or 60.0
+        profile.camera_range = reader.get(node, "range") or 4.0
+    for node in root.all("voice"):
+        profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
+    for node in root.all("gesture"):
+        profile.gestures[node.get("name")] = reader.get(node, "duration") or 1000
+    rows = dict(TABLE_4_2)
+    for node in root.all("adds"):
+        _add(reader, node, rows, profile)
+    _allow(reader, rows)
+    profile.commands = {name: row for name, row in rows.items() if row.devices <= profile.devices}
+    for node in root.all("substitute"):
+        _substitute(reader, node, rows, profile)
+    reader.finish()
+    profile.warnings = reader.problems
+    return profile
+
+
+def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
+    """Add a Command of the robot's own to the rows of the table."""
+    name = node.get("command")
+    if name in rows:
+        message = f'There is a Command "{name}" already.'
+        reader.problem(node, "duplicate-id", message, "command")
+    rows[name] = _added(reader, node)
+    lacking = set(node.get("devices").split()) - profile.devices
+    if lacking:
+        device = min(lacking)
+        message = f'"{name}" needs the device "{device}", which the robot lacks.'
+        remedy = did_you_mean(device, profile.devices) or f'Add <device name="{device}"/>.'
+        reader.problem(node, "no-such-name", message, "devices", remedy)
+    profile.durations[name] = max(reader.get(node, "duration") or 1000, 1)
+    motion = _motion(reader, node)
+    if motion is not None:
+        profile.motions[name] = motion
+        if "duration" not in node.attributes:
+            profile.durations[name] = motion.duration
+
+
+def _allow(reader: Reader, rows: dict[str, CommandType]) -> None:
+    """Let Commands take further arguments."""
+    for node in reader.root.all("allows"):
+        name = node.get("command")
+        reader.known(node, "command", rows, "Command")
+        if name in rows:
+            rows[name] = replace(rows[name], extra=rows[name].extra | {node.get("argument")})
+
+
+def _check_devices(reader: Reader, profile: Profile) -> None:
+    """A device of the robot's own that none of its Commands needs, most likely a slip."""
+    own = {name for node in reader.root.all("adds") for name in node.get("devices").split()}
+    free = (set(DEVICES) | own) - profile.devices
+    for node in reader.root.all("device"):
+        name = node.get("name")
+        if name in DEVICES or name in own:
+            continue
+        meant = near(name, free)
+        message = f'No Command of this robot needs a device "{name}".'
+        remedy = f'Did you mean "{meant}"?' if meant else ""
+        remedy = remedy or f'Name it in an <adds devices="{name}">, or remove it.'
+        reader.problem(node, "no-such-name", message, "name", remedy, "warning")
+
+
+def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
+    """Another Command in the place of one that the robot lacks (X6)."""
+    reader.known(node, "command", rows, "Command")
+    reader.known(node, "by", profile.commands, "Command")
+    lacking, other = rows.get(node.get("command")), profile.commands.get(node.get("by"))
+    if lacking is None or other is None:
+        return
+    if lacking.name in profile.commands:
+        message = f"The robot can do {lacking.name} itself."
+        reader.problem(node, "bad-value", message, "command", "Remove the substitute.")
+    unknown = sorted(lacking.arguments.keys() - other.arguments.keys())
+    if unknown:
+        message = f'{other.name} has no argument "{unknown[0]}", as {lacking.name} has.'
+        reader.problem(node, "no-such-argument", message, "by", "Add it to the Command.")
+    if lacking.text == "required" and other.text == "none":
+        remedy = f"Name a Command that speaks, as {lacking.name} does."
+        reader.problem(node, "bad-value", f"{other.name} cannot say anything.", "by", remedy)
+    profile.commands[lacking.name] = replace(lacking, substitute=other.name)
+
+
+def _motion(reader: Reader, node: Node) -> Motion | None:
+    """The steps of an added Command that moves the body (X5)."""
+    steps = [
+        (
+            max(reader.get(child, "for") or 1, 1),
+            reader.get(child, "speed") or 0.0,
+            reader.get(child, "turn-speed") or 0.0,
+        )
+        for child in node.all("step")
+    ]
+    if steps and "locomotion" not in node.get("devices").split():
+        message = "Its steps move the body, but it does not occupy the locomotion."
+        reader.problem(node, "bad-value", message, "devices", 'Add "locomotion" to its devices.')
+    stray = reader.get(node, "stray")
+    return Motion(steps, 0.3 if stray is None else stray) if steps else None
+
+
+def _added(reader: Reader, node: Node) -> CommandType:
+    """A Command of the profile's own (thesis 5.3 (6))."""
+    arguments = {
+        child.get("name"): Argument(
+            child.get("kind", "text"),
+            "",
+            reader.get(child, "low"),
+            reader.get(child, "high"),
+            required=bool(reader.get(child, "required")),
+        )
+        for child in node.all("argument")
+    }
+    for child in node.all("argument"):
+        low, high = reader.get(child, "low"), reader.get(child, "high")
+        if low is not None and high is not None and low > high:
+            reader.problem(child, "out-of-range", "low is greater than high.", "low")
+    return CommandType(
+        name=node.get("command"),
+        title=node.get("title", node.get("command")),
+        doc="",
+        devices=frozenset(node.get("devices").split()),
+        feedback=bool(reader.get(node, "feedback")),
+        leaves=bool(reader.get(node, "leaves")),
+        engages=bool(reader.get(node, "engages")),
+        text="optional" if reader.get(node, "says") else "none",
+        motion="faithful" if node.all("step") else "",
+        arguments=arguments,
+    )

@@ -1,0 +1,80 @@
+"""Reads typed attributes of worlds, robot profiles and scenarios, and collects their problems."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+from prima.errors import DocumentError, Problem, Severity
+from prima.interpreter.surroundings import nearest as nearest_name
+from prima.language.values import nearest, outside, read_value, within
+from prima.markup.reader import read_tree
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Vocabulary
+
+RENAME = "Rename one."
+
+
+class Reader:
+    """Reads typed attributes of one document by its vocabulary, collecting problems."""
+
+    def __init__(self, vocabulary: Vocabulary, file: str, data: bytes) -> None:
+        self.vocabulary = vocabulary
+        self.root, self.problems = read_tree(file, data, vocabulary)
+
+    def get(self, node: Node, name: str) -> Any:
+        """An attribute's value, its default, or None."""
+        element = self.vocabulary.elements.get(node.key)
+        item = (
+            next((item for item in element.attributes if item.name == name), None)
+            if element
+            else None
+        )
+        if item is None:
+            return None  # an element that the language lacks; told already
+        text = node.attributes.get(name, item.default)
+        if not text and name not in node.attributes:
+            return None
+        try:
+            value = read_value(item.kind, text)
+        except ValueError:
+            return None  # told already, as a problem of the schema
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and not within(float(value), item.low, item.high):
+            message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
+            remedy = nearest(item.kind, float(value), item.low, item.high)
+            self.problem(node, "out-of-range", message, name, remedy)
+        return value
+
+    def given(self, node: Node | None, name: str) -> Any:
+        """An attribute's value where it is written, else None."""
+        return self.get(node, name) if node is not None and name in node.attributes else None
+
+    def problem(
+        self,
+        node: Node,
+        code: str,
+        message: str,
+        attribute: str = "",
+        remedy: str = "",
+        severity: Severity = "error",
+    ) -> None:
+        """Note a problem."""
+        place = node.attribute_place(attribute) if attribute in node.attributes else node.place
+        self.problems.append(Problem(place, severity, code, message, remedy))
+
+    def known(self, node: Node, name: str, words: Collection[str], what: str) -> None:
+        """Note a problem where an attribute names something that is not there."""
+        word = node.get(name)
+        if word and word not in words:
+            message = f'There is no {what} "{word}".'
+            self.problem(node, "no-such-name", message, name, nearest_name(word, words))
+
+    def finish(self) -> None:
+        """Raise what was found.
+
+        Raises:
+            DocumentError: if there is any error.
+        """
+        if any(problem.severity == "error" for problem in self.problems):
+            raise DocumentError(self.problems)
