@@ -40,7 +40,7 @@ class Prima:
         from prima.interpreter.reader import read_document
         from prima.language.commands import TABLE_4_2
         from prima.messages import Loaded
-        from prima.scheduler.selection import policy_named
+        from prima.scheduler.policy import policy_named
         from prima.session import Session
 
         document, problems = read_document("ring.xml", text.encode())

@@ -60,7 +60,7 @@ class Quiet:
 
     def __init__(self) -> None:
         from prima import api
-        from prima.scheduler.selection import policy_named
+        from prima.scheduler.policy import policy_named
         from prima.sim.rehearsal import Rehearsal
 
         with tempfile.TemporaryDirectory() as folder:

@@ -257,7 +257,7 @@ def _prima_voice(data: bytes) -> None:
     from prima.language.commands import TABLE_4_2
     from prima.loading import read_application
     from prima.messages import Loaded
-    from prima.scheduler.selection import policy_named
+    from prima.scheduler.policy import policy_named
     from prima.session import Session
 
     document, problems = read_application("bench.vxml", data)

@@ -169,7 +169,7 @@ def rehearse(
         DocumentError: documents are wrong.
         UsageError: no such policy or file, or no host's name.
     """
-    from prima.scheduler.selection import policy_named
+    from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure

@@ -23,7 +23,7 @@ from prima.messages import (
     Transferred,
     Unloaded,
 )
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.script.prelude import START
 from prima.session import AnyDocument, Session
 

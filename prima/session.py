@@ -58,10 +58,10 @@ from prima.messages import (
     line_of,
 )
 from prima.scheduler.behavior import WAITING, Behavior, Stream
-from prima.scheduler.endings import Told
+from prima.scheduler.mediation import Told
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
-from prima.scheduler.selection import Policy
 from prima.script.evaluation import EngineLost
 from prima.script.isolated import Engines
 from prima.script.prelude import START

@@ -46,8 +46,8 @@ from prima.messages import (
     Unloaded,
 )
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.policy import EXTENSIONS, policy_named
 from prima.scheduler.recorder import Recorder
-from prima.scheduler.selection import EXTENSIONS, policy_named
 from prima.session import Session
 from prima.transcript.lines import line
 

@@ -7,7 +7,7 @@ from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.language.commands import TABLE_4_2
 from prima.messages import Ended, Failed, Heard, Inbound, Listening, Loaded, Occurred, Order, Record
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.session import Session
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{kind}" id="{name}">'

@@ -19,8 +19,8 @@ from prima.messages import (
     Step,
 )
 from prima.scheduler.mediator import Mediator
+from prima.scheduler.policy import policy_named
 from prima.scheduler.recorder import Recorder
-from prima.scheduler.selection import policy_named
 
 MOVE = Command("topological-move", {"to": "room"})
 TRACK = Command("tracking-human")

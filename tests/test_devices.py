@@ -12,7 +12,7 @@ from prima.devices.senses import LOST_AFTER_MS, Sensors, Sight
 from prima.devices.speech import Marks, Utterance
 from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Cue, Ended, Inbound, Loaded, Occurred, Order, Record, Sensed
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.session import Session
 
 

@@ -29,7 +29,7 @@ from prima.markup.reader import parse
 from prima.markup.schema import make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary, attributes_by_name
 from prima.report import strip
-from prima.scheduler.selection import BASELINES
+from prima.scheduler.policy import BASELINES
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript.record import PHASES, Record
 from prima.transcript.rules import RULES

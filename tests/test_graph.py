@@ -25,7 +25,7 @@ from prima.graph.model import Edge, Graph, Node, clean
 from prima.graph.svg import SIZE, measure
 from prima.graph.words import condition, ordinal
 from prima.messages import Command, Record
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.colours import of_run
 from prima.transcript.lines import finished

@@ -14,16 +14,24 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
 from prima.messages import Command, Data
-from prima.scheduler import rules
+from prima.scheduler import (
+    endings,
+    interruption,
+    preparation,
+    requests,
+    rules,
+    selection,
+    streams,
+)
 from prima.scheduler.behavior import Application, Behavior, Stream
-from prima.scheduler.effects import Body, Effects
-from prima.scheduler.mediator import Mediator
+from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import Memory
+from prima.scheduler.policy import Policy
+from prima.scheduler.robot_state import Effects, RobotState
 from prima.scheduler.rules import Refusal
-from prima.scheduler.selection import Policy
-from prima.scheduler.selector import Selector
 from tests.generated import Ask, Leave, Play, Run, Script, World, drive, perform, plays, scripts
 from tests.invariants import check, numbers
+from tests.rebinding import rebind
 
 Patch = Callable[[pytest.MonkeyPatch], None]
 
@@ -59,34 +67,39 @@ def devices_shared(patch: pytest.MonkeyPatch) -> None:
     def conflict(memory: Memory, ab: Behavior) -> None:
         return None
 
-    patch.setattr(Memory, "conflict", conflict)
+    rebind(patch, Memory, "conflict", conflict)
 
 
 def running_cut(patch: pytest.MonkeyPatch) -> None:
     """O3 cuts short what runs."""
 
-    def silence(mediator: Mediator, ab: Behavior) -> None:
-        mediator._delete(ab, "O3")
+    withdraw = endings.withdraw
 
-    patch.setattr(Mediator, "_silence", silence)
+    def cut(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None:
+        for ab in behaviors:
+            if ab.state == "running" and not ab.in_group:
+                endings.delete(mediation, ab, rule)
+        withdraw(mediation, behaviors, rule)
+
+    rebind(patch, endings, "withdraw", cut)
 
 
 def run_twice(patch: pytest.MonkeyPatch) -> None:
     """What has ended competes once more."""
-    finish = Mediator._finish
+    finish = endings._finish
     seen: set[int] = set()
 
-    def again(mediator: Mediator, ab: Behavior, data: Data) -> None:
+    def again(mediation: Mediation, ab: Behavior, data: Data) -> None:
         if ab.group is None and ab.unit is None and id(ab) not in seen:
             seen.add(id(ab))
             kept.append(ab)
-            mediator.memory.release(ab)
-            mediator.memory.wait(ab)
+            mediation.memory.release(ab)
+            mediation.memory.wait(ab)
         else:
-            finish(mediator, ab, data)
+            finish(mediation, ab, data)
 
     kept: list[Behavior] = []  # so that no other AB gets the same id
-    patch.setattr(Mediator, "_finish", again)
+    rebind(patch, endings, "_finish", again)
 
 
 def children_lost(patch: pytest.MonkeyPatch) -> None:
@@ -99,7 +112,7 @@ def children_lost(patch: pytest.MonkeyPatch) -> None:
             if child.name in memory.behaviors:
                 remove(memory, child)
 
-    patch.setattr(Memory, "remove", forget)
+    rebind(patch, Memory, "remove", forget)
 
 
 def children_early(patch: pytest.MonkeyPatch) -> None:
@@ -110,7 +123,7 @@ def children_early(patch: pytest.MonkeyPatch) -> None:
         ab.waits_for.clear()
         add(memory, ab)
 
-    patch.setattr(Memory, "add", at_once)
+    rebind(patch, Memory, "add", at_once)
 
 
 def never_resumed(patch: pytest.MonkeyPatch) -> None:
@@ -119,7 +132,7 @@ def never_resumed(patch: pytest.MonkeyPatch) -> None:
     def refusal(policy: Policy, ab: Behavior, memory: Memory) -> Refusal | None:
         return None if ab.reaction is not None else ("F2", "nobody")
 
-    patch.setattr(Policy, "refusal", refusal)
+    rebind(patch, Policy, "refusal", refusal)
 
 
 def floor_ignored(patch: pytest.MonkeyPatch) -> None:
@@ -128,7 +141,7 @@ def floor_ignored(patch: pytest.MonkeyPatch) -> None:
     def refused(ab: Behavior, memory: Memory) -> None:
         return None
 
-    patch.setattr(rules, "f2", refused)
+    rebind(patch, rules, "f2", refused)
 
 
 def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
@@ -137,7 +150,7 @@ def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
     def holds_back(policy: Policy, ab: Behavior) -> bool:
         return False
 
-    patch.setattr(Policy, "holds_back", holds_back)
+    rebind(patch, Policy, "holds_back", holds_back)
 
 
 def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
@@ -146,7 +159,7 @@ def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
     def rank(ab: Behavior, memory: Memory) -> tuple[int, ...]:
         return (0, 0, 0)
 
-    patch.setattr(rules, "s2b", rank)
+    rebind(patch, rules, "s2b", rank)
 
 
 def channel_ignored(patch: pytest.MonkeyPatch) -> None:
@@ -155,16 +168,16 @@ def channel_ignored(patch: pytest.MonkeyPatch) -> None:
     def refused(ab: Behavior, memory: Memory) -> None:
         return None
 
-    patch.setattr(rules, "k1", refused)
+    rebind(patch, rules, "k1", refused)
 
 
 def ends_untold(patch: pytest.MonkeyPatch) -> None:
     """Applications do not hear of their Commands' ends."""
 
-    def finish(mediator: Mediator, ab: Behavior, data: Data) -> None:
-        mediator._remove(ab)
+    def finish(mediation: Mediation, ab: Behavior, data: Data) -> None:
+        endings.remove(mediation, ab)
 
-    patch.setattr(Mediator, "_finish", finish)
+    rebind(patch, endings, "_finish", finish)
 
 
 def chance(patch: pytest.MonkeyPatch) -> None:
@@ -176,7 +189,7 @@ def chance(patch: pytest.MonkeyPatch) -> None:
             seen.append(ab)
         return ab.serial * (-1 if len(seen) > 2 else 1)
 
-    patch.setattr(rules, "s2f", rank)
+    rebind(patch, rules, "s2f", rank)
 
 
 # The extensions, broken ------------------------------------------------------------
@@ -185,10 +198,10 @@ def chance(patch: pytest.MonkeyPatch) -> None:
 def anything_composed(patch: pytest.MonkeyPatch) -> None:
     """X5 lets any two ABs use one device."""
 
-    def occupant(selector: Selector, ab: Behavior) -> None:
+    def free(mediation: Mediation, ab: Behavior) -> None:
         return None
 
-    patch.setattr(Selector, "_occupant", occupant)
+    rebind(patch, selection, "s1", free)
 
 
 def carried_by_anything(patch: pytest.MonkeyPatch) -> None:
@@ -197,67 +210,72 @@ def carried_by_anything(patch: pytest.MonkeyPatch) -> None:
     def composes(ab: Behavior, memory: Memory) -> bool:
         return ab.motion == "free"
 
-    patch.setattr(rules, "x5", composes)
+    rebind(patch, rules, "x5", composes)
 
 
 def unmarked_interrupted(patch: pytest.MonkeyPatch) -> None:
     """X2 interrupts what is not restartable."""
 
-    def give_way(selector: Selector, reaction: Behavior, held: object) -> bool:
+    def give_way(
+        mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: object
+    ) -> bool:
         if reaction.reaction is None:
             return False
-        for ab in selector.memory.conflicts(reaction):
-            selector._interrupt(ab, reaction)
+        for ab in mediation.memory.conflicts(reaction):
+            interruption.interrupt(mediation, ab, reaction)
         return True
 
-    patch.setattr(Selector, "_give_way", give_way)
+    rebind(patch, interruption, "x2", give_way)
 
 
 def everything_interrupted(patch: pytest.MonkeyPatch) -> None:
     """X2 interrupts what is in nobody's way."""
-    interrupt = Selector._interrupt
+    interrupt = interruption.interrupt
 
-    def all_of_it(selector: Selector, ab: Behavior, reaction: Behavior) -> None:
-        interrupt(selector, ab, reaction)
-        for other in list(selector.memory.running.values()):
-            if other.restartable and other.name in selector.memory.running:
-                interrupt(selector, other, reaction)
+    def all_of_it(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:
+        interrupt(mediation, ab, reaction)
+        running = mediation.memory.running
+        for other in list(running.values()):
+            if other.restartable and other.name in running:
+                interrupt(mediation, other, reaction)
 
-    patch.setattr(Selector, "_interrupt", all_of_it)
+    rebind(patch, interruption, "interrupt", all_of_it)
 
 
 def restarted_in_part(patch: pytest.MonkeyPatch) -> None:
     """X2 starts a unit again, but not all of it."""
-    open_group = Selector._open_group
+    open_group = selection.u4
     opened: list[Behavior] = []
 
-    def open_part(selector: Selector, unit: Behavior, now: int) -> None:
+    def open_part(mediation: Mediation, unit: Behavior) -> None:
         if unit in opened and unit.group is not None:
             unit.group.steps = unit.group.steps[:1]
         opened.append(unit)
-        open_group(selector, unit, now)
+        open_group(mediation, unit)
 
-    patch.setattr(Selector, "_open_group", open_part)
+    rebind(patch, selection, "u4", open_part)
 
 
 def restarted_as_new(patch: pytest.MonkeyPatch) -> None:
     """X2 forgets that the AB was interrupted."""
-    interrupt = Selector._interrupt
+    interrupt = interruption.interrupt
 
-    def forget(selector: Selector, ab: Behavior, reaction: Behavior) -> None:
-        interrupt(selector, ab, reaction)
+    def forget(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:
+        interrupt(mediation, ab, reaction)
         ab.restarting = False
 
-    patch.setattr(Selector, "_interrupt", forget)
+    rebind(patch, interruption, "interrupt", forget)
 
 
 def nothing_interrupted(patch: pytest.MonkeyPatch) -> None:
     """X2 is gone, though it is on."""
 
-    def give_way(selector: Selector, reaction: Behavior, held: object) -> bool:
+    def give_way(
+        mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: object
+    ) -> bool:
         return False
 
-    patch.setattr(Selector, "_give_way", give_way)
+    rebind(patch, interruption, "x2", give_way)
 
 
 def inserted_beside(patch: pytest.MonkeyPatch) -> None:
@@ -266,83 +284,84 @@ def inserted_beside(patch: pytest.MonkeyPatch) -> None:
     def unwait(memory: Memory, ab: Behavior) -> None:
         return None
 
-    patch.setattr(Memory, "unwait", unwait)
+    rebind(patch, Memory, "unwait", unwait)
 
 
 def nothing_put_in(patch: pytest.MonkeyPatch) -> None:
     """X1 and X4 are gone, though they are on."""
 
-    def prepare(selector: Selector, ab: Behavior, now: int) -> bool:
+    def prepare(mediation: Mediation, ab: Behavior) -> bool:
         return False
 
-    patch.setattr(Selector, "_prepare", prepare)
+    rebind(patch, preparation, "prepare", prepare)
 
 
 def camera_forgotten(patch: pytest.MonkeyPatch) -> None:
     """X4 turns to a user who is seen."""
-    prepare = Selector._prepare
+    prepare = preparation.prepare
 
-    def blind(selector: Selector, ab: Behavior, now: int) -> bool:
-        selector.memory.in_view = False
-        return prepare(selector, ab, now)
+    def blind(mediation: Mediation, ab: Behavior) -> bool:
+        mediation.memory.in_view = False
+        return prepare(mediation, ab)
 
-    patch.setattr(Selector, "_prepare", blind)
+    rebind(patch, preparation, "prepare", blind)
 
 
 def restored_for_nothing(patch: pytest.MonkeyPatch) -> None:
     """X1 restores what was not suspended."""
     seen: list[Behavior] = []
 
-    def prepare(selector: Selector, ab: Behavior, now: int) -> bool:
+    def prepare(mediation: Mediation, ab: Behavior) -> bool:
         if ab.inserted or ab in seen:
             return False
         seen.append(ab)
-        return selector._insert(ab, [Command("set-direction", {"heading": 0.0})], "X1", now)
+        turn = Command("set-direction", {"heading": 0.0})
+        return preparation.insert(mediation, ab, [turn], "X1")
 
-    patch.setattr(Selector, "_prepare", prepare)
+    rebind(patch, preparation, "prepare", prepare)
 
 
 def place_forgotten(patch: pytest.MonkeyPatch) -> None:
     """X1 does not know where a stream stood."""
 
-    def missing(effects: Effects, own: frozenset[str], body: Body) -> list[Command]:
+    def missing(effects: Effects, own: frozenset[str], body: RobotState) -> list[Command]:
         return []
 
-    patch.setattr(Effects, "missing", missing)
+    rebind(patch, Effects, "missing", missing)
 
 
 def held_too_long(patch: pytest.MonkeyPatch) -> None:
     """X3 holds a stream beyond its longest time."""
-    keep_open = Mediator._keep_open
+    keep_open = streams.keep_open
 
-    def longer(mediator: Mediator, stream: Stream) -> None:
-        keep_open(mediator, stream)
-        mediator.holds[stream.name] += 1000
+    def longer(mediation: Mediation, stream: Stream) -> None:
+        keep_open(mediation, stream)
+        mediation.holds[stream.name] += 1000
 
-    patch.setattr(Mediator, "_keep_open", longer)
+    rebind(patch, streams, "keep_open", longer)
 
 
 def not_held(patch: pytest.MonkeyPatch) -> None:
     """X3 is gone, though it is on."""
 
-    def end(mediator: Mediator, stream: Stream) -> None:
-        del mediator.memory.streams[stream.name]
-        if stream in mediator.memory.floor:
-            mediator.memory.floor.remove(stream)
+    def end(mediation: Mediation, stream: Stream) -> None:
+        del mediation.memory.streams[stream.name]
+        if stream in mediation.memory.floor:
+            mediation.memory.floor.remove(stream)
 
-    patch.setattr(Mediator, "_keep_open", end)
+    rebind(patch, streams, "keep_open", end)
 
 
 def held_without_floor(patch: pytest.MonkeyPatch) -> None:
     """X3 keeps the stream, but not the floor."""
-    keep_open = Mediator._keep_open
+    keep_open = streams.keep_open
 
-    def floorless(mediator: Mediator, stream: Stream) -> None:
-        keep_open(mediator, stream)
-        if stream in mediator.memory.floor:  # else another stream has it anyway
-            mediator.memory.floor.remove(stream)
+    def floorless(mediation: Mediation, stream: Stream) -> None:
+        keep_open(mediation, stream)
+        if stream in mediation.memory.floor:  # else another stream has it anyway
+            mediation.memory.floor.remove(stream)
 
-    patch.setattr(Mediator, "_keep_open", floorless)
+    rebind(patch, streams, "keep_open", floorless)
 
 
 def held_without_channel(patch: pytest.MonkeyPatch) -> None:
@@ -352,20 +371,20 @@ def held_without_channel(patch: pytest.MonkeyPatch) -> None:
     def unless_held(stream: Stream, memory: Memory) -> bool:
         return stream.held_until is None and engages(stream, memory)
 
-    patch.setattr(rules, "engages", unless_held)
+    rebind(patch, rules, "engages", unless_held)
 
 
 def nothing_joins(patch: pytest.MonkeyPatch) -> None:
     """X3 holds a stream that no request joins."""
-    stream = Mediator._stream
+    stream_of = requests.stream_of
 
-    def apart(mediator: Mediator, app: Application, reaction: int | None) -> Stream:
-        holds, mediator.holds = mediator.holds, {}
-        found = stream(mediator, app, reaction)
-        mediator.holds = holds
+    def apart(mediation: Mediation, app: Application, reaction: int | None) -> Stream:
+        holds, mediation.holds = mediation.holds, {}
+        found = stream_of(mediation, app, reaction)
+        mediation.holds = holds
         return found
 
-    patch.setattr(Mediator, "_stream", apart)
+    rebind(patch, requests, "stream_of", apart)
 
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:
@@ -374,7 +393,7 @@ def always_substituted(patch: pytest.MonkeyPatch) -> None:
     def has(policy: Policy, extension: str) -> bool:
         return extension == "x6"
 
-    patch.setattr(Policy, "has", has)
+    rebind(patch, Policy, "has", has)
 
 
 @dataclass(frozen=True)

@@ -36,14 +36,15 @@ LAYERS = [
 
 INSIDE = {
     "scheduler": [
-        {"effects"},
+        {"robot_state"},
         {"behavior"},
-        {"recorder", "memory", "intake"},
+        {"recorder", "memory", "admission"},
         {"rules"},
-        {"patience", "selection"},
-        {"selector"},
+        {"policy"},
+        {"mediation"},
+        {"interruption", "preparation", "starvation", "streams"},
         {"endings"},
-        {"failures"},
+        {"failures", "emergency", "requests", "selection"},
         {"mediator"},
         {"__init__"},
     ],

@@ -20,7 +20,7 @@ from prima.messages import (
     Step,
     Unloaded,
 )
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.session import Session
 from tests.generated import (
     TABLE,

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import count
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -14,25 +15,36 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
 from prima.language.commands import CommandType
 from prima.messages import Command, Data
-from prima.scheduler import intake, mediator, rules
+from prima.scheduler import (
+    admission,
+    emergency,
+    endings,
+    failures,
+    interruption,
+    preparation,
+    requests,
+    rules,
+    selection,
+    starvation,
+    streams,
+)
+from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
-from prima.scheduler.endings import Endings
-from prima.scheduler.failures import Failures
-from prima.scheduler.intake import Maker
+from prima.scheduler.mediation import Mediation
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
-from prima.scheduler.selection import Policy
-from prima.scheduler.selector import Ranked, Selector
+from prima.scheduler.policy import Policy, Ranked
 from prima.session import Session
 from tests import test_extensions, test_rules, test_rules_in_documents
+from tests.rebinding import rebind
 
 Patch = Callable[[pytest.MonkeyPatch], None]
 MODULES = (test_rules, test_rules_in_documents, test_extensions)
 
 
-def put(where: object, name: str, what: object) -> Patch:
+def put(where: ModuleType | type, name: str, what: object) -> Patch:
     """Put something else in the place of a rule."""
-    return lambda patch: patch.setattr(where, name, what)
+    return lambda patch: rebind(patch, where, name, what)
 
 
 def wrapped(where: Any, name: str, change: Callable[[Any], Any]) -> Patch:
@@ -56,27 +68,27 @@ def nothing(*_given: object) -> None:
 
 def everything_begun(patch: pytest.MonkeyPatch) -> None:
     """S2d: streams that have not begun are suspended as well."""
-    take = Selector.take_floor
+    take = streams.take_floor
 
-    def suspend_all(self: Selector, stream: Stream, rule: str) -> None:
-        for other in self.memory.streams.values():
+    def suspend_all(mediation: Mediation, stream: Stream, rule: str) -> None:
+        for other in mediation.memory.streams.values():
             other.turn = other.turn or 1
-        take(self, stream, rule)
+        take(mediation, stream, rule)
 
-    patch.setattr(Selector, "take_floor", suspend_all)
+    rebind(patch, streams, "take_floor", suspend_all)
 
 
 def one_by_one(patch: pytest.MonkeyPatch) -> None:
     """S2d: of streams suspended together, the one that began last goes first."""
-    take = Selector.take_floor
+    take = streams.take_floor
 
-    def number(self: Selector, stream: Stream, rule: str) -> None:
-        take(self, stream, rule)
-        for other in self.memory.streams.values():
-            if other.place == self._suspensions:
-                other.place = self._suspensions * 100 + other.turn
+    def number(mediation: Mediation, stream: Stream, rule: str) -> None:
+        take(mediation, stream, rule)
+        for other in mediation.memory.streams.values():
+            if other.place == mediation.suspensions:
+                other.place = mediation.suspensions * 100 + other.turn
 
-    patch.setattr(Selector, "take_floor", number)
+    rebind(patch, streams, "take_floor", number)
 
 
 def loaded_order(patch: pytest.MonkeyPatch) -> None:
@@ -95,11 +107,11 @@ def any_loser(patch: pytest.MonkeyPatch) -> None:
     """S2: who waits has lost, whatever keeps it."""
     asked: list[object] = []
 
-    def in_turn(self: Selector, ranked: list[Ranked], held: object) -> list[Ranked]:
+    def in_turn(mediation: Mediation, ranked: list[Ranked], held: object) -> list[Ranked]:
         asked.append(ranked)
         return ranked if len(asked) % 2 else []  # before the winner starts, and after
 
-    patch.setattr(Selector, "_able", in_turn)
+    rebind(patch, selection, "able", in_turn)
 
 
 def ended_is_active(patch: pytest.MonkeyPatch) -> None:
@@ -116,24 +128,26 @@ def ended_is_active(patch: pytest.MonkeyPatch) -> None:
 
 
 def only_placed(
-    self: Mediator,
+    mediation: Mediation,
     app: Application,
     command: Command,
     reaction: int | None,
     unit: Behavior | None,
 ) -> Stream:
     """O2: what is wanted now cancels nothing."""
-    return unit.stream if unit else self._opened(self._stream(app, reaction))
+    if unit is not None:
+        return unit.stream
+    return streams.opened(mediation, requests.stream_of(mediation, app, reaction))
 
 
-ended = Endings.ended
+u2 = endings.u2
 
 
 def always_at_the_goal(
-    self: Endings, behavior: str, goal: bool, data: Data, inbound: bool = True
-) -> bool:
+    mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
+) -> None:
     """U2: a feedback Command has met its goal after one loop."""
-    return ended(self, behavior, True, data, inbound)
+    u2(mediation, ab, True, data, inbound)
 
 
 def any_running(memory: Memory, ab: Behavior) -> Behavior | None:
@@ -172,8 +186,8 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("s2f", "by loading", loaded_order),
     ("s2", "all that wait have lost", any_loser),
     ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab: False)),
-    ("f1", "no floor", put(Selector, "take_floor", nothing)),
-    ("f1", "nobody is suspended", put(Selector, "_suspend_others", nothing)),
+    ("f1", "no floor", put(streams, "take_floor", nothing)),
+    ("f1", "nobody is suspended", put(streams, "suspend_others", nothing)),
     ("f2", "dropped", put(rules, "f2", nothing)),
     (
         "f2",
@@ -183,7 +197,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("f2", "above any", reworded(rules, "outranks", "all(priority", "any(priority")),
     ("f3", "never", put(rules, "f3", lambda ab, reacts, memory: False)),
     ("f3", "always", put(rules, "f3", lambda ab, reacts, memory: True)),
-    ("f5", "dropped", put(Mediator, "_stop_rolling", nothing)),
+    ("f5", "dropped", put(selection, "f5", nothing)),
     ("f6", "dropped", put(rules, "f6", nothing)),
     (
         "f6",
@@ -206,7 +220,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("f6", "loops too", reworded(rules, "f6", "not other.feedback and ", "")),
     ("f6", "in units too", reworded(rules, "f6", "other.unit is None and ", "")),
     ("k1", "dropped", put(rules, "k1", nothing)),
-    ("k1", "for ever", put(Failures, "_look_for_user", nothing)),
+    ("k1", "for ever", put(failures, "look_for_user", nothing)),
     ("k1", "who leaves engages", put(rules, "engages", lambda stream, memory: True)),
     (
         "k1",
@@ -223,37 +237,35 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         "o1",
         "windows do not count",
         put(
-            Mediator,
-            "_parent",
-            lambda self, app: (
-                None if app.latest is None or app.latest.state == "gone" else app.latest
-            ),
+            requests,
+            "o1",
+            lambda app: None if app.latest is None or app.latest.state == "gone" else app.latest,
         ),
     ),
-    ("o1", "dropped", put(Mediator, "_parent", nothing)),
-    ("o2", "nothing is cancelled", put(Mediator, "_order_now", only_placed)),
-    ("o2", "the first goes on", put(mediator, "going_on", lambda streams: streams[0])),
-    ("o3", "dropped", put(Mediator, "leave_state", nothing)),
-    ("o3", "nothing goes on", put(Mediator, "_continue", nothing)),
-    ("o3", "the first goes on", put(mediator, "going_on", lambda streams: streams[0])),
+    ("o1", "dropped", put(requests, "o1", nothing)),
+    ("o2", "nothing is cancelled", put(requests, "o2", only_placed)),
+    ("o2", "the first goes on", put(streams, "going_on", lambda found: found[0])),
+    ("o3", "dropped", put(requests, "o3", nothing)),
+    ("o3", "nothing goes on", put(streams, "continue_with", nothing)),
+    ("o3", "the first goes on", put(streams, "going_on", lambda found: found[0])),
     ("c2", "nobody is told", put(Session, "_tell_turns", nothing)),
-    ("c3", "dropped", put(Mediator, "open_window", nothing)),
+    ("c3", "dropped", put(streams, "open_window", nothing)),
     (
         "u5",
         "what is linked contends",
         put(Behavior, "dormant", property(lambda ab: ab.state == "linked")),
     ),
-    ("u5", "anything goes in a unit", put(mediator, "check_steps", nothing)),
+    ("u5", "anything goes in a unit", put(admission, "check_steps", nothing)),
     ("u1", "dropped", put(Maker, "chain", lambda *given: [])),
-    ("u2", "one loop", put(Endings, "ended", always_at_the_goal)),
-    ("u3", "dropped", put(intake, "link", nothing)),
-    ("u4", "dropped", put(intake, "group_devices", lambda group, table: frozenset())),
+    ("u2", "one loop", put(endings, "u2", always_at_the_goal)),
+    ("u3", "dropped", put(admission, "link", nothing)),
+    ("u4", "dropped", put(admission, "group_devices", lambda group, table: frozenset())),
     ("u6", "dropped", put(Memory, "conflict", nothing)),
     ("o4", "the state does not go on", put(Interpreter, "go_on_entering", nothing)),
     ("s4", "one at a time", put(Memory, "conflict", any_running)),
     ("s5", "chance", chance),
-    ("c1", "dropped", put(Mediator, "_close_streams", nothing)),
-    ("c4", "dropped", put(Mediator, "open_window", nothing)),
+    ("c1", "dropped", put(streams, "c1", nothing)),
+    ("c4", "dropped", put(streams, "open_window", nothing)),
     ("c5", "dropped", put(Handling, "allow_reaction", nothing)),
     ("c6", "never raised", put(Handling, "check_watches", lambda *given: [])),
     ("f4", "all wait for what runs", put(rules, "f2", waits_for_what_runs)),
@@ -262,22 +274,26 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("v1", "the question first", put(Session, "_follow_links", lambda *given: False)),
     ("v2", "dropped", put(Memory, "conflict", nothing)),
     ("v3", "events first", put(Session, "_class", lambda session, value: (0, 0))),
-    ("e1", "dropped", put(Failures, "_fail", nothing)),
-    ("e2", "dropped", put(Mediator, "unload", nothing)),
-    ("e3", "dropped", put(mediator, "check_steps", nothing)),
-    ("e4", "dropped", put(Selector, "_count_starving", lambda *given: False)),
-    ("e5", "dropped", put(Failures, "emergency", nothing)),
+    ("e1", "dropped", put(failures, "e1", nothing)),
+    ("e2", "dropped", put(requests, "e2", nothing)),
+    ("e3", "dropped", put(admission, "check_steps", nothing)),
+    ("e4", "dropped", put(starvation, "e4", lambda *given: False)),
+    ("e5", "dropped", put(emergency, "e5", nothing)),
     ("e6", "dropped", put(rules, "e6", lambda ab, memory, now: 1)),
     ("e6", "reversed", wrapped(rules, "e6", lambda r: 1 - r)),
     ("e6", "whatever keeps it", put(rules, "keeps_speaker", lambda ab, memory: True)),
     ("e6", "nobody hears an answer", put(rules, "acknowledges", lambda ab, now: False)),
     ("e6", "any word is one", put(rules, "acknowledges", lambda ab, now: ab.freed == now)),
-    ("x1", "dropped", put(Selector, "_prepare", lambda *given: False)),
-    ("x2", "dropped", put(Selector, "_give_way", lambda *given: False)),
-    ("x3", "dropped", put(Mediator, "_hint", nothing)),
-    ("x4", "dropped", put(Selector, "_prepare", lambda *given: False)),
-    ("x5", "dropped", put(Selector, "_in_the_way", lambda self, ab: self.memory.conflicts(ab))),
-    ("x6", "dropped", put(mediator, "substitute", lambda steps, table: [])),
+    ("x1", "dropped", put(preparation, "x1", lambda *given: False)),
+    ("x2", "dropped", put(interruption, "x2", lambda *given: False)),
+    ("x3", "dropped", put(streams, "x3", nothing)),
+    ("x4", "dropped", put(preparation, "x4", lambda *given: False)),
+    (
+        "x5",
+        "dropped",
+        put(selection, "in_the_way", lambda mediation, ab: mediation.memory.conflicts(ab)),
+    ),
+    ("x6", "dropped", put(requests, "x6", nothing)),
 ]
 """Those of the rules that decide in a run. V4 is the simulated camera's (tests/test_sim.py)."""
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from prima import api
 from prima.errors import DocumentError
 from prima.messages import Inbound, Order
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.session import Session
 from prima.sim import devices
 from prima.sim.map import Map

@@ -46,7 +46,7 @@ from prima.markup.schema import (
     make_schema,
 )
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
-from prima.scheduler import failures, selector
+from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, prelude, syntax
 from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
 from prima.transcript import lines
@@ -325,7 +325,7 @@ def limits() -> str:
         ),
         (
             "loops that another application's equal Command waits",
-            f"{selector.STARVING_LOOPS}",
+            f"{starvation.STARVING_LOOPS}",
             "a `starve` record",
         ),
         ("records of a run", f"{loop.MAX_RECORDS:,}", "the run ends with exit code 3"),

@@ -18,7 +18,7 @@ from prima.cli.common import (
 )
 from prima.cli.runs import run_of
 from prima.errors import UsageError
-from prima.scheduler.selection import POLICIES, USAGE
+from prima.scheduler.policy import POLICIES, USAGE
 
 
 @click.command()

@@ -17,7 +17,7 @@ from prima.cli.common import (
 )
 from prima.cli.runs import Run, is_markup, run_of
 from prima.errors import UsageError
-from prima.scheduler.selection import POLICIES, USAGE
+from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded

@@ -26,7 +26,7 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
-from prima.scheduler.selection import POLICIES, USAGE
+from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.api import Transcript

@@ -28,7 +28,7 @@ from prima.cli.common import (
 from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
 from prima.language.commands import PATIENCE_MS
-from prima.scheduler.selection import POLICIES, USAGE
+from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded

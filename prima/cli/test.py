@@ -22,7 +22,7 @@ from prima.cli.common import (
     tell,
 )
 from prima.errors import UsageError
-from prima.scheduler.selection import POLICIES, USAGE
+from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.testing.coverage import Coverage
@@ -138,7 +138,7 @@ def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> No
         raise UsageError("--update shows the differences first: leave out --format json.")
     if policy is not None:
         from prima.loading import FAVOURITE
-        from prima.scheduler.selection import policy_named
+        from prima.scheduler.policy import policy_named
 
         try:
             policy_named(policy)

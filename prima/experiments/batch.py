@@ -173,7 +173,7 @@ def stem_of(scenario: str) -> str:
 
 
 def _check_policies(policies: Sequence[str | None]) -> None:
-    from prima.scheduler.selection import policy_named
+    from prima.scheduler.policy import policy_named
 
     for policy in policies:
         if policy is not None:

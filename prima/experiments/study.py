@@ -11,14 +11,14 @@ from pathlib import Path
 from prima.api import Transcript, documents_folder, load_scenario, rehearse
 from prima.errors import UsageError
 from prima.messages import Json
-from prima.scheduler import selection
+from prima.scheduler import policy as known
 from prima.transcript.criteria import Criteria, observe
 from prima.transcript.diff import compare
 from prima.transcript.table import Row, read_table
 
 POLICIES = (
-    *reversed(selection.POLICIES),
-    *(f"prima+{extension}" for extension in (*selection.EXTENSIONS, "all")),
+    *reversed(known.POLICIES),
+    *(f"prima+{extension}" for extension in (*known.EXTENSIONS, "all")),
 )
 """All that a study compares unless it is told otherwise."""
 EXPECTED = ".txt"

@@ -713,7 +713,7 @@ class _Reading:
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""
-        from prima.scheduler.selection import policy_named
+        from prima.scheduler.policy import policy_named
 
         place = scenario.node.attribute_place("policy")
         try:

@@ -30,7 +30,7 @@ from prima.lsp.tables import (
 )
 from prima.lsp.words import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
-from prima.scheduler.selection import BASELINES
+from prima.scheduler.policy import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 MOST = 500

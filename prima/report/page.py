@@ -17,7 +17,7 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
 from prima.report.view import View
-from prima.scheduler.selection import BASELINES
+from prima.scheduler.policy import BASELINES
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line

@@ -108,7 +108,7 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
 
 def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     """Make the run again and watch it; None where something else comes out."""
-    from prima.scheduler.selection import policy_named
+    from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished
 

@@ -14,29 +14,21 @@ from typing import Final, Literal
 
 from prima.language.commands import CommandType
 from prima.messages import Command, Data, Group, Record
-from prima.scheduler.effects import Effects
+from prima.scheduler.robot_state import Effects
 
 HIGH: Final = 1
-
-
-@lru_cache(maxsize=1000)
-def known(devices: frozenset[str]) -> tuple[frozenset[str], tuple[str, ...]]:
-    """One set for all that are equal, and the devices in the order of their names."""
-    return devices, tuple(sorted(devices))
-
-
-def nothing() -> dict[str, Behavior]:
-    """What is inside an AB that is no unit: one and the same for all, as nobody puts anything there."""
-    return NOTHING
-
-
-NOTHING: Final[dict[str, Behavior]] = {}
 State = Literal["linked", "waiting", "running", "gone"]
 """The states of an AB in working memory (thesis Figure 4.3), and out of it."""
 LINKED: Final = "linked"
 WAITING: Final = "waiting"
 RUNNING: Final = "running"
 GONE: Final = "gone"
+
+
+@lru_cache(maxsize=1000)
+def in_order(devices: frozenset[str]) -> tuple[str, ...]:
+    """Devices in the order in which they are looked at and told."""
+    return tuple(sorted(devices))
 
 
 @dataclass(slots=True, eq=False)
@@ -51,6 +43,7 @@ class Stream:
     spoken: bool = False
     """Whether an AB of it has spoken (F6)."""
     engaged: bool = False
+    """Whether an AB of it has engaged the user (K1)."""
     causes: set[int] = field(default_factory=set)
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: bool = False
@@ -63,11 +56,13 @@ class Stream:
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
     that resumes keeps its place until the selection is over; 0 for others."""
     effects: Effects = field(default_factory=Effects)
+    """What its Commands have done to the robot's state (X1)."""
     hold: int | None = None
     """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
     hold_state: int = 0
     """The document's state whose hint that is."""
     held_until: int | None = None
+    """Until when it is held (ms); None while it is not."""
 
     @property
     def open(self) -> bool:
@@ -108,12 +103,15 @@ class Application:
     latest: Behavior | None = None
     """The latest AB that it has requested, outside of units."""
     window: Stream | None = None
+    """The stream in whose window it handles the end of a Command (C3)."""
     continuing: Stream | None = None
     """A stream that O3 cancelled: it goes on with what is asked for in this instant."""
     units: dict[int, Behavior] = field(default_factory=dict)
+    """Its units that span questions (U5), by the numbers that it gave them."""
     members: dict[str, Behavior] = field(default_factory=dict)
     """Its ABs in working memory, in the order of their requests."""
     last_turn: int = -1
+    """When an AB of it started last, as a counter (policy ``fair``)."""
     gone: bool = False
 
 
@@ -126,15 +124,52 @@ class Run:
     left: int
 
 
+@dataclass(slots=True)
+class Wait:
+    """How an AB waits, from when it may compete until it starts."""
+
+    blocked: tuple[str, str] = ("", "")
+    """The rule that keeps it from starting, and the AB or stream for whose sake."""
+    loops: int = 0
+    """How many loops of another application's feedback Command it has waited (E4)."""
+    since: int = -1
+    """Since when (ms) another application keeps it waiting; -1 while none does."""
+    starves: bool = False
+    """Whether that has been reported."""
+    kept: int = 0
+    """How long (ms) others have kept it from the speaker alone (E6)."""
+    kept_since: int = -1
+    """Since when (ms) they do so; -1 while they do not."""
+    overdue: bool = False
+    """Whether they have done so for as long as they may."""
+
+
+@dataclass(slots=True, eq=False)
+class Inside:
+    """What is inside a unit (U4, U5)."""
+
+    spans: bool = False
+    """Whether the unit spans questions and states (U5)."""
+    open: bool = False
+    """Whether more may come into it: it does not end when it is empty."""
+    members: dict[str, Behavior] = field(default_factory=dict)
+    """The unit's own ABs that are in working memory."""
+    busy: dict[str, Behavior] = field(default_factory=dict)
+    """By which of those the unit's devices are used."""
+    latest: Behavior | None = None
+    """The latest of its Commands (O1)."""
+
+
 @dataclass(slots=True, eq=False)
 class Behavior:
-    """An Atomic Behavior (thesis Figure 4.2)."""
+    """An Atomic Behavior (thesis Figure 4.2): of one Command, or of a unit of them."""
 
     name: str
     serial: int
     app: Application
     stream: Stream
     type: CommandType | None
+    """Its Command's row of Table 4.2; None of a unit."""
     command: Command | None
     devices: frozenset[str]
     requested: int
@@ -142,6 +177,9 @@ class Behavior:
     group: Group | None = None
     run: Run | None = None
     unit: Behavior | None = None
+    """The unit that it is in."""
+    inside: Inside | None = None
+    """What is in it, if it is a unit."""
     state: State = WAITING
     reaction: int | None = None
     """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
@@ -150,98 +188,82 @@ class Behavior:
     children: list[Behavior] = field(default_factory=list)
     freed: int = -1
     """The instant in which the AB's parent ended or its window opened (S2c)."""
+    wait: Wait = field(default_factory=Wait)
     started: int = -1
     loop: int = 0
+    """Which loop of a feedback Command runs, or ran last (U2)."""
+    last_loop: bool = False
+    """Whether no other loop follows."""
     resumed: bool = False
     listening: bool = False
-    last_loop: bool = False
     silent: bool = False
     """Nobody hears of its end any more."""
     left: bool = False
     """Its state has been left (O3): a question ends as soon as it listens."""
     connect: bool = False
     """Whether the robot has to face the user before it starts (X4)."""
+    inserted: str = ""
+    """The rule by which the mediator itself put the AB in (X1, X4)."""
     reacted: int = -1
     """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
     restarting: bool = False
     """Whether the AB was interrupted and has not started again (X2)."""
     since: Data | None = None
     """The mark from which it goes on after an interruption, as its device told it (X2)."""
-    inserted: str = ""
-    """The rule by which the mediator itself put the AB in (X1, X4)."""
-    blocked: tuple[str, str] = ("", "")
-    waited_loops: int = 0
-    waits_from: int = -1
-    """Since when (ms) another application keeps it waiting; -1 while none does."""
-    starves: bool = False
-    """Whether that has been reported."""
-    kept: int = 0
-    """How long (ms) others have kept it from the speaker alone (E6)."""
-    kept_from: int = -1
-    """Since when (ms) they do so; -1 while they do not."""
-    overdue: bool = False
-    """Whether they have done so for as long as they may."""
-    # Units only (U4, U5):
-    spans: bool = False
-    open: bool = False
-    inner: dict[str, Behavior] = field(default_factory=nothing)
-    """The unit's own ABs that are in working memory."""
-    busy: dict[str, Behavior] = field(default_factory=nothing)
-    """By which of those the unit's devices are used."""
-    longest: int | None = None
-    latest: Behavior | None = None
-    """The latest of its Commands (O1)."""
-    # As the Command's type has it; nothing in a unit leaves the user (K2):
-    feedback: bool = False
-    """Whether the Command makes one loop after another (U2)."""
-    leaves: bool = False
-    """Whether the AB leaves the user (K2)."""
-    engages: bool = False
-    """Whether the AB engages the user (K1)."""
-    priority: int = HIGH
-
-    motion: str = ""
-    """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not within a unit."""
-
-    in_order: tuple[str, ...] = ()
-    """The devices in the order in which they are looked at and told."""
-    id: str = ""
-    """The AB's name in the transcript; a loop of a feedback Command has its number."""
     late: int | None = None
     """When it will have run for longer than it may (U5, E1), once it has started."""
     told: Record | None = None
     """What its records have in common: see :mod:`prima.scheduler.recorder`."""
 
-    def __post_init__(self) -> None:
-        self.id = self.name
-        self.use(self.devices)
-        row = self.type
-        if row is None:
-            self.inner, self.busy = {}, {}
-        else:
-            self.feedback, self.leaves = row.feedback, row.leaves
-            self.engages, self.priority = row.engages, row.priority
-            self.motion = row.motion if self.unit is None else ""
+    @property
+    def id(self) -> str:
+        """The AB's name in the transcript; a loop of a feedback Command has its number (U2)."""
+        return f"{self.name}.{self.loop}" if self.loop else self.name
 
-    def use(self, devices: frozenset[str]) -> None:
-        """Say which devices the AB needs."""
-        self.devices, self.in_order = known(devices)
+    @property
+    def in_order(self) -> tuple[str, ...]:
+        """Its devices in the order in which they are looked at and told."""
+        return in_order(self.devices)
 
-    def next_loop(self) -> None:
-        """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
-        if self.loop:
-            self.parent = self.id
-        self.loop += 1
-        self.id = f"{self.name}.{self.loop}"
+    @property
+    def feedback(self) -> bool:
+        """Whether the Command makes one loop after another (U2)."""
+        return self.type is not None and self.type.feedback
 
-    def meant(self) -> list[Behavior]:
-        """The AB itself; of one that was put in (X1, X4) what it was put in for, while that is there."""
-        if not self.inserted:
-            return [self]
-        behind = [
-            one for child in self.children if child.state is not GONE for one in child.meant()
-        ]
-        return behind or [self]
+    @property
+    def leaves(self) -> bool:
+        """Whether the AB leaves the user; nothing in a unit does (K2)."""
+        return self.type is not None and self.type.leaves
+
+    @property
+    def engages(self) -> bool:
+        """Whether the AB engages the user (K1)."""
+        return self.type is not None and self.type.engages
+
+    @property
+    def priority(self) -> int:
+        """1 (high) or 0 (low), by K2."""
+        return HIGH if self.type is None else self.type.priority
+
+    @property
+    def motion(self) -> str:
+        """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not in a unit."""
+        return self.type.motion if self.type is not None and self.unit is None else ""
+
+    @property
+    def inner(self) -> dict[str, Behavior]:
+        """The ABs inside it, if it is a unit."""
+        return self.inside.members if self.inside is not None else {}
+
+    @property
+    def spans(self) -> bool:
+        """Whether it is a unit that spans questions and states (U5)."""
+        return self.inside is not None and self.inside.spans
+
+    @property
+    def in_group(self) -> bool:
+        """Whether the AB is a part of a unit that shares the unit's fate (U4)."""
+        return self.unit is not None and not self.unit.spans
 
     @property
     def dormant(self) -> bool:
@@ -253,6 +275,21 @@ class Behavior:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         what = self.group or self.command
         return what is not None and what.restartable and not self.silent
+
+    def next_loop(self) -> None:
+        """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
+        if self.loop:
+            self.parent = self.id
+        self.loop += 1
+
+    def meant(self) -> list[Behavior]:
+        """The AB itself; of one that was put in (X1, X4) what it was put in for, while that is there."""
+        if not self.inserted:
+            return [self]
+        behind = [
+            one for child in self.children if child.state is not GONE for one in child.meant()
+        ]
+        return behind or [self]
 
 
 def application(name: str) -> str:

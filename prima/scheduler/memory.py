@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from prima.scheduler.behavior import (
     GONE,
     LINKED,
@@ -68,7 +66,7 @@ class Memory:
     def wait(self, ab: Behavior) -> None:
         """Let the AB compete. Commands inside a unit compete within it only."""
         ab.state = WAITING
-        ab.blocked = ("", "")
+        ab.wait.blocked = ("", "")
         if ab.unit is None:
             self.waiting[ab.name] = ab
 
@@ -82,8 +80,8 @@ class Memory:
         ab.stream.turn = ab.app.last_turn = self._turns
         unit = ab.unit
         for device in ab.in_order:
-            if unit is not None and device in unit.devices:
-                unit.busy[device] = ab
+            if unit is not None and unit.inside is not None and device in unit.devices:
+                unit.inside.busy[device] = ab
             else:
                 self.occupied[device] = ab
 
@@ -94,8 +92,8 @@ class Memory:
         for device in ab.in_order:
             if occupied.get(device) is ab:
                 del occupied[device]
-            if unit is not None and unit.busy.get(device) is ab:
-                del unit.busy[device]
+            if unit is not None and unit.inside and unit.inside.busy.get(device) is ab:
+                del unit.inside.busy[device]
         if ab.motion:
             self._leave_to_other_motion(ab)
 
@@ -120,9 +118,9 @@ class Memory:
             ab.unit.inner.pop(name, None)
         ab.state = GONE
 
-    def of_app(self, app: Application) -> Iterator[Behavior]:
+    def of_app(self, app: Application) -> list[Behavior]:
         """The application's ABs, in the order of their requests."""
-        return iter(list(app.members.values()))
+        return list(app.members.values())
 
     def open(self, stream: Stream) -> None:
         """A stream begins, or goes on after all."""
@@ -156,14 +154,14 @@ class Memory:
         """
         del self.waiting[ab.name]
         ab.state = LINKED
-        ab.waits_from = ab.kept_from = -1
+        ab.wait.since = ab.wait.kept_since = -1
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
         unit = ab.unit
         for device in ab.in_order:
-            if unit is not None and device in unit.devices:
-                other = unit.busy.get(device)
+            if unit is not None and unit.inside is not None and device in unit.devices:
+                other = unit.inside.busy.get(device)
             else:
                 other = self.occupied.get(device)
             if other is not None:

@@ -32,7 +32,7 @@ def s2b(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
 
 def e6(ab: Behavior, memory: Memory, now: int) -> int:
     """Then what others have kept from the speaker for too long, after what follows an answer."""
-    if not ab.overdue:
+    if not ab.wait.overdue:
         return 1
     return 1 if any(acknowledges(other, now) for other in memory.waiting.values()) else 0
 

@@ -1,176 +1,261 @@
-"""Policies: the thesis's, made of the rules of selection (S, F, K), and the baselines.
-
-A policy answers three questions about a waiting AB: where it ranks, whether
-something other than a device keeps it from starting, and whether it holds its
-devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
-``fifo``, ``fair``, ``fixed`` and ``none`` are the baselines it is compared with.
-"""
+"""Selection: once an instant, every waiting AB that may start is started (rules S, F, K)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from prima.errors import UsageError, did_you_mean, one_of
+from prima.messages import Order
 from prima.scheduler import rules
-from prima.scheduler.behavior import Behavior
-from prima.scheduler.memory import Memory
+from prima.scheduler.behavior import WAITING, Behavior, Wait
+from prima.scheduler.interruption import Held, x2
+from prima.scheduler.mediation import Mediation
+from prima.scheduler.policy import Ranked
+from prima.scheduler.preparation import join_ways_back, prepare
 from prima.scheduler.rules import Rank, Refusal
+from prima.scheduler.starvation import count_waits, e4, note_waits
+from prima.scheduler.streams import f1, note_turns, resume
+
+COMPOSED = {"free", "faithful"}
+"""The two kinds of motion that X5 composes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Policy:
-    """The thesis's policy, ``prima``."""
-
-    name: str = "prima"
-    floor: bool = True
-    """Whether reactions take the floor (F1) and the channel is kept (K1)."""
-    exclusive: bool = True
-    """Whether an AB waits for its devices (S1); only ``none`` does without."""
-    rules: tuple[str, ...] = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
-    """The name of the rule behind each place of a rank."""
-    turning: bool = False
-    """Whether a start changes how other ABs rank."""
-    extensions: frozenset[str] = frozenset()
-    """Which of :data:`EXTENSIONS` are on."""
-
-    def has(self, extension: str) -> bool:
-        """Whether an extension is on."""
-        return extension in self.extensions
-
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
-        """Where a waiting AB ranks: the smallest goes first (S2)."""
-        return (
-            rules.s2a(ab),
-            rules.s2b(ab, memory),
-            rules.e6(ab, memory, now),
-            rules.s2c(ab, now),
-            rules.s2d(ab),
-            rules.s2e(ab),
-            rules.s2f(ab),
-        )
-
-    def decided(self, winner: Rank, loser: Rank) -> str:
-        """The rule by which one rank goes before another: the last one where nothing differs."""
-        differ = (ours != its for ours, its in zip(winner, loser, strict=True))
-        found = (rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
-        return next(found, self.rules[-1])
-
-    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
-        """What else than a device keeps the AB from starting (F2, F6, K1)."""
-        if self.extensions and self.has("x5") and rules.x5(ab, memory):
-            return rules.k1(ab, memory)
-        return rules.refusal(ab, memory)
-
-    def holds_back(self, ab: Behavior) -> bool:
-        """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
-        return ab.reaction is not None or ab.overdue
+def select(mediation: Mediation) -> None:
+    """Start what may start, in the order of S2, until nothing more may."""
+    mediation.started, mediation.resumed = [], []
+    memory = mediation.memory
+    count_waits(mediation)
+    for unit in [ab for ab in memory.running.values() if ab.inside is not None]:
+        advance(mediation, unit)
+    while memory.waiting and s4(mediation):
+        pass
+    note_turns(mediation)
+    note_waits(mediation)
 
 
-@dataclass(frozen=True, slots=True)
-class Fifo(Policy):
-    """Waiting ABs in the order of their requests; no floor, channel or reactivity."""
+def s4(mediation: Mediation) -> bool:
+    """S2, S4: go through the waiting ABs once; true if another pass may find one that may start.
 
-    name: str = "fifo"
-    floor: bool = False
-    rules: tuple[str, ...] = ("fifo", "S2f")
-
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
-        """The earlier request goes first."""
-        return (rules.s2e(ab), rules.s2f(ab))
-
-    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
-        """Nothing but devices keeps an AB from starting."""
-        return None
-
-    def holds_back(self, ab: Behavior) -> bool:
-        """Every waiting AB holds its devices back from later ones."""
-        return True
-
-
-@dataclass(frozen=True, slots=True)
-class Fair(Fifo):
-    """Like ``fifo``, but the application goes first that has not had its turn."""
-
-    name: str = "fair"
-    turning: bool = True
-    rules: tuple[str, ...] = ("fair", "fifo", "S2f")
-
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
-        """The application whose turn is longest ago, then the earlier request."""
-        return (ab.app.last_turn, rules.s2e(ab), rules.s2f(ab))
-
-
-@dataclass(frozen=True, slots=True)
-class Fixed(Fifo):
-    """One application, named, always outranks the other (a subsumption architecture)."""
-
-    name: str = "fixed"
-    rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
-    first: str = ""
-
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
-        """The named application (else the one declared first), then the earlier request."""
-        top = ab.app.name == self.first if self.first else ab.app.order == 0
-        return (0 if top else 1, rules.s2e(ab), rules.s2f(ab))
-
-
-@dataclass(frozen=True, slots=True)
-class Unmediated(Fifo):
-    """No mediator: every Command reaches its devices at once."""
-
-    name: str = "none"
-    exclusive: bool = False
-    rules: tuple[str, ...] = ("none", "S2f")
-
-    def holds_back(self, ab: Behavior) -> bool:
-        """Nothing is ever held back."""
-        return False
-
-
-POLICIES: dict[str, type[Policy]] = {
-    "prima": Policy,
-    "fifo": Fifo,
-    "fair": Fair,
-    "fixed": Fixed,
-    "none": Unmediated,
-}
-"""Every policy by its name; the command line, editors, studies and reports read this table."""
-_WORDS = [
-    word
-    for name, policy in POLICIES.items()
-    for word in ((name, f"{name}:APP") if policy is Fixed else (name,))
-]
-USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
-"""How policies are written, for the help of the command line."""
-BASELINES = tuple(name for name in POLICIES if name != "prima")
-"""The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
-EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
-"""The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
-
-
-def policy_named(text: str) -> Policy:
-    """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.
-
-    ``prima`` may have extensions: ``prima+x1``, ``prima+x2+x4``, ``prima+all``.
-
-    Raises:
-        UsageError: no policy or extension has that name.
+    All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
     """
-    base, *extensions = text.split("+")
-    if base == "prima" and extensions:
-        return Policy(name=text, extensions=_extensions(extensions))
-    name, colon, first = text.partition(":")
-    if name == "fixed" and first:
-        return Fixed(first=first)
-    if name not in POLICIES or colon:
-        hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
-        raise UsageError(f'There is no policy "{text}". {hint}')
-    return POLICIES[name]()
+    policy, memory = mediation.policy, mediation.memory
+    join_ways_back(mediation)
+    ranked = policy.ranked(memory.waiting.values(), memory, mediation.now)
+    held: Held = {}
+    before = len(mediation.started)
+    for index, (rank, ab) in enumerate(ranked):
+        refusal = policy.refusal(ab, memory)
+        if refusal is None:
+            if prepare(mediation, ab):
+                return True
+            refusal = _wait_for_devices(mediation, ab, held)
+        if refusal is not None:
+            _hold(mediation, ab, refusal)
+        elif _start(mediation, rank, ab, ranked[index + 1 :], held):
+            return True
+    # A start may change whose stream is active, and so how reactions rank (S2b).
+    return len(mediation.started) > before and any(
+        ab.reaction is not None for ab in memory.waiting.values()
+    )
 
 
-def _extensions(names: list[str]) -> frozenset[str]:
-    for name in names:
-        if name != "all" and name not in EXTENSIONS:
-            hint = did_you_mean(name, EXTENSIONS) or f"Write {one_of(EXTENSIONS)}, or all."
-            raise UsageError(f'There is no extension "{name}". {hint}')
-    return frozenset(EXTENSIONS if "all" in names else names)
+# Devices ------------------------------------------------------------------------------------------
+
+
+def _wait_for_devices(mediation: Mediation, ab: Behavior, held: Held) -> Refusal | None:
+    """S1, S3: what keeps a device from the AB, which holds its own back while it waits."""
+    refusal = s1(mediation, ab) or s3(mediation, ab, held)
+    if refusal is None:
+        return None
+    yielding = refusal[0] == "S1" and mediation.has("x2")
+    if yielding and x2(mediation, ab, in_the_way(mediation, ab), held):
+        return None
+    _hold_back(mediation, ab, held)
+    return refusal
+
+
+def s1(mediation: Mediation, ab: Behavior) -> Refusal | None:
+    """S1: a running AB occupies one of the devices, but for a motion to be composed with (X5)."""
+    if not mediation.policy.exclusive:
+        return None
+    other = mediation.memory.conflict(ab)
+    if other is not None and mediation.has("x5") and ab.motion:
+        other = next(iter(in_the_way(mediation, ab)), None)
+    return None if other is None else ("S1", other.id)
+
+
+def s3(mediation: Mediation, ab: Behavior, held: Held) -> Refusal | None:
+    """S3: a device is held back for a reaction."""
+    if not held or not mediation.policy.exclusive:
+        return None
+    return next((("S3", held[device].id) for device in ab.in_order if device in held), None)
+
+
+def _hold_back(mediation: Mediation, ab: Behavior, held: Held) -> None:
+    """S3: keep a waiting AB's devices from those that it outranks, if it is a reaction."""
+    if mediation.policy.holds_back(ab):
+        for device in ab.devices:
+            held.setdefault(device, ab)
+
+
+def in_the_way(mediation: Mediation, ab: Behavior) -> list[Behavior]:
+    """X5: all running ABs that have to end before this one may start."""
+    conflicts = mediation.memory.conflicts(ab)
+    if not mediation.has("x5"):
+        return conflicts
+    return [other for other in conflicts if {ab.motion, other.motion} != COMPOSED]
+
+
+def able(mediation: Mediation, ranked: list[Ranked], held: Held) -> list[Ranked]:
+    """Those of waiting ABs that nothing keeps from starting (S1, S3, F2, F6, K1)."""
+    found, held = [], dict(held)
+    for one in ranked:
+        ab = one[1]
+        if mediation.policy.refusal(ab, mediation.memory) is not None:
+            continue
+        if s1(mediation, ab) is None and s3(mediation, ab, held) is None:
+            found.append(one)
+        _hold_back(mediation, ab, held)
+    return found
+
+
+def _hold(mediation: Mediation, ab: Behavior, refusal: Refusal) -> None:
+    """Record why a waiting AB may not start, where that has changed."""
+    rule, by = refusal
+    before, ab.wait.blocked = ab.wait.blocked, refusal
+    if before[0] == rule and before[1].partition(".")[0] == by.partition(".")[0]:
+        return  # the next loop of the same feedback Command is no news
+    mediation.recorder.hold(ab, rule, by)
+
+
+# Starting -----------------------------------------------------------------------------------------
+
+
+def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], held: Held) -> bool:
+    """Start an AB and record why; true when others rank otherwise now.
+
+    Args:
+        mediation: what is shared.
+        rank: the AB's.
+        ab: the AB.
+        lower: those that rank below it.
+        held: devices that those above it hold back.
+    """
+    policy, memory = mediation.policy, mediation.memory
+    rivals = able(mediation, lower, held)
+    composed = mediation.has("x5") and rules.x5(ab, memory)
+    why = _admitted_by(mediation, ab, composed)
+    reaction, ab.reaction = ab.reaction, None
+    ab.reacted = -1 if reaction is None else reaction
+    beside = composed or not rules.f3(ab, reaction is not None, memory)
+    run(mediation, ab)
+    changed = f1(mediation, ab, reaction, beside)
+    losers = _outdone(mediation, rivals, ab, lower, held)
+    rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
+    mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
+    mediation.recorder.start(ab, rule, reaction)
+    advance(mediation, ab)
+    return e4(mediation, ab) or changed or policy.turning
+
+
+def _outdone(
+    mediation: Mediation, rivals: list[Ranked], ab: Behavior, lower: list[Ranked], held: Held
+) -> list[Ranked]:
+    """Of those that could have started in an AB's place, those that cannot beside it."""
+    if not mediation.has("x5") and all(other.devices & ab.devices for _, other in rivals):
+        return rivals
+    still = able(mediation, lower, held)
+    return [one for one in rivals if one not in still]
+
+
+def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
+    """The rule by which an AB may start with which nothing competes."""
+    policy, holder = mediation.policy, mediation.memory.holder
+    if not policy.exclusive:
+        return "none"
+    if composed:
+        return "X5"
+    if policy.floor and holder is not None and holder.app is not ab.app:
+        return "F2"
+    return "S4" if mediation.memory.running else "S1"
+
+
+def run(mediation: Mediation, ab: Behavior) -> None:
+    """Let an AB run."""
+    memory, now = mediation.memory, mediation.now
+    if not mediation.policy.exclusive:
+        _collide(mediation, ab)
+    first = ab.started < 0 or ab.restarting
+    ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
+    ab.restarting = False
+    ab.wait = Wait()
+    if ab.feedback:
+        ab.next_loop()
+    mediation.started.append(ab)
+    beside = mediation.has("x5") and memory.conflict(ab) is not None
+    memory.start(ab, now)
+    _note_start(mediation, ab)
+    if ab.command is not None:
+        order = Order(
+            "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
+        )
+        order.data = ab.since if ab.resumed else None
+        mediation.orders.append(order)
+    elif first and not ab.spans:
+        u4(mediation, ab)
+
+
+def _note_start(mediation: Mediation, ab: Behavior) -> None:
+    """F6, K1, C2: what the start of an AB changes for its stream."""
+    stream = ab.stream
+    if ab.command is not None and "speaker" in ab.devices:
+        stream.spoken = True
+    if ab.engages:
+        mediation.memory.engage(stream)
+    if stream.suspended and ab.unit is None:
+        resume(mediation, stream, ab)
+
+
+def _collide(mediation: Mediation, ab: Behavior) -> None:
+    """Without a mediator a later Command displaces an earlier one on its devices."""
+    for device in ab.in_order:
+        other = mediation.memory.occupied.get(device)
+        if other is not None and other is not ab and other is not ab.unit:
+            mediation.recorder.behavior("collision", other, rule="none", by=ab.id, device=device)
+
+
+def f5(mediation: Mediation) -> None:
+    """F5: stop a body that gets no next loop, unless something else takes the wheels."""
+    ab, mediation.rolling = mediation.rolling, None
+    if ab is not None and "locomotion" not in mediation.memory.occupied:
+        mediation.order("stop", ab)
+        mediation.recorder.behavior("stop", ab, rule="F5")
+
+
+# Units --------------------------------------------------------------------------------------------
+
+
+def u4(mediation: Mediation, unit: Behavior) -> None:
+    """U4: the Commands of a group become the unit's own ABs when it starts."""
+    assert unit.group is not None and unit.inside is not None
+    made: list[Behavior] = []
+    for step in unit.group.steps:
+        ab = mediation.maker.behavior(
+            unit.app, unit.stream, step.what, mediation.now, unit.document_state, None, unit
+        )
+        for index in step.after:
+            ab.waits_for.add(made[index].name)
+            ab.parent = made[index].id
+            made[index].children.append(ab)
+        made.append(ab)
+        unit.inside.members[ab.name] = ab
+        mediation.memory.add(ab)
+        mediation.recorder.request(ab)
+
+
+def advance(mediation: Mediation, unit: Behavior) -> None:
+    """U4, U5: start the unit's own ABs in their order, where their devices are free."""
+    for ab in list(unit.inner.values()):
+        occupied = mediation.policy.exclusive and mediation.memory.conflict(ab) is not None
+        if ab.state is WAITING and not occupied:
+            reaction, ab.reaction = ab.reaction, None
+            run(mediation, ab)
+            mediation.recorder.start(ab, "U5" if unit.spans else "U4", reaction)
+            advance(mediation, ab)

@@ -6,7 +6,7 @@ from prima.devices.loop import Loop
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
-from prima.scheduler.selection import Policy
+from prima.scheduler.policy import Policy
 from prima.session import AnyDocument, Session
 from prima.sim.devices import Cast, SimulatedDevices
 from prima.sim.expected import check_expectations

@@ -13,7 +13,7 @@ from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, favourite_problem
 from prima.messages import Record
 from prima.scheduler.behavior import Behavior
-from prima.scheduler.selection import policy_named
+from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast
 from prima.sim.happenings import Doing
 from prima.sim.hearing import check_hearing

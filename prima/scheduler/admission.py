@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from prima.errors import did_you_mean
 from prima.language.commands import TABLE_4_2, CommandType, check_arguments, too_long
 from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
-from prima.scheduler.behavior import GONE, Application, Behavior, Run, Stream
+from prima.scheduler.behavior import GONE, Application, Behavior, Inside, Run, Stream
 
 Table = Mapping[str, CommandType]
 
@@ -150,53 +150,38 @@ class Maker:
         """One AB for a Command (U1) or for a group of them (U4)."""
         self.serial += 1
         number = self._behaviors[app.name] = self._behaviors.get(app.name, 0) + 1
-        group = what if isinstance(what, Group) else None
-        command = None if isinstance(what, Group) else what
-        row = self.table[command.type] if command else None
-        return Behavior(
-            name=f"{app.name}#{number}",
-            serial=self.serial,
-            app=app,
-            stream=stream,
-            type=row,
-            command=command,
-            group=group,
-            devices=(
-                row.occupied(command.text)
-                if row and command
-                else group_devices(group, self.table)
-                if group
-                else NO_DEVICES
-            ),
-            requested=now,
-            document_state=state,
-            run=run,
-            unit=unit,
-            longest=group.longest if group else None,
+        made = Behavior(
+            f"{app.name}#{number}", self.serial, app, stream, None, None, NO_DEVICES, now, state
         )
+        made.run, made.unit = run, unit
+        if isinstance(what, Group):
+            made.group, made.inside = what, Inside()
+            made.devices = group_devices(what, self.table)
+        else:
+            made.command, made.type = what, self.table[what.type]
+            made.devices = made.type.occupied(what.text)
+        return made
 
     def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:
         """The AB of a unit that spans questions and states (U5)."""
         unit = self.behavior(app, stream, Group([], asked.longest, asked.source), now, asked.state)
-        unit.use(asked.devices)
-        unit.spans = True
-        unit.open = True
+        unit.devices = asked.devices
+        unit.inside = Inside(spans=True, open=True)
         return unit
 
     def chain(
         self,
         app: Application,
         stream: Stream,
-        steps: list[Step],
-        request: Request,
+        asked: Request,
         now: int,
-        run: Run | None,
         unit: Behavior | None,
     ) -> list[Behavior]:
-        """The ABs of steps, linked as the steps say; roots wait for nothing yet."""
+        """The ABs of a request's steps, linked as they say; roots wait for nothing yet."""
+        run = Run(asked.run, app, len(asked.steps))
         made: list[Behavior] = []
-        for step in steps:
-            ab = self.behavior(app, stream, step.what, now, request.state, run, unit)
+        for step in asked.steps:
+            ab = self.behavior(app, stream, step.what, now, asked.state, run, unit)
             for index in step.after:
                 link(made[index], ab)
             made.append(ab)
@@ -212,5 +197,5 @@ def link(parent: Behavior, child: Behavior) -> None:
 
 def parent_in(unit: Behavior) -> Behavior | None:
     """O1, U5: the latest Command that was requested in a unit, if it is in working memory still."""
-    latest = unit.latest
+    latest = unit.inside.latest if unit.inside is not None else None
     return latest if latest is not None and latest.state is not GONE else None

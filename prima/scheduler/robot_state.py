@@ -21,7 +21,7 @@ Head = tuple[float, float]
 
 
 @dataclass(slots=True)
-class Body:
+class RobotState:
     """The robot's state as its devices have told it last."""
 
     pose: Pose | None = None
@@ -45,10 +45,10 @@ class Effects:
     human: bool = False
     """Whether it was turned to the human."""
     head: Head | None = None
-    body: Body = field(default_factory=Body)
+    body: RobotState = field(default_factory=RobotState)
     """The robot's state when it had been turned to him."""
 
-    def add(self, row: CommandType, command: Command, data: Data, body: Body) -> None:
+    def add(self, row: CommandType, command: Command, data: Data, body: RobotState) -> None:
         """A Command of the stream has ended, or one loop of it."""
         pose, effects = pose_of(data), row.effects
         if "position" in effects and pose is not None:
@@ -62,7 +62,7 @@ class Effects:
         if "head" in effects:
             self.head = head_of(command)
 
-    def missing(self, own: frozenset[str], body: Body) -> list[Command]:
+    def missing(self, own: frozenset[str], body: RobotState) -> list[Command]:
         """The Commands that bring back what a Command of ``own`` effects relies on."""
         if "position" in own or "follow" in own:
             return []
@@ -91,7 +91,7 @@ class Effects:
             and abs(difference(self.heading, pose[2])) > TURNED
         )
 
-    def _turned_since(self, body: Body) -> bool:
+    def _turned_since(self, body: RobotState) -> bool:
         before, now = self.body.pose, body.pose
         return (
             before is not None

@@ -1,0 +1,132 @@
+"""X2: what is restartable gives way to a reaction, and starts again afterwards."""
+
+from __future__ import annotations
+
+from prima.messages import Command, Data, Group, Notice
+from prima.scheduler.behavior import RUNNING, Behavior
+from prima.scheduler.mediation import HaltedUnit, Mediation
+
+Held = dict[str, Behavior]
+"""Devices that waiting ABs hold back from those that they outrank, and which does (S3)."""
+
+
+def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Held) -> bool:
+    """X2: interrupt what is restartable and in the way of a reaction.
+
+    Args:
+        mediation: what is shared.
+        reaction: a waiting AB.
+        ways: the running ABs on its devices.
+        held: devices that others hold back from it (S3).
+
+    Returns:
+        Whether all its devices are free now.
+    """
+    if reaction.reaction is None or any(device in held for device in reaction.devices):
+        return False
+    if not all(yields(ab, reaction) for ab in ways):
+        return False
+    for ab in ways:
+        interrupt(mediation, ab, reaction)
+    return True
+
+
+def yields(ab: Behavior, reaction: Behavior) -> bool:
+    """X2: whether a running AB gives way: to a reaction to a later event that it does not outrank."""
+    later = reaction.reaction is not None and ab.reacted < reaction.reaction
+    return ab.restartable and later and ab.priority <= reaction.priority
+
+
+def interrupt(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:
+    """X2: stop a running AB, which waits from here on to start again."""
+    mediation.recorder.behavior("interrupt", ab, rule="X2", by=reaction.id)
+    _remember_parts(mediation, ab)
+    _empty(mediation, ab)
+    if ab.command is not None:
+        mediation.order("interrupt", ab)
+    ab.restarting = True
+    mediation.memory.release(ab)
+    mediation.memory.wait(ab)
+
+
+def _empty(mediation: Mediation, unit: Behavior) -> None:
+    """Take out what is in a unit that starts again from its beginning."""
+    for inner in list(unit.inner.values()):
+        _empty(mediation, inner)
+        if inner.state is RUNNING and inner.command is not None:
+            mediation.order("interrupt", inner)
+        mediation.recorder.behavior("cancel", inner, rule="X2", outcome=inner.state)
+        mediation.memory.remove(inner)
+
+
+def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
+    """What of a unit has been done, for the application when the device has told the rest."""
+    if unit.group is None:
+        return
+    left = _parts(unit)
+    pending = {id(part.command) for part in left if part.command is not None}
+    pending |= {
+        id(one) for part in left if part.group and not part.inner for one in commands_of(part.group)
+    }
+    every = commands_of(unit.group)
+    finished = [command for command in every if id(command) not in pending]
+    running = [part for part in left if part.state is RUNNING and part.command is not None]
+    told = min(running, key=_speaks_first, default=None)
+    if told is not None:
+        mediation.halted_units[told.name] = HaltedUnit(unit, finished, len(every))
+
+
+def _speaks_first(part: Behavior) -> tuple[bool, int]:
+    return part.command is None or not part.command.text, part.serial
+
+
+def _parts(unit: Behavior) -> list[Behavior]:
+    """All that is in a unit, at any depth."""
+    parts, found = list(unit.inner.values()), []
+    while parts:
+        part = parts.pop()
+        parts += part.inner.values()
+        found.append(part)
+    return found
+
+
+def commands_of(group: Group) -> list[Command]:
+    """The Commands of a unit, those of units inside it included, in their order."""
+    found: list[Command] = []
+    for step in group.steps:
+        found += commands_of(step.what) if isinstance(step.what, Group) else [step.what]
+    return found
+
+
+def interrupted(mediation: Mediation, behavior: str, data: Data) -> None:
+    """X2: the device tells how much it had done of an AB that was interrupted."""
+    name = behavior.partition(".")[0]
+    ab = mediation.memory.behaviors.get(name)
+    halted = mediation.halted_units.pop(name, None)
+    of = ab or (halted.unit if halted is not None else None)
+    mediation.recorder.add(
+        "halted",
+        "robot",
+        app=of.app.name if of is not None else None,
+        behavior=behavior,
+        data=dict(data) or None,
+        inbound=True,
+    )
+    if halted is not None:
+        ab, data = halted.unit, whole(data, halted)
+    elif ab is not None:
+        ab.since = {key: data[key] for key in ("mark", "passed") if key in data} or None
+    if ab is None or ab.run is None or ab.silent or ab.app.gone:
+        return
+    command = ab.command or Command("iu", hook=[])
+    event = f"interrupted.{command.type}"
+    mediation.tell(ab.app, None, Notice("interrupted", ab.run.number, command, data, event))
+
+
+def whole(data: Data, halted: HaltedUnit) -> Data:
+    """How much of a unit was done, of which a device tells one part."""
+    part = float(data.get("done", 0.0))
+    said = [command.text for command in halted.finished if command.text]
+    heard = " ".join([*said, str(data.get("heard", ""))]).strip()
+    made = {"done": round((len(halted.finished) + part) / max(halted.count, 1), 3)}
+    return {**made, "heard": heard} if heard else made

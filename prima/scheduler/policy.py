@@ -1,0 +1,184 @@
+"""Policies: the thesis's, made of the rules of selection (S, F, K), and the baselines.
+
+A policy answers three questions about a waiting AB: where it ranks, whether
+something other than a device keeps it from starting, and whether it holds its
+devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
+``fifo``, ``fair``, ``fixed`` and ``none`` are the baselines it is compared with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from prima.errors import UsageError, did_you_mean, one_of
+from prima.scheduler import rules
+from prima.scheduler.behavior import Behavior
+from prima.scheduler.memory import Memory
+from prima.scheduler.rules import Rank, Refusal
+
+Ranked = tuple[Rank, Behavior]
+"""A waiting AB behind its rank."""
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """The thesis's policy, ``prima``."""
+
+    name: str = "prima"
+    floor: bool = True
+    """Whether reactions take the floor (F1) and the channel is kept (K1)."""
+    exclusive: bool = True
+    """Whether an AB waits for its devices (S1); only ``none`` does without."""
+    rules: tuple[str, ...] = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
+    """The name of the rule behind each place of a rank."""
+    turning: bool = False
+    """Whether a start changes how other ABs rank."""
+    extensions: frozenset[str] = frozenset()
+    """Which of :data:`EXTENSIONS` are on."""
+
+    def has(self, extension: str) -> bool:
+        """Whether an extension is on."""
+        return extension in self.extensions
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """Where a waiting AB ranks: the smallest goes first (S2)."""
+        return (
+            rules.s2a(ab),
+            rules.s2b(ab, memory),
+            rules.e6(ab, memory, now),
+            rules.s2c(ab, now),
+            rules.s2d(ab),
+            rules.s2e(ab),
+            rules.s2f(ab),
+        )
+
+    def ranked(self, found: Iterable[Behavior], memory: Memory, now: int) -> list[Ranked]:
+        """Waiting ABs behind their ranks, the first one first; no two ranks are equal (S2f)."""
+        return sorted(((self.rank(ab, memory, now), ab) for ab in found), key=lambda one: one[0])
+
+    def decided(self, winner: Rank, loser: Rank) -> str:
+        """The rule by which one rank goes before another: the last one where nothing differs."""
+        differ = (ours != its for ours, its in zip(winner, loser, strict=True))
+        found = (rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
+        return next(found, self.rules[-1])
+
+    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+        """What else than a device keeps the AB from starting (F2, F6, K1)."""
+        if self.extensions and self.has("x5") and rules.x5(ab, memory):
+            return rules.k1(ab, memory)
+        return rules.refusal(ab, memory)
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
+        return ab.reaction is not None or ab.wait.overdue
+
+
+@dataclass(frozen=True, slots=True)
+class Fifo(Policy):
+    """Waiting ABs in the order of their requests; no floor, channel or reactivity."""
+
+    name: str = "fifo"
+    floor: bool = False
+    rules: tuple[str, ...] = ("fifo", "S2f")
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The earlier request goes first."""
+        return (rules.s2e(ab), rules.s2f(ab))
+
+    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+        """Nothing but devices keeps an AB from starting."""
+        return None
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """Every waiting AB holds its devices back from later ones."""
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class Fair(Fifo):
+    """Like ``fifo``, but the application goes first that has not had its turn."""
+
+    name: str = "fair"
+    turning: bool = True
+    rules: tuple[str, ...] = ("fair", "fifo", "S2f")
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The application whose turn is longest ago, then the earlier request."""
+        return (ab.app.last_turn, rules.s2e(ab), rules.s2f(ab))
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed(Fifo):
+    """One application, named, always outranks the other (a subsumption architecture)."""
+
+    name: str = "fixed"
+    rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
+    first: str = ""
+
+    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+        """The named application (else the one declared first), then the earlier request."""
+        top = ab.app.name == self.first if self.first else ab.app.order == 0
+        return (0 if top else 1, rules.s2e(ab), rules.s2f(ab))
+
+
+@dataclass(frozen=True, slots=True)
+class Unmediated(Fifo):
+    """No mediator: every Command reaches its devices at once."""
+
+    name: str = "none"
+    exclusive: bool = False
+    rules: tuple[str, ...] = ("none", "S2f")
+
+    def holds_back(self, ab: Behavior) -> bool:
+        """Nothing is ever held back."""
+        return False
+
+
+POLICIES: dict[str, type[Policy]] = {
+    "prima": Policy,
+    "fifo": Fifo,
+    "fair": Fair,
+    "fixed": Fixed,
+    "none": Unmediated,
+}
+"""Every policy by its name; the command line, editors, studies and reports read this table."""
+_WORDS = [
+    word
+    for name, policy in POLICIES.items()
+    for word in ((name, f"{name}:APP") if policy is Fixed else (name,))
+]
+USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
+"""How policies are written, for the help of the command line."""
+BASELINES = tuple(name for name in POLICIES if name != "prima")
+"""The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
+EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
+"""The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
+
+
+def policy_named(text: str) -> Policy:
+    """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.
+
+    ``prima`` may have extensions: ``prima+x1``, ``prima+x2+x4``, ``prima+all``.
+
+    Raises:
+        UsageError: no policy or extension has that name.
+    """
+    base, *extensions = text.split("+")
+    if base == "prima" and extensions:
+        return Policy(name=text, extensions=_extensions(extensions))
+    name, colon, first = text.partition(":")
+    if name == "fixed" and first:
+        return Fixed(first=first)
+    if name not in POLICIES or colon:
+        hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
+        raise UsageError(f'There is no policy "{text}". {hint}')
+    return POLICIES[name]()
+
+
+def _extensions(names: list[str]) -> frozenset[str]:
+    for name in names:
+        if name != "all" and name not in EXTENSIONS:
+            hint = did_you_mean(name, EXTENSIONS) or f"Write {one_of(EXTENSIONS)}, or all."
+            raise UsageError(f'There is no extension "{name}". {hint}')
+    return frozenset(EXTENSIONS if "all" in names else names)

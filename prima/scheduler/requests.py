@@ -1,0 +1,210 @@
+"""What applications ask for, taken into working memory (O1, O2, O3, U3, U5, E2, E3, X6)."""
+
+from __future__ import annotations
+
+from prima.messages import (
+    NO_DEVICES,
+    Command,
+    LeaveState,
+    Notice,
+    OpenUnit,
+    Request,
+    line_of,
+)
+from prima.scheduler.admission import Refused, check_steps, link, parent_in, substitute
+from prima.scheduler.behavior import GONE, Application, Behavior, Stream
+from prima.scheduler.endings import cancel, close_unit, withdraw
+from prima.scheduler.mediation import Mediation
+from prima.scheduler.streams import (
+    continue_with,
+    drop_hints,
+    going_on,
+    held_of,
+    let_go,
+    opened,
+    x3,
+)
+
+
+def u3(mediation: Mediation, app: Application, asked: Request) -> None:
+    """U3: take Commands in as one tree, or refuse them all (E3)."""
+    x6(mediation, app, asked)
+    unit = app.units.get(asked.unit) if asked.unit is not None else None
+    try:
+        check_steps(asked.steps, app, mediation.table, unit.devices if unit else None)
+    except Refused as refused:
+        e3(mediation, app, asked, refused)
+        return
+    first = asked.steps[0].what
+    reaction = asked.cause if unit is None else None
+    if isinstance(first, Command) and first.now:
+        stream, parent = o2(mediation, app, first, reaction, unit), None
+    else:
+        stream, parent = place(mediation, app, reaction, unit)
+    x3(mediation, stream, asked)
+    made = mediation.maker.chain(app, stream, asked, mediation.now, unit)
+    for ab in made:
+        if not ab.waits_for:
+            _root(mediation, ab, parent, reaction)
+            ab.connect = asked.connect and unit is None
+        if unit is not None and unit.inside is not None:
+            unit.inside.members[ab.name] = unit.inside.latest = ab
+        mediation.memory.add(ab)
+        mediation.recorder.request(ab)
+    if unit is None:
+        app.latest = made[-1]
+
+
+def e3(mediation: Mediation, app: Application, asked: Request, refused: Refused) -> None:
+    """E3: Commands are refused before they enter working memory."""
+    command = refused.command
+    mediation.recorder.add(
+        "fail",
+        "mediator",
+        app=app.name,
+        rule="E3",
+        command=command.type if command else None,
+        event=refused.event,
+        message=refused.message,
+        source=line_of(command.source) if command else None,
+    )
+    notice = Notice("failed", asked.run, command, event=refused.event, message=refused.message)
+    notice.cause = asked.cause
+    mediation.tell(app, None, notice)
+
+
+def x6(mediation: Mediation, app: Application, asked: Request) -> None:
+    """X6: put other Commands in the place of those that the robot lacks."""
+    if not mediation.has("x6"):
+        return
+    for command, lacking in substitute(asked.steps, mediation.table):
+        mediation.recorder.add(
+            "substitute",
+            "mediator",
+            app=app.name,
+            rule="X6",
+            command=lacking,
+            by=command.type,
+            source=line_of(command.source),
+        )
+
+
+def u5(mediation: Mediation, app: Application, asked: OpenUnit) -> None:
+    """U5: a unit that spans questions is requested like an AB of its own."""
+    stream, parent = place(mediation, app, asked.cause, None)
+    if stream.held_until is not None:
+        let_go(mediation, stream, "joined")
+    asked.devices |= _devices_of(mediation, asked.types)
+    unit = mediation.maker.spanning(app, stream, asked, mediation.now)
+    app.units[asked.unit] = app.latest = unit
+    _root(mediation, unit, parent, asked.cause)
+    unit.connect = asked.connect
+    mediation.memory.add(unit)
+    mediation.recorder.request(unit)
+
+
+def _devices_of(mediation: Mediation, types: tuple[str, ...]) -> frozenset[str]:
+    """The devices of Commands as this robot does them, substitutes included (X6)."""
+    table, devices = mediation.table, NO_DEVICES
+    for name in types:
+        row = table.get(name)
+        if row is not None and row.substitute and mediation.has("x6"):
+            row = table[row.substitute]
+        if row is not None and not row.substitute:
+            devices |= row.devices
+    return devices
+
+
+def e2(mediation: Mediation, app: Application, reason: str) -> None:
+    """E2: an application has ended; what runs finishes, the rest is given back."""
+    app.gone = True
+    withdraw(mediation, mediation.memory.of_app(app), "E2")
+    drop_hints(mediation, app, None)
+    for number in list(app.units):
+        close_unit(mediation, app, number)
+    mediation.recorder.add("unload", "mediator", app=app.name, rule="E2", outcome=reason)
+
+
+def o3(mediation: Mediation, app: Application, asked: LeaveState) -> None:
+    """O3: the state's Commands that have not started are deleted, its loops end."""
+    mediation.recorder.add("leave", "mediator", app=app.name, rule="O3", state=asked.state)
+    drop_hints(mediation, app, asked.state)
+    state = [ab for ab in mediation.memory.of_app(app) if ab.document_state == asked.state]
+    if state:
+        continue_with(mediation, app, going_on([ab.stream for ab in state]))
+        withdraw(mediation, state, "O3")
+
+
+# Where a tree belongs -----------------------------------------------------------------------------
+
+
+def place(
+    mediation: Mediation, app: Application, reaction: int | None, unit: Behavior | None
+) -> tuple[Stream, Behavior | None]:
+    """O1, O3, C3: the stream a new tree belongs to, and its parent there; a reaction has none."""
+    if unit is not None:
+        return unit.stream, parent_in(unit)
+    parent = o1(app) if reaction is None else None
+    if parent is not None:
+        return parent.stream, parent
+    return opened(mediation, stream_of(mediation, app, reaction)), None
+
+
+def o1(app: Application) -> Behavior | None:
+    """O1: what a Command follows; in a window that is an AB of the window's stream."""
+    if app.window is not None:
+        return app.window.latest()
+    latest = app.latest
+    return latest if latest is not None and latest.state is not GONE else None
+
+
+def stream_of(mediation: Mediation, app: Application, reaction: int | None) -> Stream:
+    """The stream that a tree without a parent goes on with, or a new one."""
+    if reaction is None and app.window is not None:
+        return app.window
+    return held_of(mediation, app) or app.continuing or mediation.maker.stream(app)
+
+
+def _root(
+    mediation: Mediation, ab: Behavior, parent: Behavior | None, reaction: int | None
+) -> None:
+    """Give a root its parent by O1, its reactive flag by C5, or its place by C3."""
+    if parent is not None:
+        link(parent, ab)
+    elif reaction is not None:
+        ab.reaction = reaction
+    elif ab.app.window is not None:
+        ab.freed = mediation.now
+
+
+def o2(
+    mediation: Mediation,
+    app: Application,
+    command: Command,
+    reaction: int | None,
+    unit: Behavior | None,
+) -> Stream:
+    """O2: cancel this application's trees that want a device of the new Command.
+
+    Returns:
+        The stream that goes on: one of those cancelled, or one that is held (X3). In a
+        window no event has come that such a stream waits for.
+    """
+    devices = mediation.table[command.type].occupied(command.text)
+    if unit is not None:
+        inside = [ab for ab in unit.inner.values() if ab.devices & devices]
+        cancel(mediation, inside, devices)
+        return unit.stream
+    streams = {
+        ab.stream.name: ab.stream
+        for ab in mediation.memory.of_app(app)
+        if ab.devices & devices and ab.unit is None
+    }
+    waited_for = reaction is not None or app.window is None
+    if streams and not (waited_for and held_of(mediation, app)):
+        stream = going_on(list(streams.values()))
+    else:
+        stream = stream_of(mediation, app, reaction)
+    for one in streams.values():
+        cancel(mediation, list(one.members.values()), devices)
+    return opened(mediation, stream)

@@ -1,0 +1,96 @@
+"""How long others keep an AB waiting: what starves is reported, and what cannot speak has its turn.
+
+The mediator counts between selections, in which nothing changes. What follows from E6 says
+:func:`prima.scheduler.rules.e6`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from prima.scheduler import rules
+from prima.scheduler.behavior import Behavior, application
+from prima.scheduler.mediation import Mediation
+
+STARVING_LOOPS: Final = 20
+"""After how many loops of another's feedback Command a waiting AB is reported (E4)."""
+
+
+def e4(mediation: Mediation, ab: Behavior) -> bool:
+    """E4: count the loops that other applications' equal ABs have waited.
+
+    Returns:
+        Whether one has waited so long that it counts as a reaction from now on.
+    """
+    if not ab.feedback or ab.loop <= 1:
+        return False
+    bound, bounded = mediation.bound, []
+    for other in mediation.memory.waiting.values():
+        if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
+            continue
+        wait = other.wait
+        wait.loops += 1
+        if wait.loops == STARVING_LOOPS:
+            wait.starves = True  # it need not be told again
+            _report(mediation, other, "E4", ab.id, loop=STARVING_LOOPS)
+        if bound is not None and wait.loops >= bound:
+            bounded.append(other)
+    for _, other in mediation.policy.ranked(bounded, mediation.memory, mediation.now):
+        mediation.starved += 1
+        other.reaction = -mediation.starved
+    return bool(bounded)
+
+
+def _report(mediation: Mediation, ab: Behavior, rule: str, by: str, **fields: object) -> None:
+    mediation.recorder.add(
+        "starve", "mediator", app=ab.app.name, behavior=ab.id, rule=rule, by=by, **fields
+    )
+
+
+def count_waits(mediation: Mediation) -> None:
+    """E6: count what has passed since the selection before, and report who starves."""
+    most, now = mediation.patience, mediation.now
+    if not (most and mediation.policy.floor):
+        return
+    for ab in mediation.memory.waiting.values():
+        wait = ab.wait
+        if wait.kept_since >= 0:
+            wait.kept += now - wait.kept_since
+            wait.overdue = wait.kept >= most
+        waited = max(now - wait.since, wait.kept) if wait.since >= 0 else 0
+        if waited >= most and not wait.starves:
+            wait.starves = True
+            rule, by = wait.blocked
+            rule = "E6" if wait.overdue else rule
+            _report(mediation, ab, rule, by, data={"waited": waited / 1000})
+
+
+def note_waits(mediation: Mediation) -> None:
+    """E6: note who is kept waiting by whom from here on, and when the next one will starve."""
+    mediation.starving = None
+    if not (mediation.patience and mediation.policy.floor):
+        return
+    due = [_due(mediation, ab) for ab in mediation.memory.waiting.values()]
+    mediation.starving = min((time for time in due if time is not None), default=None)
+
+
+def _due(mediation: Mediation, ab: Behavior) -> int | None:
+    """When a waiting AB will have waited for too long (ms), if another application keeps it."""
+    wait, now = ab.wait, mediation.now
+    wait.kept_since = -1
+    if application(wait.blocked[1]) in ("", ab.app.name):
+        wait.since = -1
+        return None
+    if rules.keeps_speaker(ab, mediation.memory):
+        wait.kept_since = now
+    if wait.since < 0:
+        wait.since = now
+    return None if wait.starves else wait.since + mediation.patience
+
+
+def forget_waits(mediation: Mediation) -> None:
+    """E5: in an emergency nobody keeps anybody waiting."""
+    count_waits(mediation)
+    mediation.starving = None
+    for ab in mediation.memory.waiting.values():
+        ab.wait.since = ab.wait.kept_since = -1
