@@ -68,6 +68,8 @@ def join_ways_back(mediation: Mediation) -> None:
 
     What is wanted ``now`` does not: it waits for nothing of its own application (O2).
     """
+    if not mediation.has("x1"):
+        return
     for ab in list(mediation.memory.waiting.values()):
         way = None if ab.inserted else way_back(ab.stream)
         urgent = ab.command is not None and ab.command.now

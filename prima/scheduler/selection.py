@@ -120,6 +120,8 @@ def _hold(mediation: Mediation, ab: Behavior, refusal: Refusal) -> None:
     """Record why a waiting AB may not start, where that has changed."""
     rule, by = refusal
     before, ab.wait.blocked = ab.wait.blocked, refusal
+    if before == refusal:
+        return
     if before[0] == rule and before[1].partition(".")[0] == by.partition(".")[0]:
         return  # the next loop of the same feedback Command is no news
     mediation.recorder.hold(ab, rule, by)
