@@ -27,8 +27,8 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     from prima.language.commands import TABLE_4_2
     from prima.messages import Command, Request, Step
     from prima.scheduler.mediator import Mediator
-    from prima.scheduler.recorder import Recorder
     from prima.scheduler.policy import policy_named
+    from prima.scheduler.recorder import Recorder
 
     recorder = Recorder()
     mediator = Mediator(policy_named(policy), TABLE_4_2, recorder)
