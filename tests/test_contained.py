@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import pytest
 
 from prima import api
 from prima.interpreter.application import Interpreter
+from prima.interpreter.frame import Thrown, Transfer
 from prima.messages import Ended, Event, Sensed
+from prima.script.evaluation import ScriptError
 from tests.robot import Bench, document
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="x">'
@@ -107,3 +110,36 @@ def test_a_defect_names_the_line_that_was_gone_through(monkeypatch: pytest.Monke
     bench.event("a")
     (error,) = bench.phases("error")
     assert error["message"].startswith("app.xml:2:8: this is a defect of prima")
+
+
+AGAIN = '<assign name="n" expr="n + 1"/><if cond="n == 60"><log>sixty</log></if><if cond="n == 90"><exit/></if>'
+FAILS = '<assign name="m" expr="m.a.b"/>'
+
+
+@pytest.mark.parametrize(
+    "forms",
+    [
+        f"""<form id="f"><on event="error">{AGAIN}<pause time="1s"/><goto next="#f"/></on>
+        <block>{FAILS}</block></form>""",
+        f"""<form id="f"><on event="a"><pause time="1s"/><throw event="b"/></on>
+        <on event="b">{AGAIN}<pause time="1s"/><goto next="#f"/></on><block><throw event="a"/></block></form>""",
+        f"""<form id="f"><on event="touch"/><block cond="m.a.b"/>
+        <on event="error">{AGAIN}<pause time="1s"/><goto next="#f"/></on></form>""",
+        f"""<form id="f"><subdialog name="s" src="#g"/><on event="a">{AGAIN}<pause time="1s"/><goto next="#f"/></on></form>
+        <form id="g"><on event="error"><pause time="1s"/><return event="a"/></on><block>{FAILS}</block></form>""",
+    ],
+)
+def test_what_failed_is_forgotten_once_it_is_handled(forms: str, tmp_path: Path) -> None:
+    """A content that waits would keep the frames of all that failed before, without end."""
+    (tmp_path / "x.xml").write_text(f'{HEAD}<var name="n" expr="0"/><var name="m"/>{forms}</prima>')
+    kept: list[int] = []
+
+    def look(line: str) -> None:
+        if '"phase":"log"' in line:
+            gc.collect()
+            kinds = (Thrown, Transfer, ScriptError)
+            kept.append(sum(isinstance(one, kinds) for one in gc.get_objects()))
+
+    gc.collect()
+    api.rehearse(api.stage([], [str(tmp_path / "x.xml")]), sink=look)
+    assert len(kept) == 1 and kept[0] < 20

@@ -345,12 +345,16 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
     def thrown(self, error: Thrown | ScriptError) -> Thrown:
         """An error of the engine itself is an event as well.
 
+        What was thrown forgets where: content that handles it may wait, and would keep all that
+        led to it, what was thrown before included, without end.
+
         Raises:
             GoOut: the engine is lost.
         """
         if isinstance(error, EngineLost):
             raise GoOut(f"error.semantic: {error}", True)
         if isinstance(error, Thrown):
+            error.__context__ = error.__traceback__ = None
             return error
         return Thrown(self.internal("error.semantic", str(error)))
 

@@ -68,18 +68,18 @@ class Algorithm:
         """Do what takes no time; an event thrown in it is handled in the same fiber."""
         try:
             act()
+            return
         except (Thrown, ScriptError) as error:
             thrown = self.owner.thrown(error)
-            yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
+        yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
 
     def _visit_all(
         self, frame: Frame, fiber: Fiber, items: Sequence[Item], unit: Unit | None
     ) -> Content:
         while True:
-            try:
-                item = self.select_item(frame, fiber, items)
-            except Thrown as thrown:  # a condition that fails: nothing more can be selected
-                yield from self.owner.handling.handle_thrown(frame, fiber, unit, thrown, 0)
+            item = self._selected(frame, fiber, items)
+            if isinstance(item, Thrown):
+                yield from self.owner.handling.handle_thrown(frame, fiber, unit, item, 0)
                 return
             if item is None:
                 return
@@ -87,6 +87,13 @@ class Algorithm:
             frame.item = item
             yield from self._catching(frame, fiber, item, self._visit(frame, fiber, item))
             frame.item = unit
+
+    def _selected(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | Thrown | None:
+        """The next item, or a condition's error: then nothing more can be selected."""
+        try:
+            return self.select_item(frame, fiber, items)
+        except Thrown as error:
+            return self.owner.thrown(error)
 
     def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
         """The item that a goto names, else the first undefined one whose condition holds."""
@@ -127,10 +134,11 @@ class Algorithm:
         """Run content; an event thrown in it is handled in the same fiber."""
         try:
             yield from content
+            return
         except (Thrown, ScriptError) as error:
             frame.reprompt = False
             thrown = self.owner.thrown(error)
-            yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
+        yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
         """Ask, and take the answer: the Command Q&A (C4)."""

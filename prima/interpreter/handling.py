@@ -61,12 +61,13 @@ class Handling:
         self.owner.note(handler.node)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
+            return
         except (Thrown, ScriptError) as error:
             self.owner.count_step(handler.node)
             if depth > MAX_DEPTH:
                 self.owner.give_up(handler.node, "its handlers throw without end")
             again = self.owner.thrown(error)
-            yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
+        yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """An event from outside: the handler runs beside what the state is doing (O4)."""
@@ -138,8 +139,10 @@ class Handling:
         self.owner.note(handler.node)
         try:
             yield from self.owner.execute.run(handler.content, fiber)
+            return
         except (Thrown, ScriptError) as error:
-            yield from self.handle_thrown(frame, fiber, frame.item, self.owner.thrown(error), 0)
+            thrown = self.owner.thrown(error)
+        yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
         """The end or cancellation of a Command, for handlers in it or in scope."""
