@@ -72,7 +72,7 @@ def _starter(source: Source, opened: list[Node]) -> Start:
         if not plain.issuperset(attributes):
             attributes = {attribute_name(key): text for key, text in attributes.items()}
             plain.update(key for key in attributes if ":" not in key and "}" not in key)
-        node = Node(known[0], source, count, attributes, (), "", known[1])
+        node = Node(known[0], source, count, attributes, "", known[1])
         opened[-1].add(node)
         opened.append(node)
         count += 1

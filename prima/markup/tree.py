@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from prima.errors import Place
@@ -142,16 +142,28 @@ class Node:
     source: Source
     index: int
     attributes: dict[str, str]
-    content: list[Node | str] | tuple[()] = ()
     key: str = ""
     namespace: str = ""
+    held: list[Node | str] | Node | str | None = None
+    """What is in it; most elements hold nothing, or one thing, and need no list."""
 
     def add(self, item: Node | str) -> None:
-        """Put an element or text behind all that is in it: many elements hold nothing."""
-        if self.content:
-            self.content.append(item)
+        """Put an element or text behind all that is in it."""
+        held = self.held
+        if held is None:
+            self.held = item
+        elif isinstance(held, list):
+            held.append(item)
         else:
-            self.content = [item]
+            self.held = [held, item]
+
+    @property
+    def content(self) -> Sequence[Node | str]:
+        """The elements and texts in it, in order."""
+        held = self.held
+        if held is None:
+            return ()
+        return held if isinstance(held, list) else (held,)
 
     @property
     def place(self) -> Place:
@@ -198,7 +210,10 @@ class Node:
         while stack:
             node = stack.pop()
             yield node
-            if node.content:
+            held = node.held
+            if isinstance(held, Node):
+                stack.append(held)
+            elif isinstance(held, list):
                 stack += reversed(node.nodes)
 
     def get(self, name: str, default: str = "") -> str:

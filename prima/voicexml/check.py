@@ -145,9 +145,7 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
             problems.append(Problem(child.place, "warning", code, message, "It is ignored."))
     if foreign:
         kept = (NAMESPACE, PRIMA_NAMESPACE, SRGS)
-        node.content = [
-            one for one in node.content if isinstance(one, str) or one.namespace in kept
-        ]
+        node.held = [one for one in node.content if isinstance(one, str) or one.namespace in kept]
 
 
 def _misplaced(child: Node, node: Node) -> Problem:
