@@ -21,6 +21,11 @@ PIECE = re.compile(
 )
 """A piece of text as written: it gives no character, several as they are, or one."""
 
+AS_IT_IS = re.compile(r"[^<&]+\Z")
+"""Text in which each character is written as it is."""
+NEAR = 100
+"""How many characters of a text are looked through for one of them, as often as somebody asks."""
+
 
 @dataclass(slots=True)
 class Source:
@@ -70,6 +75,10 @@ class Source:
             if not attribute:
                 match = MARKUP.match(self.text, offset)
                 offset = match.end() if match else offset
+            if 0 <= characters < NEAR and AS_IT_IS.match(
+                self.text, offset, offset + characters + 1
+            ):
+                return self.at(offset + characters)
             self._written = _Written((index, attribute), self.text, offset)
         return self.at(self._written.offset(max(characters, 0)))
 

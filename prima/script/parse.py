@@ -27,6 +27,8 @@ MOST_READ = 8
 again and again in looking for the ends of texts, comments and regular expressions."""
 MOST_STEPS = 0.1
 """Hundreds of steps that the parser may take for each byte; code without faults takes half as many."""
+SHORT = 100
+"""Bytes of code that cannot take much work: it is not counted, which takes as long as to parse them."""
 BRACKET = re.compile(r"[()\[\]{}]")
 ASTRAL = re.compile("[\U00010000-\U0010ffff]")
 LETTER = "\u2135"
@@ -141,6 +143,8 @@ class _Reading:
     def tree(self, encoding: Literal["utf8", "utf16le"]) -> Tree | None:
         """The tree of the code; None if it takes too much work."""
         parser = Parser(_language())
+        if len(self.data) <= SHORT:
+            return parser.parse(self.data, encoding=encoding)
         try:
             made = parser.parse(self._read, encoding=encoding, progress_callback=self._stops)
         except ValueError:  # it was stopped
