@@ -17,7 +17,9 @@ from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
 LONGEST_SECONDS = 60.0
-"""How long a run may take before it counts as hanging."""
+"""How much of the processor a run and its engines may take together."""
+HANGS_SECONDS = 600.0
+"""How long a run may take before it counts as hanging: on a loaded machine it waits for its turn."""
 HONEST = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="honest">
 <form id="f"><block><send event="late" delay="30s"/></block>
 <on event="late"><log><value expr="[1, 2, 3].length"/> alive</log><exit/></on></form></prima>"""
@@ -119,7 +121,7 @@ class Outcome:
     def contained(self) -> bool:
         """Whether nobody but the attacker was hurt, and nothing hung or took too much."""
         clean = not any("Traceback" in one or "defect" in one for one in self.said)
-        return self.survived and clean and self.seconds < LONGEST_SECONDS and self.peak < 700
+        return self.survived and clean and self.processor < LONGEST_SECONDS and self.peak < 700
 
 
 def document(content: str, head: str = "") -> str:
@@ -266,7 +268,7 @@ def attempt(attack: Attack, folder: Path) -> Outcome:
     with open(folder / "stderr", "w+") as errors:
         process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
         watch = subprocess.Popen(
-            [sys.executable, "-c", f"import time, os; time.sleep({LONGEST_SECONDS}); os.kill({process.pid}, 9)"]
+            [sys.executable, "-c", f"import time, os; time.sleep({HANGS_SECONDS}); os.kill({process.pid}, 9)"]
         )  # fmt: skip
         _, status, usage = os.wait4(process.pid, 0)
         watch.kill()
