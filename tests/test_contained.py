@@ -12,7 +12,9 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.frame import Thrown, Transfer
 from prima.messages import Ended, Event, Sensed
 from prima.script.evaluation import ScriptError
+from prima.script.prelude import reason
 from tests.robot import Bench, document
+from tests.voice import Call
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="x">'
 VXML = (
@@ -143,3 +145,14 @@ def test_what_failed_is_forgotten_once_it_is_handled(forms: str, tmp_path: Path)
     gc.collect()
     api.rehearse(api.stage([], [str(tmp_path / "x.xml")]), sink=look)
     assert len(kept) == 1 and kept[0] < 20
+
+
+def test_a_dialog_that_begins_again_and_again_ends_soon() -> None:
+    """An item takes more work than other content: the engine is asked several times."""
+    call = Call('<form><block name="b"><log>x</log><clear/></block></form>')
+    (failure,) = call.session.failures
+    assert failure.endswith("it loops without ever waiting") and len(call.logs()) < 2_000
+
+
+def test_memory_that_leaves_none_for_an_error_is_told_as_such() -> None:
+    assert reason("[uninitialized]", 0.5) == "it used too much memory"

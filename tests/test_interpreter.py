@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -893,6 +895,17 @@ def test_a_delayed_event_comes_unless_its_state_is_left() -> None:
     left = Bench(body)
     left.event("go")
     assert left.session.deadline() is None
+
+
+def test_too_many_delayed_events_are_told_with_their_line() -> None:
+    bench = Bench(
+        """<form id="a"><block><foreach item="i" array="Array(300)">
+        <send event="late" delay="2s"/></foreach></block></form>"""
+    )
+    (failure,) = bench.session.failures
+    assert re.fullmatch(
+        r"app: error.semantic: app.xml:\d+:\d+: more than 256 delayed events", failure
+    )
 
 
 def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> None:

@@ -13,7 +13,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.bounds import Bounds, Visit
-from prima.interpreter.content import Executor
+from prima.interpreter.content import Executor, source
 from prima.interpreter.elements import (
     Declare,
     Document,
@@ -21,6 +21,7 @@ from prima.interpreter.elements import (
     Form,
     Link,
     Script,
+    SendOut,
     Watch,
     all_items,
 )
@@ -304,14 +305,16 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         """Ask a service something."""
         self.actions.append(Send(service, {"params": data}, next(self._sends), place))
 
-    def delay(self, name: str, data: Data, milliseconds: int, fiber: Fiber) -> None:
+    def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event here later, unless the state is left before."""
         if len(self._timers) >= MAX_TIMERS:
-            raise Thrown(self.internal("error.semantic", f"more than {MAX_TIMERS} delayed events"))
+            place = source(act.node)
+            message = f"{place}: more than {MAX_TIMERS} delayed events"
+            raise Thrown(self.internal("error.semantic", message), place)
         due = self.now + max(milliseconds, 1)
         if milliseconds <= 1:  # who sends himself one after the other loops without ever waiting
             self.hurried = due
-        timer = (due, next(self._timer_serial), name, data, fiber.frame.state)
+        timer = (due, next(self._timer_serial), act.event, data, fiber.frame.state)
         self._keep_timers([*self._timers, timer])
 
     def _keep_timers(self, timers: list[tuple[int, int, str, Data, int]]) -> None:

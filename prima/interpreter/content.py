@@ -315,7 +315,7 @@ class Executor:
         params = self.named(act.params, fiber, act.node)
         if act.event:
             delay = self.plain(act.delay, fiber)
-            self.owner.delay(act.event, params, self.milliseconds(delay, act.node), fiber)
+            self.owner.delay(act, params, self.milliseconds(delay, act.node), fiber)
         else:
             service = shown(self.plain(act.service, fiber))
             self.owner.send(service, params, source(act.node))

@@ -12,7 +12,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, NoReturn, Protocol
 
-from prima.interpreter.elements import Act, Document, Expression, Form, Item, Text, Unit
+from prima.interpreter.elements import (
+    Act,
+    Document,
+    Expression,
+    Form,
+    Item,
+    SendOut,
+    Text,
+    Unit,
+)
 from prima.interpreter.frame import Content, Fiber, Frame, GoItem, Thrown, Transfer
 from prima.markup.tree import Node
 from prima.messages import Action, Command, Cue, Data, Event, Json, Notice, Step
@@ -152,7 +161,7 @@ class Owner(Protocol):
     def send(self, service: str, data: Json, place: str) -> None:
         """Ask a service something."""
 
-    def delay(self, name: str, data: Data, milliseconds: int, fiber: Fiber) -> None:
+    def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event later, unless the state is left before."""
 
     # Events and errors:

@@ -35,7 +35,11 @@ def reason(text: str, seconds: float) -> str:
         return f"it took longer than {seconds:g} s"
     if message == "null":  # all that the engine says where no memory is left for an error
         return "it threw null, or used too much memory"
-    if "out of memory" in message or message == "" or "string too long" in message:
+    if (
+        message in ("", "[uninitialized]")
+        or "out of memory" in message
+        or "string too long" in message
+    ):
         return "it used too much memory"
     if message.startswith("(Failed obtaining"):
         return "it threw a value that cannot be shown"

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 DIALOG_STEPS = 100
 """As many pieces of content is the work of beginning a dialog."""
+ITEM_STEPS = 10
+"""As many is the work of selecting an item."""
 DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"}
 
 
@@ -299,7 +301,7 @@ class Machine:
         """
         unit, more = context.unit, True
         while more:
-            self.count_step(unit or context.form or self.document.node)
+            self.owner.count_step(unit or context.form or self.document.node, ITEM_STEPS)
             context.item = None
             try:
                 more = yield from self._visit_next(context, wanted)
