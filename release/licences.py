@@ -55,7 +55,7 @@ def licence(name: str) -> str:
 def page() -> str:
     """The page."""
     rows = (f"| [{one.name}](https://pypi.org/project/{one.name}/) | {licence(one.name)} |\n"
-            for one in locked("runtime"))  # fmt: skip
+            for one in {one.name: one for one in locked("runtime")}.values())  # fmt: skip
     return HEAD + "".join(rows) + TAIL
 
 

@@ -23,7 +23,7 @@ from prima import api
 from prima.errors.visible import HARMFUL
 from prima.lsp import naming, server
 from prima.lsp.complete import complete
-from prima.lsp.desk import Desk
+from prima.lsp.desk import Desk, path_of
 from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import marks
@@ -767,6 +767,7 @@ def test_strange_questions_are_answered_with_nothing(editor: Editor) -> None:
         "http://a/b",
         "file:///%00",
         "x:" * 50,
+        "http://[::1",
     ):
         file = lsp.TextDocumentIdentifier(uri)
         client = editor.client
@@ -790,6 +791,10 @@ def test_strange_questions_are_answered_with_nothing(editor: Editor) -> None:
     editor.client.text_document_did_change(lsp.DidChangeTextDocumentParams(identifier, [change]))
     assert editor.open("fa/y.xml", BEGIN + "<form/></prima>")  # it is still there
     editor.close("fa/y.xml")
+
+
+def test_an_address_that_is_no_uri_names_no_file() -> None:
+    assert path_of("http://[::1") is None
 
 
 def test_a_document_without_a_file_is_looked_through(editor: Editor) -> None:

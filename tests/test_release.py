@@ -74,9 +74,9 @@ def test_a_bill_of_materials_names_all_that_is_needed(tmp_path: Path) -> None:
 
 def test_licences_are_listed_as_packages_say_them() -> None:
     assert licences.PAGE.read_text(encoding="utf-8") == licences.page()
-    listed = dict(
-        re.findall(r"^\| \[([^\]]+)\]\([^)]*\) \| ([^|]+) \|$", licences.page(), re.MULTILINE)
-    )
+    rows = re.findall(r"^\| \[([^\]]+)\]\([^)]*\) \| ([^|]+) \|$", licences.page(), re.MULTILINE)
+    listed = dict(rows)
+    assert len(rows) == len(listed)  # also what has a version for each Python
     assert listed.keys() == {one.name for one in locked("runtime")}
     assert all(text.strip() for text in listed.values())
     for one in requires("prima") or ():

@@ -91,7 +91,10 @@ class Found:
 
 def path_of(uri: str) -> Path | None:
     """The file that a URI names; a document without a file gets a name of its own."""
-    parts = urlsplit(uri)
+    try:
+        parts = urlsplit(uri)
+    except ValueError:
+        return None
     if parts.scheme == "untitled":
         return Path("/untitled", unquote(parts.path).strip("/") or "document")
     if parts.scheme != "file" or "\0" in unquote(parts.path):
