@@ -24,11 +24,11 @@ from prima.certificate import (
     format_certificate,
 )
 from prima.checks.prices import Price, commands, outline, prices
+from prima.devices.profile import read_robot
 from prima.devices.voice import duration
 from prima.loading import load_scenario, read_application
 from prima.loading.files import read_file
 from prima.messages import Record
-from prima.sim.profile import read_robot
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 from tests.certified import faults
 from tests.generated_pairs import pair

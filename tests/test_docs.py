@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from prima import api
+from prima.devices.vocabulary import ROBOT
 from prima.errors import Problem, UsageError
 from prima.errors.codes import CODES
 from prima.handbook import rulebook
@@ -30,7 +31,7 @@ from prima.markup.schema import make_schema
 from prima.markup.vocabulary import Attribute, Element, Vocabulary, attributes_by_name
 from prima.report import strip
 from prima.scheduler.policy import BASELINES
-from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, WORLD
 from prima.transcript.record import PHASES, Record
 from prima.transcript.rules import RULES
 from tools import reference

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from prima.devices.profile import read_robot
 from prima.errors import DocumentError, Problem
 from prima.interpreter.reader import read_document
 from prima.language.commands import Argument, check_argument
 from prima.markup.reader import parse
 from prima.script.names import script_names
 from prima.sim.map import read_world
-from prima.sim.profile import read_robot
 from prima.sim.scenario import read_scenario
 from tests.robot import read, xml
 

@@ -15,13 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from prima import api
+from prima.devices.profile import Profile
 from prima.errors import DocumentError
 from prima.messages import Inbound, Order
 from prima.scheduler.policy import policy_named
 from prima.session import Session
 from prima.sim import devices
 from prima.sim.map import Map
-from prima.sim.profile import Profile
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
 from prima.sim.world import World

@@ -20,6 +20,7 @@ from typing import Any
 
 import prima
 from prima.devices import loop
+from prima.devices.vocabulary import ROBOT
 from prima.errors import LONGEST_TEXT, UsageError
 from prima.errors.codes import CODES
 from prima.handbook import examples
@@ -48,7 +49,7 @@ from prima.markup.schema import (
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, prelude, syntax
-from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, WORLD
 from prima.transcript import lines
 from prima.transcript.record import Record
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS

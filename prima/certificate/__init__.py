@@ -10,13 +10,13 @@ from prima.certificate.finding import Delay, Starving, delays, starving
 from prima.certificate.telling import certificate_data, format_certificate
 from prima.checks.prices import Gap, Outline, Price, outline
 from prima.checks.prices.bounds import Busy, busy_at_all
+from prima.devices.profile import Profile, read_robot
 from prima.errors import DocumentError, Place, UsageError
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
 from prima.loading import documents_folder, read_application
 from prima.loading.files import read_file
 from prima.session import AnyDocument
-from prima.sim.profile import Profile, read_robot
 
 __all__ = [
     "Certificate",

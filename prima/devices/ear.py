@@ -21,6 +21,8 @@ class Question:
     """Whether it has been asked: the user may answer."""
     until: int | None = None
     """When its time for an answer is over (ms); None while somebody speaks."""
+    deaf: bool = False
+    """Whether its recogniser hangs."""
     lost: bool = False
     """Whether another Command has taken its recogniser (only without a mediator)."""
 
@@ -34,15 +36,22 @@ class Ear:
         """How many things the user is saying."""
 
     def ask(self, behavior: str, command: Command) -> None:
-        """The robot begins to ask a question."""
+        """The robot begins to ask a question; it takes the recogniser from any other."""
+        for other in self.questions.values():
+            other.lost = True
         self.questions[behavior] = Question(behavior, command)
 
-    def listen(self, now: int, behavior: str) -> None:
-        """A question has been asked: its time for an answer begins, unless the user speaks."""
+    def listen(self, now: int, behavior: str) -> bool:
+        """A question has been asked: its time for an answer begins, unless the user speaks.
+
+        Returns:
+            Whether it listens: its recogniser does not hang.
+        """
         question = self.questions[behavior]
-        question.listens = True
-        if not self._voices:
+        question.listens = not question.deaf
+        if question.listens and not self._voices:
             self._wait(now, question)
+        return question.listens
 
     def drop(self, behavior: str) -> None:
         """A question is over, or was broken off."""
@@ -51,12 +60,7 @@ class Ear:
     def deafen(self, behavior: str) -> None:
         """The recogniser hangs: nothing more comes of a question."""
         if question := self.questions.get(behavior):
-            question.listens, question.until = False, None
-
-    def lose(self, behavior: str) -> None:
-        """Another Command has taken a question's recogniser."""
-        if question := self.questions.get(behavior):
-            question.lost = True
+            question.deaf, question.listens, question.until = True, False, None
 
     @property
     def question(self) -> Question | None:
@@ -78,7 +82,7 @@ class Ear:
         """
         self._voices += 1
         question = self.question
-        if question is None:
+        if question is None or question.deaf:
             return ""
         if question.listens:
             question.until = None

@@ -41,11 +41,11 @@ from prima.markup.reader import parse
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from prima.devices.profile import Profile
     from prima.markup.tree import Node
     from prima.session import AnyDocument
     from prima.sim.devices import Cast
     from prima.sim.map import Area, Map
-    from prima.sim.profile import Profile
     from prima.sim.scenario import Scenario
     from prima.voicexml.document import Page
     from prima.voicexml.site import Site
@@ -198,9 +198,10 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
             return _grammar_problems(path_of(path), data)
         if application:
             return _application_problems(path, data)
+        from prima.devices.profile import read_robot
+        from prima.devices.vocabulary import ROBOT
         from prima.sim.map import read_world
-        from prima.sim.profile import read_robot
-        from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+        from prima.sim.vocabulary import SCENARIO, WORLD
 
         kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO)
         vocabulary = check_root(parse(path, data, kinds), kinds)
@@ -396,7 +397,7 @@ def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
 def _prices(document: Document) -> list[Problem]:
     """What an application's units cost others, on the demo's robot, as notes."""
     from prima.checks.prices import notes
-    from prima.sim.profile import read_robot
+    from prima.devices.profile import read_robot
 
     robot = documents_folder() / "robots" / "papero.xml"
     return notes(document, read_robot(str(robot), read_file(robot)))
@@ -539,10 +540,10 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
 @few_guesses()
 def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
+    from prima.devices.profile import read_robot
     from prima.sim.devices import Cast
     from prima.sim.hearing import check_hearing
     from prima.sim.map import read_world
-    from prima.sim.profile import read_robot
     from prima.sim.rehearsal import check_cast, check_names
     from prima.sim.scenario import look_at_scenario
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.devices.vocabulary import ROBOT
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.scan import Page, Tag
@@ -15,7 +16,7 @@ from prima.markup.vocabulary import (
     attribute,
     attributes_by_name,
 )
-from prima.sim.vocabulary import ROBOT, SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from prima.devices.profile import Profile
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.messages import Inbound, Loaded, Order, Record, Unloaded
 from prima.session import AnyDocument
 from prima.sim.map import Area, Map, Point
 from prima.sim.person import Person
-from prima.sim.profile import Profile
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
 from prima.sim.scenario import Scenario
@@ -38,11 +38,11 @@ class Cast:
 class SimulatedDevices:
     """The :class:`~prima.devices.protocol.Devices` of a scenario."""
 
-    def __init__(self, cast: Cast, web: Web | None = None) -> None:
+    def __init__(self, cast: Cast, web: Web | None = None, exclusive: bool = True) -> None:
         scenario = cast.scenario
         self.cast = cast
         self.world = _world(cast)
-        self.robot = Robot(cast.robot, self.world, Routes(cast.world))
+        self.robot = Robot(cast.robot, self.world, Routes(cast.world), exclusive)
         self.person = Person(scenario, self.world, self.robot)
         self.services = Services(scenario.services, web)
         self.telephone = Telephone(scenario.transfers)
@@ -70,7 +70,7 @@ class SimulatedDevices:
 
     def due(self) -> int | None:
         """The next instant at which something is to be collected (ms), if ever."""
-        moves = self.world.moving or self.robot.moves_on
+        moves = self.world.moving or self.robot.body.moves_on
         due: int | None = None
         for time in (
             0 if self._crossed is None and self.cast.offers else None,
@@ -115,6 +115,7 @@ class SimulatedDevices:
 
     def observe(self, now: int, records: list[Record]) -> None:
         """Let the user see what has happened; the robot listens on."""
+        self.robot.settle(now)
         if self._said:
             self.robot.ear.listen_on(now)
         self.person.observe(now, records)
@@ -163,5 +164,5 @@ def _watch_sensors(documents: list[Document], robot: Robot) -> bool:
         return False
     read = [sensors_read(doc) for doc in documents]
     known = [one for one in read if one is not None]
-    robot.told_of = frozenset().union(*known) if len(known) == len(read) else None
+    robot.body.told_of = frozenset().union(*known) if len(known) == len(read) else None
     return True

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from prima.devices.reading import RENAME, Reader
 from prima.errors import did_you_mean, parted
 from prima.language.values import read_value
 from prima.markup.tree import Node
 from prima.sim.happenings import TRIGGERS
-from prima.sim.reading import RENAME, Reader
 
 SUBJECTS = ("says", "does", "finishes", "event", "logs", "sends", "state", "ends")
 """What an expectation may be of."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
 from prima.session import AnyDocument
 from prima.sim.expectations import Expectation
-from prima.sim.profile import Profile
 from prima.sim.scenario import Scenario
 
 COMMANDS = ("does", "finishes", "doing", "done")

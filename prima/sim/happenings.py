@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from prima.devices.reading import Reader
 from prima.errors import did_you_mean
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.sim.reading import Reader
 from prima.sim.vocabulary import SCENARIO
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
 from prima.sim.map import Point
 from prima.sim.plan import off_line
-from prima.sim.profile import Motion, Profile
 from prima.sim.routes import Routes
 from prima.sim.world import World, bearing, difference, distance
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from prima.devices.reading import RENAME, Reader
 from prima.errors import Problem
 from prima.markup.tree import Node
 from prima.sim.plan import Plan
-from prima.sim.reading import RENAME, Reader
 from prima.sim.vocabulary import WORLD
 
 Point = tuple[float, float]

@@ -178,7 +178,7 @@ class Person:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
-                told = {**self.robot.marks_passed(script.began), **script.told}
+                told = {**self.robot.conductor.marks_passed(script.began), **script.told}
                 made.append(Heard(script.speaking, told))
                 script.speaking = ""
                 self.robot.ear.speech_ends()
@@ -218,7 +218,7 @@ class Person:
             case "note":
                 return [Narrated("environment", doing.text)]
             case _:
-                return self._happen(doing)
+                return self._happen(doing, now)
         return []
 
     def _speak(self, text: str, script: Script, now: int) -> None:
@@ -237,7 +237,7 @@ class Person:
             elif text.endswith(tuple(KEYS_THAT_END)):
                 silence = 0
         elif not KEYS.issuperset(text):
-            longest = self.robot.longest_answer()
+            longest = self.robot.conductor.longest_answer()
             if 0 < longest < script.lasts:
                 script.lasts, script.told = longest, {"toolong": True}
         script.time = now + script.lasts + silence
@@ -258,7 +258,7 @@ class Person:
                 self.robot.ear.speech_ends()
         return Occurred("connection.disconnect.hangup", "user", data)
 
-    def _happen(self, doing: Doing) -> list[Inbound]:
+    def _happen(self, doing: Doing, now: int) -> list[Inbound]:
         """What is none of the user's doing."""
         values = doing.values
         match doing.name:
@@ -273,9 +273,9 @@ class Person:
                 device, hangs = values["device"], bool(values["hangs"])
                 how = "hangs" if hangs else "fails"
                 note = Narrated("environment", f"the {device} {how}")
-                return [note, *self.robot.broke(device, hangs)]
+                return [note, *self.robot.broke(now, device, hangs)]
             case "repair":
-                self.robot.broken.pop(values["device"], None)
+                self.robot.body.broken.pop(values["device"], None)
                 return [Narrated("environment", f"the {values['device']} works again")]
             case "emergency":
                 return [Emergency(True)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from prima.devices.loop import Loop
+from prima.devices.profile import Profile
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
@@ -11,7 +12,6 @@ from prima.session import AnyDocument, Session
 from prima.sim.devices import Cast, SimulatedDevices
 from prima.sim.expected import check_expectations
 from prima.sim.map import Map
-from prima.sim.profile import Profile
 from prima.sim.scenario import Scenario
 from prima.sim.services import Web
 
@@ -109,4 +109,4 @@ class Rehearsal(Loop):
             isolate=isolate,
             patience=scenario.patience if patience is None else patience,
         )
-        super().__init__(session, SimulatedDevices(cast, web), scenario.until)
+        super().__init__(session, SimulatedDevices(cast, web, policy.exclusive), scenario.until)

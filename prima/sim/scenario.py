@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.devices.reading import Reader
 from prima.errors import DocumentError, Problem
 from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
@@ -22,7 +23,6 @@ from prima.sim.happenings import (
     read_when,
 )
 from prima.sim.map import Point
-from prima.sim.reading import Reader
 from prima.sim.vocabulary import SCENARIO
 
 UNTIL_MS = 600_000

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pymunk
 
+from prima.devices.profile import Profile
 from prima.sim.map import Corner, Map, Point
 from prima.sim.plan import crosses, off_line
-from prima.sim.profile import Profile
 
 STEP_MS = 50
 """The longest step of physics."""

@@ -7,9 +7,9 @@ the same device waits for the end. The times are those of the simulator's voice 
 from __future__ import annotations
 
 from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
+from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.interpreter.elements import Document
-from prima.sim.profile import Profile
 from prima.voicexml.document import VoiceDocument
 
 __all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "prices", "worst"]

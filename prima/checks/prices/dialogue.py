@@ -19,6 +19,7 @@ from prima.checks.prices.firsts import Firsts, asks_at_most, is_left, responds
 from prima.checks.prices.model import SPEECH, Gap, Outline, Price, Reaction, State, devices_of
 from prima.checks.prices.own import OwnEvents
 from prima.checks.prices.texts import Constants, words_of
+from prima.devices.profile import Profile
 from prima.devices.voice import duration
 from prima.errors import Place
 from prima.interpreter.elements import (
@@ -50,7 +51,6 @@ from prima.interpreter.events import takes
 from prima.interpreter.rounds import leads_round, raised_in
 from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
-from prima.sim.profile import Profile
 
 UNKNOWN_LETTERS = 20
 """How much an expression in a text is taken to say."""

@@ -21,12 +21,12 @@ from prima.checks.prices.tags import (
     thrown_by,
     to_item,
 )
+from prima.devices.profile import Profile
 from prima.devices.voice import duration
 from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.sim.profile import Profile
 from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from prima.devices.reading import Reader
+from prima.devices.vocabulary import ROBOT
 from prima.errors import Problem, did_you_mean
 from prima.interpreter.events import near
 from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
 from prima.markup.tree import Node
-from prima.sim.reading import Reader
-from prima.sim.vocabulary import ROBOT
 
 POINTING_MS = 1000
 """How long the robot holds its arm out."""

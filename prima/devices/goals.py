@@ -1,0 +1,123 @@
+"""What the conductor tells drivers to do, and what they report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from prima.messages import Command, Data
+
+SAY: Final = "say"
+"""The goal of saying a Command's text."""
+LISTEN: Final = "listen"
+"""The goal of hearing the answer to a question."""
+
+
+@dataclass(frozen=True, slots=True)
+class Begin:
+    """A goal begins. An AB has one for its motion, one for its text, one for its answer.
+
+    A feedback Command is one goal for all of its loops. Times are ms from the run's start.
+    """
+
+    key: str
+    """Its name, which is never used again."""
+    kind: str
+    """:data:`SAY`, :data:`LISTEN`, or the Command's type."""
+    command: Command
+    devices: frozenset[str]
+    spoken: int = 0
+    """Until when the robot is expected to speak in the same Command; 0 if it does not."""
+    tick: int | None = None
+    """When the first loop of a feedback Command ends."""
+    loop: int = 0
+    """How long (ms) each further loop takes."""
+    beside: bool = False
+    """Whether a motion is composed with another one that goes on (X5)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Again:
+    """A feedback Command makes another loop: its goal goes on. Most drivers need not heed it."""
+
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """A goal has to end as soon as it can: :class:`Stopped` confirms it."""
+
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """The body has to stop where it rolls on (F5)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Safe:
+    """Everything has to stop at once, whatever runs; devices are given up for lost."""
+
+    reason: str
+
+
+Call = Begin | Again | Cancel | Stand | Safe
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """A driver has begun a goal."""
+
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """A driver is on with a goal."""
+
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A goal is reached."""
+
+    key: str
+    data: Data = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """A goal has ended because it was cancelled, or was over when that came."""
+
+    key: str
+    share: float | None = None
+    """How much of it had been done, 0 to 1, if that is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Broke:
+    """A goal is not reached: the device failed or refused it."""
+
+    key: str
+    device: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A driver is gone, and the devices with it."""
+
+    devices: frozenset[str]
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Back:
+    """Devices that were lost work again."""
+
+    devices: frozenset[str]
+
+
+Report = Accepted | Progress | Done | Stopped | Broke | Lost | Back

@@ -1,0 +1,348 @@
+"""The simulated body: reaches the conductor's goals in the world, and reports what comes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, Stand, Stopped
+from prima.devices.goals import Call as Told
+from prima.devices.profile import POINTING_MS, Profile
+from prima.messages import Json, Occurred
+from prima.sim.locomotion import Locomotion, Plan
+from prima.sim.routes import Routes
+from prima.sim.world import World, distance
+
+BRAKING_MS = 200
+FAILING_MS = 300
+"""How long a broken device tries before it says that it fails."""
+FAILS = "the device fails"
+ITS_OWN = frozenset({"human", "position", "moving"})
+"""What it measures itself, by the first part of the sensors' names."""
+STANDING = (0.0, 0.0)
+"""What the wheels are told when the robot stands."""
+
+
+@dataclass(slots=True, eq=False)
+class Effort:
+    """A goal that the body is at. Times in ms; ``ends`` None while motion decides it."""
+
+    begin: Begin
+    began: int
+    ends: int | None = None
+    tick: int | None = None
+    """When the next loop of a feedback Command ends."""
+    looped: int = -1
+    """When its last loop ended."""
+    fails: tuple[str, str] | None = None
+    """Which device does not do it, and why."""
+    lost: bool = False
+    """Whether another goal has taken the wheels (only without a mediator)."""
+    plan: Plan = field(default_factory=Plan)
+    control: Callable[[], bool] | None = None
+    """Sets the wheels; true when it has nothing left to do."""
+
+    @property
+    def turns_on(self) -> bool:
+        """Whether it ends where the world lets it."""
+        return self.control is not None and self.ends is None and self.tick is None
+
+    @property
+    def drives(self) -> bool:
+        """Whether the wheels are its."""
+        return "locomotion" in self.begin.devices and not self.lost
+
+    def share(self, now: int) -> float | None:
+        """How much of it has been done, 0 to 1, if that is known."""
+        if not self.ends or self.begin.kind == SAY:
+            return None
+        return (now - self.began) / (max(self.begin.spoken, self.ends) - self.began)
+
+
+class Body:
+    """A PaPeRo-like body: differential drive, turning head, arms, camera, touch, speaker."""
+
+    def __init__(self, profile: Profile, world: World, routes: Routes) -> None:
+        self.profile = profile
+        self.world = world
+        self.locomotion = Locomotion(profile, world, routes)
+        self.efforts: dict[str, Effort] = {}
+        """By the keys of their goals."""
+        self.broken: dict[str, bool] = {}
+        """Devices that fail, and whether they hang instead."""
+        self.told_of: frozenset[str] | None = None
+        """Sensors that somebody looks at, by the first part of their names; None for all of them."""
+        self._now = 0
+        self._around: tuple[object, ...] = ()
+        """Where robot and person were when it last measured, and how the robot moved."""
+
+    # Calls ------------------------------------------------------------------------
+
+    def take(self, now: int, call: Told) -> list[Report]:
+        """Do what the conductor says; gives what is to be reported at once."""
+        if isinstance(call, Begin):
+            self._begin(now, call)
+        elif isinstance(call, Again):
+            self._take_wheels(self.efforts[call.key])
+        elif isinstance(call, Stand):
+            self.locomotion.stand()
+        elif isinstance(call, Cancel) and (effort := self.efforts.get(call.key)) is not None:
+            self._forget(effort)
+            self._stand(effort)
+            return [Stopped(call.key, effort.share(now))]
+        return []
+
+    def _forget(self, effort: Effort) -> None:
+        """A goal is over; where the body stopped on its way is noted."""
+        del self.efforts[effort.begin.key]
+        if effort.begin.kind == "topological-move":
+            self.locomotion.note_way(str(effort.begin.command.args["to"]), effort.plan)
+
+    def _stand(self, effort: Effort) -> None:
+        """Stop the wheels, where it is this goal that turns them."""
+        if effort.drives:
+            self.locomotion.stand()
+
+    def broke(self, device: str, hangs: bool) -> list[Report]:
+        """A device fails, and what is done on it with it (E1); or it hangs, and says nothing more."""
+        self.broken[device] = hangs
+        told: list[Report] = []
+        for effort in [one for one in self.efforts.values() if device in one.begin.devices]:
+            if device == "locomotion" and effort.lost:
+                continue
+            self._stand(effort)
+            if hangs:
+                effort.ends = effort.tick = effort.control = None
+            else:
+                self._forget(effort)
+                told.append(Broke(effort.begin.key, device, FAILS))
+        return told
+
+    def _begin(self, now: int, begin: Begin) -> None:
+        effort = self.efforts[begin.key] = Effort(begin, now)
+        self._take_wheels(effort)
+        broken = sorted(begin.devices & self.broken.keys())
+        if broken:
+            if not self.broken[broken[0]]:
+                effort.ends = now + FAILING_MS
+                effort.fails = broken[0], FAILS
+            return
+        if begin.kind == SAY:
+            effort.ends = begin.spoken
+        elif begin.tick is not None:
+            self._stand(effort)
+            self._begin_loops(now, effort)
+        else:
+            self._stand(effort)
+            self._begin_once(now, effort)
+
+    def _take_wheels(self, effort: Effort) -> None:
+        """A goal takes the wheels from others, but where it is composed with them (X5)."""
+        if "locomotion" not in effort.begin.devices or effort.begin.beside:
+            return
+        for other in self.efforts.values():
+            other.lost = "locomotion" in other.begin.devices and other is not effort
+
+    def _begin_loops(self, now: int, effort: Effort) -> None:
+        """Begin a goal that a feedback Command works at in loops."""
+        begin, move = effort.begin, self.locomotion
+        args = begin.command.args
+        plan = effort.plan = Plan(since=now)
+        effort.tick = begin.tick
+        match begin.kind:
+            case "topological-move":
+                plan.path = move.way(str(args["to"]))
+                if plan.path is None:
+                    self._refuse(now, effort, "localization", f'there is no way to "{args["to"]}"')
+            case "set-position" | "set-position-and-direction":
+                plan.path = [(float(args["x"]), float(args["y"]))]
+            case "tracking-human":
+                effort.control = lambda: move.track(plan, begin.command)
+            case "active-sensing-human":
+                effort.control = lambda: move.search(plan)
+        if plan.path is not None:
+            plan.track = [self.world.position, *plan.path]
+            effort.control = lambda: move.drive_path(plan, begin.command)
+
+    def _begin_once(self, now: int, effort: Effort) -> None:
+        """Begin a goal that ends by itself."""
+        begin = effort.begin
+        args = begin.command.args
+        match begin.kind:
+            case "listen":
+                pass  # whoever listens says when that is over
+            case "turn" | "set-direction" | "turn-and-speak":
+                self._turn(now, effort)
+            case "face-human" | "face-human-and-speak":
+                effort.control = lambda: self.locomotion.face(effort.plan)
+            case "set-speed-and-time":
+                self.world.drive = (float(args["speed"]), float(args["turn-speed"]))
+                effort.ends = now + int(args["time"])
+            case "stop-moving":
+                effort.ends = now + (BRAKING_MS if self.world.drive != STANDING else 1)
+            case "move-head":
+                angle = abs(float(args["pan"]) - self.world.pan)
+                effort.ends = now + max(round(angle / self.profile.head_speed * 1000), 1)
+            case "point-by-hand":
+                effort.ends = now + POINTING_MS
+            case "gesture":
+                lasts = self.profile.gestures.get(str(args["name"]))
+                if lasts is None:
+                    why = f'the robot knows no gesture "{args["name"]}"'
+                    self._refuse(now, effort, "arm", why)
+                else:
+                    effort.ends = now + (lasts or 1)
+            case other:
+                if other in self.profile.motions:
+                    effort.control = lambda: self._dance(effort)
+                lasts = self.profile.durations.get(other, 1)
+                effort.ends = max(begin.spoken, now + lasts, now + 1)
+
+    def _turn(self, now: int, effort: Effort) -> None:
+        args = effort.begin.command.args
+        if "angle" in args:
+            left: float | None = float(args["angle"])
+        else:
+            left = self.locomotion.turn_needed(effort.begin.command)
+        if left is None:
+            self._refuse(now, effort, "localization", f'there is no place "{args["toward"]}"')
+            return
+        effort.plan.turn_left = left
+        effort.control = lambda: self.locomotion.turn(effort.plan)
+
+    @staticmethod
+    def _refuse(now: int, effort: Effort, device: str, why: str) -> None:
+        effort.fails, effort.ends, effort.tick = (device, why), now + 1, None
+
+    def _dance(self, effort: Effort) -> bool:
+        """Go through an added motion, composed with the move that goes on (X5).
+
+        A move whose loop ends at this instant goes on when the next one has been ordered.
+        """
+        moves = (one for one in self.efforts.values() if one.plan.path is not None)
+        move = next((one for one in moves if one.looped != self._now), None)
+        motion = self.profile.motions[effort.begin.kind]
+        track = move.plan.track if move else []
+        return self.locomotion.dance(effort.plan, motion, self._now, effort.began, track)
+
+    # Reports ------------------------------------------------------------------------
+
+    def due(self) -> int | None:
+        """The next instant at which something is to be reported, if one is known.
+
+        Nobody waits for the end of what is said while the same Command still moves the body.
+        """
+        moving = [one.begin.command for one in self.efforts.values() if one.turns_on]
+        times = [
+            time
+            for one in self.efforts.values()
+            for time in (one.ends, one.tick)
+            if time
+            and not (one.begin.kind == SAY and any(it is one.begin.command for it in moving))
+        ]
+        return min(times, default=None)
+
+    @property
+    def moves_on(self) -> bool:
+        """Whether a motion has been begun that ends where the world lets it."""
+        return any(one.turns_on for one in self.efforts.values())
+
+    def collect(self, now: int) -> list[Report]:
+        """Let the body get on, and give what its devices report at ``now``."""
+        self._now = now
+        reports: list[Report] = []
+        # What goes somewhere sets the wheels first; a dance adds to it (X5).
+        efforts = list(self.efforts.values())
+        if self.profile.motions:
+            efforts.sort(key=lambda one: one.begin.kind in self.profile.motions)
+        for effort in efforts:
+            reports += self._get_on(now, effort)
+        return reports
+
+    def _get_on(self, now: int, effort: Effort) -> list[Report]:
+        """Let a goal set the wheels; gives its end, if it has come to that."""
+        steers = None if effort.lost else effort.control
+        if steers is not None and steers() and effort.ends is None and effort.tick is None:
+            effort.ends = max(now, effort.begin.spoken)
+        if effort.tick is not None and effort.tick <= now:
+            effort.tick += effort.begin.loop
+            effort.looped = now
+            return self._end_loop(now, effort)
+        if effort.ends is not None and effort.ends <= now:
+            return [self._end(effort)]
+        return []
+
+    def _end(self, effort: Effort) -> Report:
+        self._forget(effort)
+        key, kind = effort.begin.key, effort.begin.kind
+        if effort.fails is not None:
+            return Broke(key, *effort.fails)
+        if kind in ("set-speed-and-time", "stop-moving"):
+            self._stand(effort)
+        if kind == "move-head":
+            self.world.pan = float(effort.begin.command.args["pan"])
+        data = self.world.pose() if "locomotion" in effort.begin.devices else {}
+        if kind in self.profile.motions:
+            data["strayed"] = round(effort.plan.strayed, 3)
+            self._stand(effort)
+        return Done(key, data)
+
+    def _end_loop(self, now: int, effort: Effort) -> list[Report]:
+        """A loop of a feedback Command ends: the goal is reached, out of reach, or goes on."""
+        kind, plan = effort.begin.kind, effort.plan
+        if kind == "active-sensing-human":
+            reached = self._search_on(now, effort)
+        else:
+            reached = kind in self.profile.durations or plan.goal
+        if reached:
+            return [self._end(effort)]
+        if plan.path is not None and self.locomotion.blocked(plan):
+            effort.fails = "locomotion", "the way is blocked"
+            return [self._end(effort)]
+        return []
+
+    def _search_on(self, now: int, effort: Effort) -> bool:
+        """Turn-and-Search: found, or look on, or turn the camera's angle and try again."""
+        if self.world.sees_person():
+            self.locomotion.stand()
+            return True
+        if now - effort.plan.since >= int(effort.begin.command.args["patience"]):
+            effort.plan.since = now
+            effort.plan.turn_left = self.profile.camera_angle
+        return False
+
+    def corners(self) -> list[Occurred]:
+        """Events of the corners that the body has come near to."""
+        return [
+            Occurred(corner.event, "environment", {"corner": corner.id})
+            for corner in self.world.corners()
+        ]
+
+    # Sensors ------------------------------------------------------------------------
+
+    def measure(self) -> dict[str, Json]:
+        """What its own sensors say, if anything around it has changed.
+
+        The first time that is all of them; later only what somebody looks at.
+        """
+        looked_at = ITS_OWN if self.told_of is None or not self._around else self.told_of
+        world = self.world
+        around = (world.position, world.heading, world.pan, world.person, world.drive)
+        if around == self._around or looked_at.isdisjoint(ITS_OWN):
+            return {}
+        self._around = around
+        now: dict[str, Json] = {}
+        if "human" in looked_at:
+            person = world.person
+            now["human.visible"] = world.sees_person()
+            now["human.distance"] = (
+                None if person is None else round(distance(world.position, person), 1)
+            )
+        if "position" in looked_at:
+            pose = world.pose()
+            now["position.x"] = round(pose["x"], 1)
+            now["position.y"] = round(pose["y"], 1)
+            now["position.heading"] = round(pose["heading"]) % 360
+        if "moving" in looked_at:
+            now["moving"] = world.drive != STANDING
+        return now
