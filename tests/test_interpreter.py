@@ -5,14 +5,10 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from prima.grammar.text import fold as folded
 from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
-from prima.interpreter.grammar import fold
 from prima.interpreter.sensors import sensors_read
 from prima.interpreter.units import units_of
 from prima.messages import Heard, Loaded, Sensed, Unloaded
@@ -322,11 +318,6 @@ def test_signs_at_the_end_of_a_word_tell_answers_apart() -> None:
         bench = Bench(ASK.format(languages))
         bench.hears(said)
         assert bench.logs() == [f"{value}/{said}"]
-
-
-@given(st.text("aZé語ｃ1 .,:+#＋'♯_", max_size=12))
-def test_both_kinds_of_grammars_fold_alike(text: str) -> None:
-    assert fold(text) == folded(text)
 
 
 def test_without_handlers_silence_and_nonsense_ask_again_with_tapered_prompts() -> None:

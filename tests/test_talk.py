@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.errors import UsageError
-from prima.interpreter.grammar import Answers, Choice, Grammar, Reference, Sequence, Tag, Words
+from prima.grammar.answers import Answers
 from prima.messages import Record
 from prima.talk import Conversation, Game
 from prima.talk.phrases import phrases
@@ -24,6 +24,7 @@ from prima.talk.scene import comment
 from prima.talk.typed import COMMANDS, LONGEST_LINE, Names, complete, read_line
 from prima.transcript.lines import line as as_line
 from prima.transcript.table import Growing, Row
+from tests.robot import document
 
 ROOT = Path(__file__).parent.parent
 DOCUMENTS = ROOT / "documents"
@@ -500,20 +501,30 @@ def test_completion(text: str, lines: list[str]) -> None:
 
 
 def test_some_answers_to_a_question_are_known() -> None:
-    fruit = Choice(
-        [Words("an apple"), Sequence([Words("a"), Choice([Words("pear"), Words("fig")])])]
+    answers = taken(
+        '<option value="1">none</option><grammar><rule id="r"><ruleref uri="#f"/><tag>x</tag></rule>'
+        '<rule id="f"><one-of><item>an apple</item><item>a <one-of><item>pear</item>'
+        "<item>fig</item></one-of></item></one-of></rule></grammar>",
+        "boolean",
     )
-    grammar = Grammar({"r": Sequence([Reference("f"), Tag("x")]), "f": fruit}, "r")
-    assert phrases(Answers({"none": 1}, [grammar], "boolean")) == [
-        "none", "yes", "no", "an apple", "a pear", "a fig",
-    ]  # fmt: skip
+    assert phrases(answers) == ["none", "yes", "no", "an apple", "a pear", "a fig"]
 
 
 def test_a_grammar_without_end_does_not_keep_anybody_waiting() -> None:
-    endless = Sequence([Reference("r")] * 8)
+    again = '<ruleref uri="#r"/>' * 8
+    grammar = f'<rule id="r"><one-of><item>{again}</item><item>a</item></one-of></rule>'
     began = time.monotonic()
-    phrases(Answers(grammars=[Grammar({"r": Choice([endless, Words("a")])}, "r")]))
+    phrases(taken(f"<grammar>{grammar}</grammar>"))
     assert time.monotonic() - began < 2
+
+
+def taken(inside: str, type: str = "text") -> Answers:
+    """What a field takes that holds something."""
+    named = "" if type == "text" else f' type="{type}"'
+    made = document(
+        f'<form id="f"><field name="a"{named}><prompt>?</prompt>{inside}</field></form>'
+    )
+    return made.forms["f"].items[0].answers  # type: ignore[attr-defined, no-any-return]
 
 
 def test_the_options_of_the_question_are_offered(tmp_path: Path) -> None:

@@ -23,13 +23,15 @@ from prima.devices import loop
 from prima.devices.vocabulary import ROBOT
 from prima.errors import LONGEST_TEXT, UsageError
 from prima.errors.codes import CODES
+from prima.grammar import builtin, chart
+from prima.grammar.answers import TYPES
+from prima.grammar.types import read
 from prima.handbook import examples
 from prima.interpreter import (
     application,
     bounds,
     content,
     frame,
-    grammar,
     handling,
     units,
 )
@@ -311,7 +313,7 @@ def limits() -> str:
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),
         (
             "steps of matching an utterance with a grammar",
-            f"{grammar.MAX_STEPS:,}",
+            f"{chart.MAX_STEPS:,}",
             "it does not match",
         ),
         (
@@ -413,22 +415,32 @@ def defaults() -> str:
     return table(("property", "kind", "default", "meaning"), rows)
 
 
+def _any_language(words: dict[str, str]) -> str:
+    """What is taken in any language, each once."""
+    return ", ".join(dict.fromkeys("|".join(words.values()).split("|")))
+
+
 ACCEPTED = {
     "boolean": (
         "A word of assent or refusal: "
-        + "; ".join(words.replace("|", ", ") for words in (grammar.YES, grammar.NO)),
+        + "; ".join(_any_language(words) for words in (builtin.YES, builtin.NO)),
         ("Yes, please.", "OK!", "No, thank you.", "はい"),
     ),
     "number": (
-        "A number in digits without a sign, in English words up to ninety-nine, or in Japanese"
-        " numerals up to 九十九",
-        ("12", "1.5", "twelve", "twenty-one", "二十三"),
+        "A number in digits, in English words or in Japanese numerals, with a sign or decimals",
+        ("12", "1.5", "-3", "twenty-one", "two hundred and five", "二十三"),
     ),
-    "digits": ("Digits, with or without spaces; they stay text", ("0 7 2", "0743")),
-    "date": ("Year, month and day in digits", ("2009-3-9", "2009/03/09", "2009年3月9日")),
+    "digits": (
+        "Digits or their names, with or without spaces; they stay text",
+        ("0 7 2", "oh seven four three"),
+    ),
+    "date": (
+        "Year, month and day, in digits or words; three numbers with the year last begin with the month",
+        ("2009-3-9", "2009/03/09", "2009年3月9日", "March 9th, 2009", "3/9/2009"),
+    ),
     "time": (
-        "A time of day in digits, of 24 hours or with a.m. or p.m.",
-        ("9", "9:30 p.m.", "21.15", "7 o'clock", "3時20分"),
+        "A time of day, of 24 hours or with a.m. or p.m.",
+        ("9", "9:30 p.m.", "21.15", "7 o'clock", "half past five", "3時20分"),
     ),
     "text": ("Anything said, white space folded", ("Tell him  I'll wait.",)),
 }
@@ -438,9 +450,9 @@ ACCEPTED = {
 def types() -> str:
     """The built-in types of fields, with the values that utterances give."""
     rows = []
-    for name, match in grammar.BUILT_IN.items():
+    for name in TYPES:
         what, said = ACCEPTED[name]
-        shown = [f"{one} → `{json.dumps(match(one), ensure_ascii=False)}`" for one in said]
+        shown = [f"{one} → `{json.dumps(read(name, one), ensure_ascii=False)}`" for one in said]
         rows.append((f"`{name}`", sentence(what), ", ".join(shown)))
     return table(("type", "takes", "what is said, and the value"), rows)
 

@@ -8,16 +8,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import partial
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from prima.grammar import moments
 from prima.grammar.model import BuiltIn
 from prima.grammar.numbers import cardinal, dialled, digits, number
-from prima.grammar.text import fold
-from prima.messages import Json
+from prima.grammar.text import fold, wide
 
-YES = {
-    "en": "yes|yeah|yep|yup|yes please|yes i do|yes it is|yes sir|yes maam|yes thats right|sure"
+if TYPE_CHECKING:
+    from prima.messages import Json
+
+YES = {  # by language; a type that is told none takes all of them
+    "en": "yes|yeah|yep|yup|yes please|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
     "ja": "はい|ええ|うん|そうです|お願いします|はいお願いします|もちろん",
@@ -82,7 +85,7 @@ _UNIT = re.compile(
 )
 _POINT_FIRST = re.compile(r"(?<![0-9])\.(?=[0-9])")
 
-Reader = Callable[[dict[str, str], str, str, str], Json]
+Reader = Callable[[dict[str, str], str, str, str], "Json"]
 """Parameters, language, text and mode to value; None where it does not match."""
 
 
@@ -157,8 +160,8 @@ def _boolean(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         return pressed.get(text.strip())
     said = fold(text)
     for words, value in ((YES, True), (NO, False)):
-        spoken = words.get(lang, "") + "|" + words["en"]
-        if said and said in map(fold, spoken.split("|")):
+        spoken = [words["en"], words.get(lang, "")] if lang else words.values()
+        if said and said in map(fold, "|".join(spoken).split("|")):
             return value
     return None
 
@@ -179,7 +182,7 @@ def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         if match is None or not (match[1] or match[2]):
             return None
         return f"{_plain(match[1])}{'.' + match[2] if match[2] else ''}"
-    plain = _POINT_FIRST.sub("0.", text.strip().replace("\u2212", "-"))
+    plain = _POINT_FIRST.sub("0.", wide(text).strip().replace("\u2212", "-"))
     sign = plain[0] if plain[:1] in ("-", "+") else ""
     return number(f"{sign}{fold(plain)}")
 

@@ -7,7 +7,7 @@ rules that refer to each other and ambiguity need no more than polynomial work; 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from prima.grammar.model import (
     BuiltIn,
@@ -21,7 +21,9 @@ from prima.grammar.model import (
     Words,
 )
 from prima.grammar.text import Utterance
-from prima.messages import Json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 MAX_STEPS = 200_000
 """How many steps one utterance may take; one that needs more matches nothing."""

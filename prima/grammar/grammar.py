@@ -6,16 +6,19 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from prima.errors import Problem
 from prima.grammar.chart import MAX_STEPS, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
-from prima.grammar.model import Document, Mode, Reference
+from prima.grammar.model import Document, Mode, Part, Reference
 from prima.grammar.ranking import best, frames
 from prima.grammar.semantics import Failure, Interpreter, SemanticError
 from prima.grammar.text import utterance
-from prima.messages import Json
 from prima.script.budget import Budget
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 MOST_ANALYSES = 64
 """How many analyses of an utterance are looked at for different meanings."""
@@ -159,6 +162,8 @@ class Grammar:
                 value = reader.interpret(frame)
                 if self._lenient and self._silent and not reader.valued:
                     value = reader.text()
+                elif self._document.dialect == "last":
+                    value = text.strip() if reader.last is None else reader.last.code
             except Failure as failure:
                 error = failure.error
             if not any(_same(one, value, error) for one in found):
@@ -215,6 +220,17 @@ class Grammar:
             remedy = 'Write root="...", or name a rule: grammar.rule("...").'
             raise refuse(GrammarError, self._where(), "no-root", message, remedy)
         return Reference(f"#{self.root}", self._where, rule=rule)
+
+    @property
+    def expansion(self) -> Part:
+        """What the root rule takes, as data.
+
+        Raises:
+            GrammarError: the grammar has no root rule.
+        """
+        rule = self._root().rule
+        assert rule is not None
+        return rule.body
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._document.rules)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from prima.grammar.errors import Where
 from prima.grammar.media import Form
-from prima.messages import Json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 Mode = Literal["voice", "dtmf", ""]
 """What input a grammar is for; the empty one takes both."""
@@ -138,7 +140,7 @@ class Document:
     lexicons: list[str] = field(default_factory=list)
     meta: dict[str, str] = field(default_factory=dict)
     dialect: str = ""
-    """How tags are read: ``script``, ``literals`` or ``legacy``."""
+    """How tags are read: ``script``, ``literals``, ``legacy``, or ``last`` (PRIMA's own language)."""
     faults: dict[str, str] = field(default_factory=dict)
     """Scripts of tags that were needed, and why each is none by itself; empty if it is one."""
     form: Form = "XML"

@@ -41,6 +41,8 @@ _ONE_DIGIT = re.compile(
 MOST_FIGURES = 100
 """A longer number is none."""
 _FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
+_DECIMAL = re.compile(r"([0-9]{1,3}(?:,[0-9]{3})+|[0-9]*)\.([0-9]+)|([0-9]+),(?![0-9]{3}$)([0-9]+)")
+"""A decimal point, or a decimal comma where it divides no thousands."""
 _JAPANESE = re.compile(f"[0-9{''.join([*KANJI, *_SMALL, *_LARGE])}]+")
 
 
@@ -174,9 +176,9 @@ def _sign(text: str) -> tuple[str, str]:
 
 def _fraction(text: str) -> tuple[str, str | None]:
     """What stands before and after the decimal point; None after it if that is no digits."""
-    match = re.fullmatch(r"((?:[0-9]{1,3}(?:,[0-9]{3})+|[0-9]*))\.([0-9]+)", text)
+    match = _DECIMAL.fullmatch(text)
     if match:
-        return match[1], match[2]
+        return (match[1], match[2]) if match[2] else (match[3], match[4])
     before, point, after = text.partition(" point ")
     if not point and text.startswith("point "):
         before, point, after = "", "point", text[6:]

@@ -10,12 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from prima.grammar.chart import Cell, Way
 from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
 from prima.grammar.text import Utterance
-from prima.messages import Json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 MOST_CELLS = 200_000
 """How large an analysis may be; a few short rules can make one of any size out of nothing."""

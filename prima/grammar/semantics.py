@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from prima.errors import Place
 from prima.grammar.legacy import translate
 from prima.grammar.model import Document, Tag, Words
 from prima.grammar.ranking import Frame, Value
 from prima.grammar.text import join
-from prima.messages import Json
 from prima.script.budget import Budget
 from prima.script.evaluation import EngineLost, ScriptError
+
+if TYPE_CHECKING:
+    from prima.messages import Json
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,8 @@ class Interpreter:
         self.tokens: list[str] = []
         self.valued = False
         """Whether a built-in type has given a value."""
+        self.last: Tag | None = None
+        """The last tag on the way, of whatever rule."""
         self._sandboxes: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
@@ -94,7 +98,9 @@ class Interpreter:
     def _token(self, event: Words | Tag | Value) -> None:
         if isinstance(event, Words):
             self.tokens += event.tokens
-        elif isinstance(event, Value):
+        elif isinstance(event, Tag):
+            self.last = event
+        else:
             self.tokens.append(event.text)
             self.valued = True
 
@@ -110,7 +116,7 @@ class Interpreter:
         dialect = result.document.dialect
         if not tags:
             self._default(frame, result)
-        elif dialect == "literals":
+        elif dialect in ("literals", "last"):
             result.value = tags[-1].code.strip()
         else:
             self._script(frame, result)

@@ -36,11 +36,16 @@ def fold(text: str) -> str:
     """Give text without what speech does not carry: case, width, punctuation, loose spaces."""
     if _PLAIN.fullmatch(text):
         return text
-    folded = _APOSTROPHE.sub("", unicodedata.normalize("NFKC", text).casefold())
+    folded = _APOSTROPHE.sub("", wide(text).casefold())
     # Separators inside numbers and times are kept, and what tells C++ and C# from C.
     pieces = _KEPT.split(folded)
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
     return _LOOSE.sub("", " ".join("".join(pieces).split()))
+
+
+def wide(text: str) -> str:
+    """Text in the usual width, without compatibility forms (NFKC)."""
+    return unicodedata.normalize("NFKC", text)
 
 
 def _letter(letter: str) -> str:

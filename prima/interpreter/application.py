@@ -9,9 +9,11 @@ is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
+from prima.grammar.answers import Answers
 from prima.interpreter.bounds import Bounds, Visit
 from prima.interpreter.content import Executor, source
 from prima.interpreter.elements import (
@@ -37,7 +39,6 @@ from prima.interpreter.frame import (
     Thrown,
     Transfer,
 )
-from prima.interpreter.grammar import Answers
 from prima.interpreter.handling import Handling
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
@@ -198,10 +199,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         if frame is None:
             return None
         least = confidence_level(self.document, frame.form)
-        budget = Budget()
+        budget = self._budget()
         for text, confidence in said:
             for link in (*frame.form.links, *self.document.links):
-                if confidence >= least and link.grammar.match(text, budget) is not None:
+                tell = partial(self._no_match, link.node)
+                if confidence >= least and link.answers.match(text, budget, tell) is not None:
                     return link
                 if budget.steps <= 0:
                     self.give_up(link.node, "what it listens for takes too long")
@@ -230,14 +232,23 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
             return None
         form, field = asking
         least = confidence_level(self.document, form, field)
-        budget = Budget()
+        budget, tell = self._budget(), partial(self._no_match, field.node)
         for text, confidence in said:
-            value = field.answers.match(text, budget) if confidence >= least else None
+            value = field.answers.match(text, budget, tell) if confidence >= least else None
             if budget.steps <= 0:
                 self.give_up(field.node, "what it listens for takes too long")
             if value is not None:
                 return Understood(value, text, confidence)
         return None
+
+    def _budget(self) -> Budget:
+        """What one utterance may take of this application's engine, in which tags run."""
+        engine = self.engine
+        return Budget(engine.now, host=getattr(engine, "host", None))
+
+    def _no_match(self, node: Node, message: str) -> None:
+        """A tag failed, so that its grammar does not take what was said."""
+        self.actions.append(Say("log", f"no match: {message}", source(node)))
 
     def answers(self, run: int) -> Answers | None:
         """What the asking field takes, if a field asks."""

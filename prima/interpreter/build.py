@@ -6,6 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from prima.errors import Problem, parted
+from prima.grammar.answers import Answers
+from prima.grammar.text import fold
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -43,11 +45,6 @@ from prima.interpreter.elements import (
     pauses_in,
     run_commands,
 )
-from prima.interpreter.grammar import (
-    Answers,
-    fold,
-)
-from prima.interpreter.srgs import read_grammar
 from prima.interpreter.units import (
     LONGEST_UNIT_MS,
     Finder,
@@ -72,6 +69,7 @@ from prima.script.evaluation import SCOPES
 from prima.script.globals import HANDLED, RESERVED
 
 if TYPE_CHECKING:
+    from prima.grammar.grammar import Grammar
     from prima.messages import Json
 
 HOLD_MS = 15_000
@@ -384,7 +382,7 @@ class Builder:
         found = []
         for child in parts.get("link", ()):
             self.one_of_two(child, "next", "event")
-            grammars = [read_grammar(self.problem, item) for item in child.all("grammar")]
+            grammars = self.grammars(child.all("grammar"))
             if len(grammars) != 1:
                 self.problem(
                     child,
@@ -392,10 +390,18 @@ class Builder:
                     "<link> needs one <grammar>.",
                     "Write what the user says into one.",
                 )
-            for grammar in grammars[:1]:
+            if grammars:
                 to = self.target(child, "next")
-                found.append(Link(to, child.get("event"), grammar, child))
+                found.append(Link(to, child.get("event"), Answers(grammars=grammars[:1]), child))
         return tuple(found)
+
+    def grammars(self, nodes: list[Node]) -> list[Grammar]:
+        """Grammars, each written in the document."""
+        if not nodes:
+            return []
+        from prima.grammar.dialogue import read_grammar  # few documents have any
+
+        return [read_grammar(self.problem, node) for node in nodes]
 
     def watches(self, parts: Parts) -> tuple[Watch, ...]:
         """Watches in document order."""
@@ -484,8 +490,7 @@ class Builder:
                     "Remove one of them.",
                 )
             answers.options.setdefault(fold(said), child.get("value", said))
-        grammars = parts.get("grammar", ())
-        answers.grammars = [read_grammar(self.problem, child) for child in grammars]
+        answers.grammars = self.grammars(parts.get("grammar", []))
         strange = any(not child.key for child in node.nodes)  # told already
         if not (answers.options or answers.grammars or answers.type or strange):
             self.problem(

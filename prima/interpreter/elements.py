@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from prima.interpreter.grammar import Answers, Grammar
+from prima.grammar.answers import Answers
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ class Link:
 
     form: str
     event: str
-    grammar: Grammar
+    answers: Answers
     node: Node
 
 

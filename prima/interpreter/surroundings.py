@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from prima.errors import Problem, did_you_mean, one_of
+from prima.grammar.text import fold
 from prima.interpreter.elements import (
     CommandTemplate,
     Document,
@@ -18,7 +19,6 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.events import event_place, handlers_of
-from prima.interpreter.grammar import fold
 from prima.markup.tree import Node
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}

@@ -7,7 +7,7 @@ SMIL's.
 
 from __future__ import annotations
 
-from prima.interpreter.grammar import BUILT_IN
+from prima.grammar.answers import TYPES
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
 
@@ -211,7 +211,7 @@ ELEMENTS = (
             attribute("name", "variable", "the variable that the answer fills", "required"),
             _START,
             _COND,
-            attribute("type", "text", "a built-in grammar for the answer", choices=tuple(BUILT_IN)),
+            attribute("type", "text", "a built-in grammar for the answer", choices=TYPES),
             *_STREAM,
             _CHANNEL,
         ),

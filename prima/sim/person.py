@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
 from prima.devices import voice
-from prima.interpreter.grammar import fold
+from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.messages import (
     Emergency,

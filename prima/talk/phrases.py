@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
-from prima.interpreter.grammar import (
-    Answers,
+from prima.grammar.answers import Answers
+from prima.grammar.model import (
     Choice,
-    Grammar,
     Part,
     Reference,
+    Repeat,
     Sequence,
+    Special,
     Tag,
     Words,
 )
@@ -30,7 +31,7 @@ def phrases(answers: Answers) -> list[str]:
     """Some of what a field takes, without what speech does not carry, the shortest first."""
     found = dict.fromkeys(islice(answers.options, MOST))
     for grammar in answers.grammars:
-        found |= dict.fromkeys(islice(_Phrases(grammar).all(), MOST))
+        found |= dict.fromkeys(islice(_Phrases().of(grammar.expansion), MOST))
     found |= dict.fromkeys(TYPES.get(answers.type, ()))
     return sorted(filter(None, found), key=lambda phrase: len(phrase.split()))[:MOST]
 
@@ -38,15 +39,10 @@ def phrases(answers: Answers) -> list[str]:
 class _Phrases:
     """Some phrases of one grammar, found in a bounded number of steps."""
 
-    def __init__(self, grammar: Grammar) -> None:
-        self._grammar = grammar
+    def __init__(self) -> None:
         self._left = STEPS
 
-    def all(self) -> Iterator[str]:
-        """Phrases of the root rule."""
-        return self._of(self._grammar.rules.get(self._grammar.root), 0)
-
-    def _of(self, part: Part | None, depth: int) -> Iterator[str]:
+    def of(self, part: Part, depth: int = 0) -> Iterator[str]:
         """Phrases of an expansion: each part once where it may be repeated."""
         self._left -= 1
         if depth > DEEP or self._left < 0:
@@ -54,16 +50,18 @@ class _Phrases:
         match part:
             case Words(words):
                 yield words
-            case Tag():
+            case Tag() | Special("NULL"):
                 yield ""
-            case Reference(rule):
-                yield from self._of(self._grammar.rules.get(rule), depth + 1)
+            case Reference(rule=rule) if rule is not None:
+                yield from self.of(rule.body, depth + 1)
             case Choice(parts):
                 for one in parts:
-                    yield from islice(self._of(one, depth + 1), MOST)
-            case Sequence(parts, low, high):
-                if high:
-                    yield from self._joined(parts, depth + 1)
+                    yield from islice(self.of(one, depth + 1), MOST)
+            case Sequence(parts):
+                yield from self._joined(parts, depth + 1)
+            case Repeat(inner, low, high):
+                if high != 0:
+                    yield from self.of(inner, depth + 1)
                 if not low:
                     yield ""
 
@@ -71,6 +69,6 @@ class _Phrases:
         """Phrases of parts one after another."""
         found = [""]
         for part in parts:
-            then = list(islice(self._of(part, depth), MOST))
+            then = list(islice(self.of(part, depth), MOST))
             found = [" ".join(filter(None, (one, two))) for one in found for two in then][:MOST]
         return found

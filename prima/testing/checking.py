@@ -8,7 +8,7 @@ from difflib import SequenceMatcher
 from typing import Any
 
 from prima.errors import Place
-from prima.interpreter.grammar import fold
+from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
 from prima.messages import Record

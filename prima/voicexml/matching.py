@@ -17,8 +17,8 @@ from prima.grammar import (
     UnsupportedLanguage,
     load,
 )
+from prima.grammar.text import fold
 from prima.interpreter.content import source
-from prima.interpreter.grammar import fold
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.budget import Budget

@@ -10,6 +10,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 
+from prima.grammar.text import fold
 from prima.interpreter.elements import (
     Assign,
     Declare,
@@ -18,7 +19,6 @@ from prima.interpreter.elements import (
     Script,
     all_acts,
 )
-from prima.interpreter.grammar import fold
 from prima.markup.tree import Node
 
 Literal = str | float | bool | None | list["Literal"] | dict[str, "Literal"]

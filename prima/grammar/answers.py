@@ -1,0 +1,47 @@
+"""What a question of PRIMA's own language takes: options, grammars and a built-in type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from prima.grammar.text import fold
+
+if TYPE_CHECKING:
+    from prima.grammar.grammar import Grammar
+    from prima.messages import Json
+    from prima.script.budget import Budget
+
+Tell = Callable[[str], None]
+TYPES = ("boolean", "number", "digits", "date", "time", "text")
+"""The built-in types of PRIMA's own language; :mod:`prima.grammar.types` reads them."""
+
+
+@dataclass(slots=True)
+class Answers:
+    """All that a question or a link takes: options first, then grammars, then its built-in type."""
+
+    options: dict[str, Json] = field(default_factory=dict)
+    grammars: Sequence[Grammar] = ()
+    type: str = ""
+
+    def match(self, text: str, budget: Budget | None = None, tell: Tell | None = None) -> Json:
+        """The value of an utterance, or None where it is no answer.
+
+        A grammar of which a tag fails does not take the utterance; ``tell`` is told why.
+        """
+        said = fold(text)
+        if said in self.options:
+            return self.options[said]
+        for grammar in self.grammars:
+            for found in grammar.match(text, budget=budget):
+                if found.error is None:
+                    return found.text if found.interpretation is None else found.interpretation
+                if tell is not None:
+                    tell(str(found.error))
+        if not self.type:
+            return None
+        from prima.grammar.types import read  # most questions have none
+
+        return read(self.type, text)
