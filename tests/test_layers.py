@@ -90,6 +90,7 @@ INSIDE = {
         {"entering", "rounds", "surroundings", "units"},
         {"returning", "ways"},
         {"repeats"},
+        {"grammars"},
         {"build", "checks", "frame"},
         {"reader", "owner"},
         {"content"},

@@ -85,7 +85,7 @@ class _Reader:
                 name = _named(one)
                 names[name] = self._rule_named(one, name, "uri", "#" not in one.get("uri"))
         for reference in self.document.references:
-            reference.rule = names[reference.uri]
+            reference.lead_to(names[reference.uri])
 
     def _expansion(self, node: Node) -> Part:
         """What an element holds, as often as it says."""

@@ -219,7 +219,7 @@ class Grammar:
             message = "This grammar names no root rule, so it takes nothing by itself."
             remedy = 'Write root="...", or name a rule: grammar.rule("...").'
             raise refuse(GrammarError, self._where(), "no-root", message, remedy)
-        return Reference(f"#{self.root}", self._where, rule=rule)
+        return Reference(f"#{self.root}", self._where, "", self._document, self.root)
 
     @property
     def expansion(self) -> Part:

@@ -62,7 +62,9 @@ class Library:
             for reference in document.references:
                 if self.problems.full:
                     return
-                reference.rule = self._resolve(document, reference)
+                rule = self._resolve(document, reference)
+                if rule is not None:
+                    reference.lead_to(rule)
         if not self.problems.found:
             index_choices(self._linked)
 
@@ -87,7 +89,7 @@ class Library:
             data = self._fetch(uri)
         except FAILURES as error:
             message = f'The grammar "{uri[:200]}" cannot be had: {error}.'
-            remedy = "Its name is read relative to the grammar that refers to it."
+            remedy = "Its name is read relative to the document that names it."
             self.problems.note(where, "no-such-file", message, remedy)
             return None
         self._bytes += len(data)
@@ -186,7 +188,9 @@ class Library:
             kind = UnsupportedBuiltIn
             self.problems.unsupported(kind, reference.where, "no-such-name", str(error))
             return None
-        return Rule(found.name, found, Document("", reference.where, dialect="literals"))
+        home = Document("", reference.where, dialect="literals")
+        home.rules[found.name] = Rule(found.name, found, home)
+        return home.rules[found.name]
 
 
 def base_of(document: Document) -> str:

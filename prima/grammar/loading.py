@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from urllib.parse import urldefrag
 
-from prima.errors import DocumentError, Place
+from prima.errors import DocumentError, Place, did_you_mean
 from prima.grammar.builtin import TYPES, Conflict, built_in
 from prima.grammar.errors import (
     GrammarError,
@@ -174,7 +174,11 @@ def _external(
         if not document.rules[name].public:
             message = f'The rule "{name}" is private to its grammar.'
             raise refuse(GrammarError, where(), "private-rule", message)
-    elif not name and not document.root:
+    elif name:
+        message = f'The grammar "{uri}" has no rule "{name}".'
+        hint = did_you_mean(name, document.rules)
+        raise refuse(GrammarError, where(), "no-such-rule", message, hint)
+    elif not document.root:
         message = f'The grammar "{uri}" names no root rule.'
         raise refuse(GrammarError, where(), "no-root", message, "Name a rule: #name.")
     return document, name

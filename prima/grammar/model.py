@@ -57,12 +57,25 @@ class Repeat:
 
 @dataclass(slots=True, eq=False)
 class Reference:
-    """A rule by its URI (SRGS 2.2); ``rule`` is there once it was found."""
+    """A rule by its URI (SRGS 2.2), and by its document and name once it was found.
+
+    It does not hold the rule itself, so that a grammar of however long a chain can be pickled.
+    """
 
     uri: str
     where: Where
     media: str = ""
-    rule: Rule | None = None
+    home: Document | None = None
+    name: str = ""
+
+    @property
+    def rule(self) -> Rule | None:
+        """The rule, once it was found."""
+        return self.home.rules.get(self.name) if self.home is not None else None
+
+    def lead_to(self, rule: Rule) -> None:
+        """The rule has been found."""
+        self.home, self.name = rule.document, rule.name
 
 
 @dataclass(slots=True, eq=False)

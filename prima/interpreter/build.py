@@ -70,6 +70,7 @@ from prima.script.globals import HANDLED, RESERVED
 
 if TYPE_CHECKING:
     from prima.grammar.grammar import Grammar
+    from prima.interpreter.grammars import Fetch
     from prima.messages import Json
 
 HOLD_MS = 15_000
@@ -92,8 +93,12 @@ ONLY_NEXT = frozenset(["next"])
 class Builder:
     """Builds a document; what is wrong is collected in ``problems``, and building goes on."""
 
-    def __init__(self, root: Node) -> None:
+    def __init__(self, root: Node, fetch: Fetch | None = None) -> None:
         self.root = root
+        self.fetch = fetch
+        """Gives the bytes of files that the document names."""
+        self.outside = False
+        """Whether it names any."""
         self.problems: list[Problem] = []
         self.lang = root.get("xml:lang", "en")
         self.expressions: list[Expression] = []
@@ -382,8 +387,9 @@ class Builder:
         found = []
         for child in parts.get("link", ()):
             self.one_of_two(child, "next", "event")
-            grammars = self.grammars(child.all("grammar"))
-            if len(grammars) != 1:
+            held = child.all("grammar")
+            grammars = self.grammars(held)
+            if len(held) != 1:
                 self.problem(
                     child,
                     "missing-element",
@@ -396,12 +402,16 @@ class Builder:
         return tuple(found)
 
     def grammars(self, nodes: list[Node]) -> list[Grammar]:
-        """Grammars, each written in the document."""
+        """Grammars, without those of files that cannot be used."""
         if not nodes:
             return []
-        from prima.grammar.dialogue import read_grammar  # few documents have any
+        from prima.interpreter.grammars import grammar_of  # few documents have any
 
-        return [read_grammar(self.problem, node) for node in nodes]
+        self.outside = self.outside or any("src" in node.attributes for node in nodes)
+        found = [
+            grammar_of(node, self.lang, self.fetch, self.problem, self.problems) for node in nodes
+        ]
+        return [one for one in found if one is not None]
 
     def watches(self, parts: Parts) -> tuple[Watch, ...]:
         """Watches in document order."""
@@ -492,7 +502,7 @@ class Builder:
             answers.options.setdefault(fold(said), child.get("value", said))
         answers.grammars = self.grammars(parts.get("grammar", []))
         strange = any(not child.key for child in node.nodes)  # told already
-        if not (answers.options or answers.grammars or answers.type or strange):
+        if not (answers.options or "grammar" in parts or answers.type or strange):
             self.problem(
                 node,
                 "no-answer",

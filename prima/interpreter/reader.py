@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from prima.errors import Problem, few_guesses, in_order
 from prima.interpreter.build import Builder
@@ -10,6 +11,9 @@ from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.limits import LIMITS
 from prima.markup.reader import read_tree
+
+if TYPE_CHECKING:
+    from prima.interpreter.grammars import Fetch
 
 WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
 """Codes of what a whole document lacks, which may stand in an element that is not understood."""
@@ -33,11 +37,18 @@ _kept: dict[str, _Read] = {}
 """Documents by their files' names, the one that was read last at the end."""
 
 
-def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
+def read_document(
+    file: str, data: bytes, fetch: Fetch | None = None
+) -> tuple[Document, list[Problem]]:
     """Read an application and check it: schema first, then meaning.
 
     The same bytes of the same file give the same document, as nothing changes one; only what
-    each file was last is kept, and of not too many files.
+    each file was last is kept, and of not too many files. One that names files is read anew.
+
+    Args:
+        file: the document's name, for places.
+        data: its bytes.
+        fetch: gives the bytes of a file that it names; without it there are none.
 
     Raises:
         DocumentError: no document at all can be given: it is not XML, or not
@@ -48,7 +59,10 @@ def read_document(file: str, data: bytes) -> tuple[Document, list[Problem]]:
     if read is None or read.data != data or read.limits != limits:
         read = None  # the memory of the one before is free for this one
         with few_guesses():
-            read = _Read(data, limits, *_read(file, data))
+            document, problems, outside = _read(file, data, fetch)
+        if outside:
+            return document, problems
+        read = _Read(data, limits, document, tuple(problems))
     _keep(file, read)
     return read.document, list(read.problems)
 
@@ -66,19 +80,20 @@ def _keep(file: str, read: _Read) -> None:
         left -= len(oldest.data) if oldest else 0
 
 
-def _read(file: str, data: bytes) -> tuple[Document, tuple[Problem, ...]]:
+def _read(file: str, data: bytes, fetch: Fetch | None) -> tuple[Document, list[Problem], bool]:
+    """The document, what is wrong with it, and whether it names files."""
     from prima.interpreter.checks import check_document
 
     root, problems = read_tree(file, data, DIALOGUE)
     told = bool(problems)
-    builder = Builder(root)
+    builder = Builder(root, fetch)
     document = builder.document()
     problems += builder.problems
     strange = [node for node in root.walk() if not node.key] if told else []
     named = {text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"}
     found = check_document(document)
     problems += [one for one in found if not (strange and _follows(one, named))]
-    return document, tuple(in_order(problems))
+    return document, in_order(problems), builder.outside
 
 
 def _follows(problem: Problem, named: set[str]) -> bool:

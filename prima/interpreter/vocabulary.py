@@ -240,8 +240,11 @@ ELEMENTS = (
     ),
     Element(
         "grammar",
-        "Answers as an SRGS grammar: rules, or one expansion written at once.",
-        (attribute("root", "id", "the rule to begin with; by default the first"),),
+        "Answers as an SRGS grammar: rules, one expansion written at once, or a file.",
+        (
+            attribute("root", "id", "the rule to begin with; by default the first"),
+            attribute("src", "text", "a file with an SRGS grammar, and # and a rule of it"),
+        ),
         ("rule", "one-of", "item", "ruleref", "tag"),
         text=True,
         source="SRGS 1.0",

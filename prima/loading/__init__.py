@@ -65,7 +65,7 @@ def read_application(
         DocumentError: no document at all can be given.
     """
     if not is_voicexml(data):
-        native, problems = read_document(path, data)
+        native, problems = _read_native(path, data)
         if kind and native.kind != kind:
             from dataclasses import replace
 
@@ -80,6 +80,11 @@ def read_application(
     return VoiceDocument(
         own, kind or "ea", path, page, folder.fetch, page.root, folder.glance
     ), page.problems
+
+
+def _read_native(path: str, data: bytes) -> tuple[Document, list[Problem]]:
+    """An application in PRIMA's own language, with the grammars of its folder that it names."""
+    return read_document(path, data, lambda uri: _fetcher(path_of(path).parent)(uri))
 
 
 VOICEXML = re.compile(rb"<(?:[\w.-]+:)?vxml[\s>/]")
@@ -115,7 +120,7 @@ def load(path: str | Path) -> Document:
         DocumentError: with all problems, if any is an error.
         UsageError: the file cannot be read.
     """
-    document, problems = read_document(str(path), read_file(path))
+    document, problems = _read_native(str(path), read_file(path))
     if any(problem.severity == "error" for problem in problems):
         raise DocumentError(problems)
     return document
@@ -256,7 +261,7 @@ def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
 
 def _application_problems(path: str, data: bytes) -> list[Problem]:
     """The problems of an application in PRIMA's own language."""
-    document, problems = read_document(path, data)
+    document, problems = _read_native(path, data)
     return problems + _prices(document) if b"<iu" in data else problems
 
 

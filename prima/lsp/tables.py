@@ -355,6 +355,7 @@ FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
     **{("voicexml", key, "next"): ("voicexml",) for key in ("goto", "submit", "link", "choice")},
     ("voicexml", "subdialog", "src"): ("voicexml",),
     ("voicexml", "grammar", "src"): ("srgs",),
+    ("dialogue", "grammar", "src"): ("srgs",),
     ("srgs", "ruleref", "uri"): ("srgs",),
     **{("voicexml", key, "src"): () for key in ("script", "audio", "data")},
 }
