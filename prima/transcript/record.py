@@ -6,7 +6,7 @@ and both tables of the documentation. :class:`Entry` is a record as the fold see
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import (
     TYPE_CHECKING,
@@ -74,11 +74,6 @@ PHASES = {
         "`behavior`, `devices`, `reactive`, `cause`, `resumed`, `rule`",
         ("behavior", "command", "app"),
     ),
-    "listening": Phase(
-        "a question has been said, and listens",
-        "`behavior`",
-        ("behavior",),
-    ),
     "end": Phase(
         "an AB ends by itself; `again` as `outcome` of a loop that another follows",
         "`outcome`, `goal`, `data`",
@@ -143,6 +138,11 @@ PHASES = {
         "the emergency stop is pressed or released",
         "`outcome`, `serial`",
         ("outcome",),
+    ),
+    "listening": Phase(
+        "a question has been said, and listens",
+        "`behavior`",
+        ("behavior",),
     ),
     "held": Phase(
         "a stream is kept open for an event, or no longer (x3)",
@@ -219,11 +219,22 @@ class Entry:
     """A record with a value for each field: the empty one where the record lacks it.
 
     The annotations declare the fields in their order: the type, what it means, and where only
-    some words are allowed, those. Times are seconds of the run.
+    some words are allowed, those. Times are seconds of the run; ``time`` where the record's own is not.
     """
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: Record, time: float | None = None) -> None:
         self.__dict__ = {name: value for name, value in record.items() if value is not None}
+        if time is not None:
+            self.time = time
+
+    @property
+    def first(self) -> bool:
+        """Whether it is about no further loop of a feedback Command, and nothing resumes."""
+        return self.behavior.partition(".")[2] in ("", "1") and not self.resumed
+
+    def only(self, names: Iterable[str]) -> Entry:
+        """The record with some of its fields alone."""
+        return Entry({name: self.__dict__[name] for name in names if name in self.__dict__})
 
     time: Annotated[float, "Seconds since the run began."]
     phase: Annotated[str, "What the record tells."]
