@@ -114,7 +114,7 @@ def _behaviors(run: Run, rows: Iterable[Row]) -> list[Bar]:
         row = row_of.get((start.behavior, start.time), last_row.get(name, -1))
         last_row[name] = row
         words = describe(start.command, start.text, spell.behavior.asked.args)
-        text = "unit" if start.command == "iu" else words
+        text = "unit" if spell.unit else words
         devices = tuple(start.devices)[:MOST_DEVICES]
         made.append(Bar(spell.begin, spell.end, name, start.app, text, row, devices, spell.cuts))
     return made

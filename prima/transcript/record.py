@@ -228,6 +228,11 @@ class Entry:
             self.time = time
 
     @property
+    def spoken(self) -> bool:
+        """Whether it is what the user says."""
+        return self.phase == "event" and self.event == "speech"
+
+    @property
     def first(self) -> bool:
         """Whether it is about no further loop of a feedback Command, and nothing resumes."""
         return self.behavior.partition(".")[2] in ("", "1") and not self.resumed

@@ -222,7 +222,7 @@ class Fold:
         if behavior.began is None:
             behavior.began = entry.time
         spell = self._spell(behavior, entry)
-        if spell.start.command != "iu":
+        if not spell.unit:
             for device in entry.devices:
                 spell.uses.setdefault(device, Use(self.now, device=device, spell=spell))
         if spell.start.text and (entry.resumed or entry.behavior.partition(".")[2] in ("", "1")):
@@ -431,7 +431,8 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
     fold = Fold()
     for number, record in enumerate(records, 1):
         try:
-            lacks = lacking(record) or any(not record.get(one) for one in _needed(record))
+            needed = NEEDED.get(record["phase"], ())
+            lacks = lacking(record) or any(record.get(one) is None for one in needed)
             if not lacks:
                 fold.add(Entry(record))
         except (KeyError, TypeError, ValueError, AttributeError):
@@ -439,7 +440,3 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
         if lacks:
             raise UsageError(f"{name}: record {number} lacks what its phase has.") from None
     return fold.run()
-
-
-def _needed(record: Record) -> tuple[str, ...]:
-    return NEEDED.get(record["phase"], ())

@@ -70,6 +70,11 @@ class Spell(Span):
     uses: dict[str, Use] = field(default_factory=dict)
     saying: Saying | None = None
 
+    @property
+    def unit(self) -> bool:
+        """Whether it is of an Information Unit."""
+        return self.start.command == "iu"
+
 
 @dataclass(slots=True, kw_only=True)
 class Use(Span):
