@@ -14,8 +14,8 @@ from prima import api
 from prima.errors import UsageError
 from prima.transcript.criteria import MOST_STREAMS, Observer
 from prima.transcript.diff import compare, difference_json
-from prima.transcript.lines import read_lines
-from prima.transcript.record import Entry, model, quick_reader
+from prima.transcript.lines import quick_reader, read_lines
+from prima.transcript.record import Entry, model
 from prima.transcript.table import Row, _bracket, make_rows
 
 DEMO = Path("documents/scenarios/follow-during-navigation.xml")

@@ -9,6 +9,7 @@ from prima.graph.model import Graph, Node, clean
 from prima.transcript.colours import NOBODY, colours
 from prima.transcript.record import Entry
 from prima.transcript.run import Run
+from prima.transcript.run import until as run_until
 from prima.transcript.spans import Behavior, Piece, Stream, base
 from prima.transcript.table import describe
 
@@ -30,7 +31,7 @@ def trees(run: Run, until: float = NEVER) -> Graph:
     title = "Atomic Behaviors of the run" if whole else f"Working memory at {until:.2f} s"
     graph = Graph(title, across=False)
     colour = colours(run.apps)
-    there = run if whole else run.until(until)
+    there = run if whole else run_until(run, until)
     asked = {name: one for name, one in there.behaviors.items() if one.requested}
     parents = {name: _parents(one.asked) for name, one in asked.items()}
     for name, one in asked.items():

@@ -6,7 +6,7 @@ and both tables of the documentation. :class:`Entry` is a record as the fold see
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache
 from typing import (
     TYPE_CHECKING,
@@ -14,7 +14,6 @@ from typing import (
     Any,
     Literal,
     NamedTuple,
-    NotRequired,
     get_args,
     get_type_hints,
 )
@@ -223,7 +222,10 @@ class Entry:
     """
 
     def __init__(self, record: Record, time: float | None = None) -> None:
-        self.__dict__ = {name: value for name, value in record.items() if value is not None}
+        held = dict(record)
+        if None in held.values():
+            held = {name: value for name, value in held.items() if value is not None}
+        self.__dict__ = held
         if time is not None:
             self.time = time
 
@@ -336,26 +338,3 @@ def model() -> type[BaseModel]:
     return create_model(
         "Record", __config__=ConfigDict(extra="forbid", strict=True), __doc__=MEANING, **fields
     )
-
-
-@cache
-def quick_reader() -> Callable[[str], Record]:
-    """What reads a line and checks it at once, a few times as fast as one after the other.
-
-    It raises pydantic's ``ValidationError`` for whatever it does not take; it refuses nothing
-    of :func:`model` but escaped halves of letters and very deep values, and takes what is no
-    JSON, the numbers ``NaN`` and ``Infinity``. Times are floats.
-    """
-    from pydantic import TypeAdapter
-    from typing_extensions import TypedDict
-
-    fields: dict[str, Any] = {}
-    for name, field in model().model_fields.items():
-        kind: Any = field.annotation
-        for bound in field.metadata:
-            kind = Annotated[kind, bound]
-        fields[name] = kind if field.is_required() else NotRequired[kind]
-    made = TypedDict("Quick", fields)  # type: ignore[misc]
-    setattr(made, "__pydantic_config__", model().model_config)  # noqa: B010
-    read: Callable[[str], Record] = TypeAdapter(made).validator.validate_json
-    return read

@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from itertools import chain
-from typing import Any
 
 from prima.errors import UsageError
 from prima.messages import Record
-from prima.transcript.criteria import Criteria, Observer
+from prima.transcript.criteria import Observer
 from prima.transcript.record import Entry, lacking
 from prima.transcript.spans import (
     OPEN,
@@ -24,6 +22,7 @@ from prima.transcript.spans import (
     Life,
     Piece,
     Reaction,
+    Run,
     Saying,
     Spell,
     State,
@@ -44,67 +43,6 @@ NEEDED = {
     "send": ("app", "data"),
 }
 """Fields that views need beside those without which a record cannot be read."""
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """All that a transcript tells of its run."""
-
-    entries: list[Entry]
-    end: float
-    apps: list[str]
-    """The applications as they were loaded."""
-    behaviors: dict[str, Behavior]
-    spells: list[Spell]
-    uses: list[Use]
-    sayings: list[Saying]
-    streams: dict[str, Stream]
-    lives: list[Life]
-    states: list[State]
-    floors: list[Floor]
-    holds: list[Hold]
-    reactions: list[Reaction]
-    events: dict[int, Entry]
-    """Events by their serial numbers."""
-    about: dict[str, list[tuple[int, Entry]]]
-    """What says when an AB came, by its name, with the number of each record."""
-    phases: dict[str, list[Entry]]
-    criteria: Criteria
-
-    @property
-    def head(self) -> dict[str, Any]:
-        """What the first record tells of the run; empty if it is not the run's."""
-        first = self.entries[0] if self.entries else None
-        return first.data if first is not None and first.phase == "run" else {}
-
-    @property
-    def languages(self) -> dict[str, str]:
-        """The languages of applications, as far as the transcript tells."""
-        told = {one.app: one.data.get("lang") for one in self.started}
-        return {app: lang for app, lang in told.items() if isinstance(lang, str)}
-
-    @property
-    def started(self) -> list[Entry]:
-        """The records of applications that the mediator has started."""
-        return [one for one in self.of("load") if one.actor == "mediator"]
-
-    def of(self, phase: str) -> list[Entry]:
-        """The records of a phase."""
-        return self.phases.get(phase, [])
-
-    def asked(self, name: str) -> Entry | None:
-        """What was requested under an AB's name, if the transcript tells."""
-        found = self.behaviors.get(base(name))
-        return found.asked if found is not None and found.requested else None
-
-    def until(self, time: float) -> Run:
-        """The run as it was when all that happened at a time had happened."""
-        fold = Fold()
-        for entry in self.entries:
-            if entry.time > time:
-                break
-            fold.add(entry)
-        return fold.run()
 
 
 class Fold:
@@ -440,3 +378,16 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
         if lacks:
             raise UsageError(f"{name}: record {number} lacks what its phase has.") from None
     return fold.run()
+
+
+def until(run: Run, time: float) -> Run:
+    """The run as it was when all that happened at a time had happened."""
+    fold = Fold()
+    for entry in run.entries:
+        if entry.time > time:
+            break
+        fold.add(entry)
+    return fold.run()
+
+
+__all__ = ["Fold", "Run", "run_of", "until"]

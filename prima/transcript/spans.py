@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
+from prima.transcript.criteria import Criteria
 from prima.transcript.record import Entry
 
 OPEN = 1 << 62
@@ -186,3 +188,55 @@ class Reaction:
     start: Entry
     begin: float
     end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """All that a transcript tells of its run."""
+
+    entries: list[Entry]
+    end: float
+    apps: list[str]
+    """The applications as they were loaded."""
+    behaviors: dict[str, Behavior]
+    spells: list[Spell]
+    uses: list[Use]
+    sayings: list[Saying]
+    streams: dict[str, Stream]
+    lives: list[Life]
+    states: list[State]
+    floors: list[Floor]
+    holds: list[Hold]
+    reactions: list[Reaction]
+    events: dict[int, Entry]
+    """Events by their serial numbers."""
+    about: dict[str, list[tuple[int, Entry]]]
+    """What says when an AB came, by its name, with the number of each record."""
+    phases: dict[str, list[Entry]]
+    criteria: Criteria
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """What the first record tells of the run; empty if it is not the run's."""
+        first = self.entries[0] if self.entries else None
+        return first.data if first is not None and first.phase == "run" else {}
+
+    @property
+    def languages(self) -> dict[str, str]:
+        """The languages of applications, as far as the transcript tells."""
+        told = {one.app: one.data.get("lang") for one in self.started}
+        return {app: lang for app, lang in told.items() if isinstance(lang, str)}
+
+    @property
+    def started(self) -> list[Entry]:
+        """The records of applications that the mediator has started."""
+        return [one for one in self.of("load") if one.actor == "mediator"]
+
+    def of(self, phase: str) -> list[Entry]:
+        """The records of a phase."""
+        return self.phases.get(phase, [])
+
+    def asked(self, name: str) -> Entry | None:
+        """What was requested under an AB's name, if the transcript tells."""
+        found = self.behaviors.get(base(name))
+        return found.asked if found is not None and found.requested else None
