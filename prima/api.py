@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from prima.sim.services import Web
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
+    from prima.transcript.record import Entry
+    from prima.transcript.run import Run
     from prima.transcript.table import Row
 
 # What one use needs and another does not is imported where it is used: most commands are short.
@@ -69,10 +71,23 @@ class Transcript:
 
     made: list[Row] | None = None
     """The rows, where the records were not kept."""
+    _run: Run | None = field(default=None, repr=False, compare=False)
 
     def rows(self) -> list[Row]:
         """The rows of the table."""
-        return _made_of(self.name, self.records) if self.made is None else self.made
+        return _made_of(self.name, self.run().entries) if self.made is None else self.made
+
+    def run(self) -> Run:
+        """What its records tell of the run, folded once.
+
+        Raises:
+            UsageError: a record lacks what its phase has.
+        """
+        from prima.transcript.run import run_of
+
+        if self._run is None or len(self._run.entries) != len(self.records):
+            self._run = run_of(self.records, self.name)
+        return self._run
 
     def table(self, why: bool = False, columns: int = 80) -> str:
         """The table as text, of at most so many columns where names of applications let it.
@@ -91,12 +106,7 @@ class Transcript:
         """
         from prima.transcript.measures import summarize
 
-        if self.measure:
-            return self.measure.summary()
-        try:
-            return summarize(self.records)
-        except (KeyError, TypeError, ValueError, AttributeError):
-            raise UsageError(f"{self.name}: a record lacks what its phase has.") from None
+        return self.measure.summary() if self.measure else summarize(self.run())
 
     @property
     def early(self) -> str:
@@ -114,7 +124,7 @@ class Transcript:
         return "".join(line(record) for record in made)
 
 
-def _made_of(name: str, records: Iterable[Record]) -> list[Row]:
+def _made_of(name: str, entries: Iterable[Entry]) -> list[Row]:
     """The rows of a transcript.
 
     Raises:
@@ -123,7 +133,7 @@ def _made_of(name: str, records: Iterable[Record]) -> list[Row]:
     from prima.transcript.table import make_rows
 
     try:
-        return make_rows(records)
+        return make_rows(entries)
     except (KeyError, TypeError, ValueError, AttributeError):
         raise UsageError(f"{name}: a record lacks what its phase has.") from None
 
@@ -173,6 +183,7 @@ def rehearse(
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
+    from prima.transcript.record import Entry
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
@@ -208,7 +219,7 @@ def rehearse(
     made = Transcript([], cast.scenario.id, measure=measure)
     for records in chain([[head]], rehearsal.run()):
         for record in records:
-            measure.add(record, record["time"] / 1000)
+            measure.add(Entry(record, record["time"] / 1000))
             if keep:
                 made.records.append(finished(record))
             if sink is not None:
@@ -284,18 +295,20 @@ def skim(path: str | Path) -> Transcript:
         UsageError: it cannot be read, or is none; the line is named.
     """
     from prima.transcript.measures import Measure
+    from prima.transcript.record import Entry
 
     cut: list[str] = []
     kept: list[Record] = []
     measure = Measure()
 
-    def records() -> Iterator[Record]:
+    def entries() -> Iterator[Entry]:
         for record in _records(path, cut):
             kept[1:] = [record]
-            measure.add(record, record["time"])
-            yield record
+            entry = Entry(record)
+            measure.add(entry)
+            yield entry
 
-    rows = _made_of(str(path), records())
+    rows = _made_of(str(path), entries())
     return Transcript(kept, str(path), cut=" ".join(cut), measure=measure, made=rows)
 
 
@@ -430,7 +443,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     Raises:
         UsageError: there is no such row.
     """
-    from prima.transcript.why import Reasons
+    from prima.transcript.why import told
 
     rows = transcript.rows()
     if not rows:
@@ -439,16 +452,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     if not 0 <= number < len(rows):
         message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
         raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
-    row = rows[number]
-    lines = [f"Row {number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
-    if row.source:
-        lines.append(f"Requested at {row.source}.")
-    if row.actor != "R":
-        lines.append("It came from outside; no rule decided when.")
-    lines += [
-        f"{reason.time:.3f} s: {reason.text}" for reason in Reasons(transcript.records).of(row)
-    ]
-    return "\n".join(lines)
+    return "\n".join(told(transcript.run(), rows[number]))
 
 
 __all__ = [

@@ -17,7 +17,7 @@ from prima import api
 from prima.graph import streams
 from prima.messages import Record
 from prima.report import make
-from prima.transcript.colours import of_run
+from prima.transcript.colours import colours
 from tests.generated_report import long_run
 
 ROOT = Path(__file__).parent.parent
@@ -325,7 +325,7 @@ def test_an_application_has_its_colour_in_all_pictures(
     browser: Browser, pages: dict[str, Path]
 ) -> None:
     made = api.rehearse(SCENARIO)
-    shades = of_run(made.records)
+    shades = colours(made.run().apps)
     drawn = streams(made)
     with Opened(browser, pages["two"], SMALL_DESK) as opened:
         page = opened.page

@@ -14,8 +14,8 @@ from prima import api
 from prima.errors import UsageError
 from prima.transcript.criteria import MOST_STREAMS, Observer
 from prima.transcript.diff import compare, difference_json
-from prima.transcript.lines import read_lines
-from prima.transcript.record import Record, quick_reader
+from prima.transcript.lines import quick_reader, read_lines
+from prima.transcript.record import Entry, model
 from prima.transcript.table import Row, _bracket, make_rows
 
 DEMO = Path("documents/scenarios/follow-during-navigation.xml")
@@ -88,7 +88,7 @@ def test_lines_are_read_quickly_as_they_are_closely(rest: str) -> None:
     text = HEAD + rest + "\n"
     try:
         expected: Any = json.loads(text, parse_constant=lambda word: int(word))
-        Record.model_validate(expected)
+        model().model_validate(expected)
         json.dumps(expected, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
         expected = None
@@ -101,7 +101,7 @@ def test_lines_are_read_quickly_as_they_are_closely(rest: str) -> None:
 
 
 def test_the_quick_reader_knows_every_field() -> None:
-    for name in Record.model_fields.keys() - {"time", "phase", "actor"}:
+    for name in model().model_fields.keys() - {"time", "phase", "actor"}:
         record = quick_reader()(f'{{"time":1,"phase":"log","actor":"user","{name}":null}}')
         assert record == {"time": 1.0, "phase": "log", "actor": "user", name: None}
 
@@ -138,8 +138,8 @@ def test_units_inside_each_other_are_marked_once_each() -> None:
 
 
 def test_rows_are_the_same_of_records_that_come_one_by_one(runs: list[Path]) -> None:
-    records = api.read(runs[0]).records
-    assert make_rows(iter(records)) == make_rows(records)
+    entries = api.read(runs[0]).run().entries
+    assert make_rows(iter(entries)) == make_rows(entries)
 
 
 def row(what: str, time: float = 0.0, resumed: bool = False) -> Row:
@@ -170,6 +170,6 @@ def test_streams_that_never_end_are_looked_at_up_to_a_limit() -> None:
     count = 3 * MOST_STREAMS
     for number in range(count):
         for record in stream(number):
-            observer.add(record)
+            observer.add(Entry(record))
     assert len(observer._trees) == len(observer._waits) == MOST_STREAMS
     assert observer.result().unfaced == count

@@ -27,8 +27,10 @@ from prima.graph.words import condition, ordinal
 from prima.messages import Command, Record
 from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import Rehearsal
-from prima.transcript.colours import of_run
+from prima.transcript.colours import colours
 from prima.transcript.lines import finished
+from prima.transcript.run import run_of
+from prima.transcript.spans import base
 from tests.stage import Stage, say
 
 ROOT = Path(__file__).parent.parent
@@ -548,7 +550,7 @@ def test_boxes_of_a_layer_never_touch(seed: int) -> None:
 
 def test_nothing_is_drawn_of_nothing() -> None:
     assert arrange([], [], [], 5).extent == 0
-    empty = run.trees([])
+    empty = run.trees(run_of([]))
     assert "Nothing is in working memory." in treepicture.draw(empty)
 
 
@@ -657,7 +659,7 @@ def memories(scenario: str, policy: str) -> tuple[list[Record], dict[float, dict
         records += map(finished, made)
         memory = rehearsal.session.mediator.memory.behaviors.values()
         if records:
-            held[records[-1]["time"]] = {run.base(ab.name): ab.state for ab in memory}
+            held[records[-1]["time"]] = {base(ab.name): ab.state for ab in memory}
     return records, held
 
 
@@ -665,16 +667,17 @@ def memories(scenario: str, policy: str) -> tuple[list[Record], dict[float, dict
 @pytest.mark.parametrize("scenario", MEMORIES)
 def test_a_tree_at_a_moment_is_the_mediators_memory(scenario: str, policy: str) -> None:
     records, held = memories(scenario, policy)
+    told = run_of(records)
     assert len(held) > 5
     for moment, known in list(held.items())[:-1]:
-        graph = run.trees(records, moment)
+        graph = run.trees(told, moment)
         assert {key: node.kind for key, node in graph.nodes.items()} == known, moment
 
 
 def test_figure_4_3_at_the_row_of_the_touch() -> None:
     held = transcript("tutorial/interleaved.xml")
     [touch] = [row for row in held.rows() if "touches" in row.what]
-    graph = run.trees(held.records, touch.time)
+    graph = run.trees(held.run(), touch.time)
     assert {key: node.kind for key, node in graph.nodes.items()} == {
         "tour#1": "running",
         "tour#2": "linked",
@@ -690,7 +693,7 @@ def test_figure_4_3_at_the_row_of_the_touch() -> None:
 
 
 def test_a_unit_leads_to_its_parts() -> None:
-    graph = run.trees(transcript("scenarios/emotions-alone.xml").records)
+    graph = run.trees(transcript("scenarios/emotions-alone.xml").run())
     assert [(e.target, e.kind) for e in graph.out("emotions#1")] == [
         ("emotions#2", "call"),
         ("emotions#3", "call"),
@@ -700,27 +703,27 @@ def test_a_unit_leads_to_its_parts() -> None:
 
 def test_streams_are_suspended_and_resumed_as_the_records_say() -> None:
     records = transcript("scenarios/three-applications.xml").records
-    made = {stream.name: stream for stream in run.streams(records).streams}
+    made = {stream.name: stream for stream in run.streams(run_of(records)).streams}
     for phase, end in (("suspend", False), ("resume", True)):
         told = {(r["tree"], r["time"]) for r in records if r["phase"] == phase}
         spans = {
             (stream.name, span.end if end else span.begin)
             for stream in made.values()
-            for span in stream.spans
+            for span in stream.pieces
             if span.kind == "away"
         }
         assert told == spans
     ends = {(r["tree"], r["time"]) for r in records if r["phase"] == "stream-end"}
     assert ends == {(stream.name, stream.end) for stream in made.values() if stream.ended}
-    away = next(span for span in made["navigate:1"].spans if span.kind == "away")
-    assert away.words == "suspended by coffee:1 (C2)"
+    away = next(span for span in made["navigate:1"].pieces if span.kind == "away")
+    assert run.in_words(away) == "suspended by coffee:1 (C2)"
 
 
 @pytest.mark.parametrize("policy", ["prima", "fifo", "fair", "none"])
 def test_as_many_streams_are_broken_as_are_measured(policy: str) -> None:
     held = transcript("scenarios/follow-during-navigation.xml", policy)
     broken = [
-        s for one in run.streams(held.records).streams for s in one.spans if s.kind == "broken"
+        s for one in run.streams(held.run()).streams for s in one.pieces if s.kind == "broken"
     ]
     assert len(broken) == held.summary().streams_broken
     assert all(span.end >= span.begin for span in broken)
@@ -739,8 +742,8 @@ def test_a_stream_that_is_spoken_into_is_red_from_there_on() -> None:
         stage.at(time).end(ends)
         stage.select()
     records = [{**record, "time": record["time"] / 1000} for record in stage.records]
-    [stream, _] = run.streams(records).streams
-    [broken] = [span for span in stream.spans if span.kind == "broken"]
+    [stream, _] = run.streams(run_of(records)).streams
+    [broken] = [span for span in stream.pieces if span.kind == "broken"]
     assert (broken.begin, broken.end, broken.by) == (1.0, 2.0, "fa:1")
 
 
@@ -766,9 +769,9 @@ def test_a_transcript_in_all_formats(what: str, tmp_path: Path) -> None:
 
 def test_all_scenarios_can_be_drawn() -> None:
     for path in sorted((ROOT / "documents/scenarios").glob("*.xml")):
-        records = api.rehearse(path).records
-        for moment in (records[len(records) // 2]["time"], run.NEVER):
-            graph = run.trees(records, moment)
+        told = api.rehearse(path).run()
+        for moment in (told.entries[len(told.entries) // 2].time, run.NEVER):
+            graph = run.trees(told, moment)
             made = treepicture.draw(graph)
             etree.fromstring(made.encode())
 
@@ -800,7 +803,7 @@ def test_a_map_shows_all_that_a_world_has() -> None:
 
 
 def test_an_area_has_the_colour_of_its_application() -> None:
-    shade = of_run(transcript("scenarios/follow-during-navigation.xml").records)["navigate"]
+    shade = colours(transcript("scenarios/follow-during-navigation.xml").run().apps)["navigate"]
     assert f'class="s{shade} area"' in picture(ROOT / "documents/worlds/office.xml")
 
 

@@ -99,7 +99,7 @@ INSIDE = {
         {"application"},
         {"__init__"},
     ],
-    "exports": [{"timeline"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
+    "exports": [{"timeline"}, {"tiers"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
     "lsp": [
         {"words", "text"},
         {"scan"},

@@ -26,6 +26,7 @@ from prima.report.view import language
 from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines
 from prima.transcript.rules import RULES
+from prima.transcript.run import run_of
 from prima.transcript.table import Row
 from tests.generated_report import long_run
 
@@ -201,7 +202,7 @@ def test_odd_values_are_no_places() -> None:
     moves = [one for one in records if one["phase"] == "end" and "x" in (one.get("data") or {})]
     for record, odd in zip(moves, (1e999, "left", None, True, 1e300), strict=False):
         record["data"]["x"] = odd
-    assert len(reported(records)) == len(moves) - 5
+    assert len(reported(run_of(records))) == len(moves) - 5
     Outline(make([api.Transcript(records, "x")]))
 
 
@@ -305,7 +306,7 @@ def test_chinese_characters_in_a_japanese_run_are_japanese() -> None:
 
 def test_loops_are_one_bar_and_what_waits_is_told() -> None:
     made = run()
-    lanes = make_lanes(made.records, made.rows())
+    lanes = make_lanes(made.run(), made.rows())
     first = next(bar for bar in lanes.behaviors if bar.name == "navigate#3")
     assert (first.begin, first.row, first.devices) == (5.304, 6, ("localization", "locomotion"))
     assert len(first.cuts) > 5
@@ -329,7 +330,7 @@ def test_the_scenario_gives_the_map_and_the_users_way(policy: str) -> None:
     made = run(policy)
     walk = walk_of(made, api.load_scenario(SCENARIO))
     assert walk.source == "run" and walk.plan and walk.person
-    for time, x, y, _ in reported(made.records):
+    for time, x, y, _ in reported(made.run()):
         before = [pose for pose in walk.robot if pose[0] <= time + 1e-6][-1]
         assert max(abs(before[1] - x), abs(before[2] - y)) < 0.1
     assert walk.robot[0][0] == 0.0
@@ -364,9 +365,9 @@ def test_rules_are_those_of_the_page_on_transcripts() -> None:
 
 
 def test_a_row_without_behaviour_has_no_reasons() -> None:
-    from prima.transcript.why import Reasons
+    from prima.transcript.why import reasons
 
-    assert Reasons(run().records).of(Row(0.0, "U", "", "nods")) == []
+    assert reasons(run().run(), Row(0.0, "U", "", "nods")) == []
 
 
 # The command line -----------------------------------------------------------------------

@@ -16,6 +16,7 @@ from prima.experiments.study import POLICIES, Result, format_csv, format_table, 
 from prima.messages import Command, Emergency, Ended, Occurred
 from prima.transcript.criteria import Criteria, observe
 from prima.transcript.measures import Measure
+from prima.transcript.record import Entry
 from prima.transcript.table import read_table
 from tests.robot import Bench, document
 from tests.stage import Stage, ask, command, move, say
@@ -367,5 +368,5 @@ def test_the_emergency_stop_is_an_event_that_may_be_reacted_to() -> None:
     bench.step(*map(Ended, bench.running()))
     figures = Measure()
     for record in bench.records:
-        figures.add(record, record["time"] / 1000)
+        figures.add(Entry(record, record["time"] / 1000))
     assert figures.summary().reactions == 1

@@ -32,6 +32,7 @@ from prima.testing.junit import cobertura, junit
 from prima.testing.running import Choice, Result, run_all, run_one
 from prima.testing.telling import format_result
 from prima.testing.tracing import States, states_of
+from prima.transcript.run import run_of
 from prima.transcript.table import format_rows
 
 ROOT = Path(__file__).parent.parent
@@ -284,7 +285,7 @@ def test_a_run_takes_no_notice_of_expectations(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", DEMOS, ids=lambda path: path.stem)
 def test_triggers_are_those_of_when(path: Path) -> None:
     records = api.rehearse(path).records
-    run = make_run(records, [], States())
+    run = make_run(run_of(records), [], States())
     begun = [one for one in records if one["phase"] == "start"]
     words = {("doing", one["command"]) for one in begun} | {
         ("done", one["command"]) for one in begun
@@ -327,7 +328,7 @@ def test_what_a_run_has_said_is_what_it_is_expected_to_say(path: Path, tmp_path:
         last = scenario.node.all("in-order")[-1]
         own = set(map(id, last.nodes))
         scenario.expectations = [one for one in scenario.expectations if id(one.node) in own]
-        run = make_run(transcript.records, transcript.rows(), States())
+        run = make_run(transcript.run(), transcript.rows(), States())
         return len(check(scenario, run))
 
     assert failures(said) == 0

@@ -12,8 +12,7 @@ from prima import api
 from prima.devices import voice
 from prima.messages import Record
 from prima.transcript.diff import compare, format_difference, summary_line
-from prima.transcript.lines import ORDER, finished, line
-from prima.transcript.record import FIELDS
+from prima.transcript.lines import finished, line
 from prima.transcript.table import Row, format_rows, read_table, width
 
 ROOT = Path(__file__).parent.parent
@@ -37,10 +36,6 @@ def rows(*whats: str, resumed: str = "") -> list[Row]:
 
 def kinds(before: list[Row], after: list[Row]) -> list[str]:
     return [change.kind for change in compare(before, after).changes]
-
-
-def test_the_writers_order_is_the_models_fields() -> None:
-    assert sorted(ORDER) == sorted(FIELDS)
 
 
 def test_every_record_fits_the_published_json_schema() -> None:

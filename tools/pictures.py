@@ -17,7 +17,8 @@ from prima import api, graph
 from prima.graph.svg import applications as applications_style
 from prima.language.commands import TABLE_4_2
 from prima.messages import Record
-from prima.transcript.colours import of_run
+from prima.transcript.colours import colours
+from prima.transcript.run import run_of
 
 ROOT = Path(__file__).resolve().parent.parent
 WIDTH, LEFT = 760, 62
@@ -195,7 +196,7 @@ def timeline(records: list[Record], title: str, told: str) -> str:
     scale = (WIDTH - LEFT - 12) / finish(records)
     parts: list[str] = []
     y = 30.0
-    shades = of_run(records)
+    shades = colours(run_of(records).apps)
     for app in applications(records):
         parts.append(text(4, y + 24, app, "name"))
         drawn, rows = lane(records, app, shades[app], y, scale)
@@ -209,7 +210,7 @@ def timeline(records: list[Record], title: str, told: str) -> str:
             parts.append(text(4, y + 14, label, "name"))
         for bar in bars:
             left, wide = LEFT + bar.begin * scale, (bar.end - bar.begin) * scale
-            parts.append(box(left, y + 3, wide, 15, f"s{of_run(records)[bar.app]}"))
+            parts.append(box(left, y + 3, wide, 15, f"s{shades[bar.app]}"))
             parts.append(text(left + 4, y + 14, bar.text, "", wide - 4))
         y += 22 if bars else 0
     flags: list[str] = []
@@ -333,7 +334,7 @@ def memory(records: list[Record], title: str, told: str) -> str:
                 x, top = left + 4 + depth[name] * 124, y + 14 + row * 48
                 where[name] = (x, top)
                 kind = {"running": "", "waiting": "none", "linked": "linked"}[state[name]]
-                parts.append(box(x, top, 108, 34, f"s{of_run(records)[app]} {kind}"))
+                parts.append(box(x, top, 108, 34, f"s{colours(run_of(records).apps)[app]} {kind}"))
                 parts.append(text(x + 5, top + 14, f"{name} {state[name]}", "small"))
                 parts.append(text(x + 5, top + 27, words(asked[name]), "", 104))
                 for parent in parents(asked[name]):

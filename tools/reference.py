@@ -53,7 +53,7 @@ from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, prelude, syntax
 from prima.sim.vocabulary import SCENARIO, WORLD
 from prima.transcript import lines
-from prima.transcript.record import Record
+from prima.transcript.record import PHASES, model
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
@@ -341,9 +341,15 @@ def limits() -> str:
     return table(("what", "limit", "beyond it"), rows)
 
 
+def phases() -> str:
+    """The phases of a transcript's records."""
+    rows = ((f"`{name}`", one.meaning, one.notable) for name, one in PHASES.items())
+    return table(("phase", "what the record tells", "notable fields"), rows)
+
+
 def fields() -> str:
     """The fields of a transcript's record."""
-    properties = Record.model_json_schema()["properties"]
+    properties = model().model_json_schema()["properties"]
     return table(
         ("field", "type", "meaning"),
         (
@@ -561,6 +567,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "robot": lambda: elements(ROBOT, 4),
     "scenario": lambda: elements(SCENARIO, 4),
     "fields": fields,
+    "phases": phases,
     "codes": codes,
     "examples": code_examples,
     "interface": interface,
@@ -649,7 +656,7 @@ def record_schema() -> str:
     """The JSON Schema of a transcript's record."""
     schema = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **Record.model_json_schema(),
+        **model().model_json_schema(),
     }
     return json.dumps(schema, ensure_ascii=False, indent=2) + "\n"
 

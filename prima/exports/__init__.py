@@ -9,7 +9,8 @@ from importlib.util import find_spec
 from typing import IO
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.exports.timeline import TAG, Timeline, timeline
+from prima.exports.tiers import timeline
+from prima.exports.timeline import TAG, Timeline
 from prima.messages import Record
 
 FORMATS = {

@@ -13,6 +13,7 @@ from typing import IO, Any
 from prima.errors.visible import escaped
 from prima.exports.timeline import COLUMNS, Interval, Timeline, clean, unused
 from prima.messages import Json, Record
+from prima.transcript.record import model
 
 ENCODER = json.JSONEncoder(ensure_ascii=False)
 MS = 1_000_000
@@ -81,10 +82,8 @@ def write(timeline: Timeline, records: Iterable[Record], version: str, out: IO[b
 
 def record_schema() -> dict[str, Json]:
     """The records' JSON Schema, each field with one type, since readers know no alternatives."""
-    from prima.transcript.record import Record as Model
-
     properties: dict[str, Json] = {}
-    for name, field in Model.model_json_schema()["properties"].items():
+    for name, field in model().model_json_schema()["properties"].items():
         kinds = [kind for kind in field.get("anyOf", [field]) if kind["type"] != "null"]
         kept = {key: kinds[0][key] for key in ("type", "items", "enum") if key in kinds[0]}
         properties[name] = {**kept, "description": field.get("description", "")}

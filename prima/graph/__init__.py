@@ -187,10 +187,7 @@ def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str
     from prima.graph import run
 
     until = NEVER if row is None else _time(transcript, row)
-    try:
-        graph = run.trees(transcript.records, until)
-    except (KeyError, TypeError, AttributeError):
-        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
+    graph = run.trees(transcript.run(), until)
     graph.told = _told(graph)
     return _shown(graph, to, transcript.name)
 
@@ -203,11 +200,7 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
     """
     from prima.graph import run
 
-    try:
-        history = run.streams(transcript.records)
-    except (KeyError, TypeError, AttributeError):
-        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
-    return _streams_shown(history, to, transcript.name)
+    return _streams_shown(run.streams(transcript.run()), to, transcript.name)
 
 
 def _time(transcript: Transcript, row: int) -> float:

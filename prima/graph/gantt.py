@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from html import escape
 
-from prima.graph.run import History, Stream
+from prima.graph.run import History, in_words
 from prima.graph.svg import box, fit, line, measure, picture, text
 from prima.transcript.colours import NOBODY
+from prima.transcript.spans import Stream
 
 ROW, BAR = 26.0, 14.0
 MARGIN = 18.0
@@ -64,7 +65,7 @@ def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> lis
     begin, end = left + stream.begin * scale, left + stream.end * scale
     parts = [text(MARGIN, middle + 4, fit(stream.name, left - MARGIN - 8))]
     at = begin
-    for span in sorted(stream.spans, key=lambda span: span.begin):
+    for span in sorted(stream.pieces, key=lambda span: span.begin):
         if left + span.begin * scale > at:
             parts.append(line(at, middle, left + span.begin * scale, middle))
         at = max(at, left + span.end * scale)
@@ -73,21 +74,21 @@ def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> lis
     if stream.ended:
         parts.append(line(end, y, end, y + BAR))
     kinds = {"away": "away", "broken": "broken"}
-    for span in sorted(stream.spans, key=lambda span: span.kind != "away"):
+    for span in sorted(stream.pieces, key=lambda span: span.kind != "away"):
         x, wide = left + span.begin * scale, max((span.end - span.begin) * scale, 1.5)
-        hint = f"{stream.name} {span.words}, {span.begin:.2f} to {span.end:.2f} s"
+        hint = f"{stream.name} {in_words(span)}, {span.begin:.2f} to {span.end:.2f} s"
         parts.append(f"<g><title>{escape(hint)}</title>")
         thin = 0 if span.kind == "runs" else 3
         parts.append(box(x, y - thin, wide, BAR + 2 * thin, kinds.get(span.kind, f"s{shade}"), 2))
         # What runs on for a moment after the suspension covers its beginning.
         covered = [
             one.end
-            for one in stream.spans
+            for one in stream.pieces
             if one.kind == "runs" and one.begin <= span.begin < one.end
         ]
         start = max([span.begin, *covered]) if span.kind == "away" else span.begin
         room = (span.end - start) * scale - 8
-        words = span.words if span.kind != "runs" else ""
+        words = in_words(span) if span.kind != "runs" else ""
         if words and measure(words, 10) <= room:
             parts.append(text(left + start * scale + 5, middle + 3.5, words, "small"))
         parts.append("</g>")
@@ -99,8 +100,8 @@ def told(history: History) -> str:
     sentences = []
     for stream in history.streams[:40]:
         what = [
-            f"{span.words} from {span.begin:.2f} to {span.end:.2f}"
-            for span in stream.spans
+            f"{in_words(span)} from {span.begin:.2f} to {span.end:.2f}"
+            for span in stream.pieces
             if span.kind != "runs"
         ]
         more = ", ".join(["", *what[:6]])

@@ -6,7 +6,7 @@ import json
 import re
 
 from prima.graph.model import INWARD, Edge, Graph, Node
-from prima.graph.run import History
+from prima.graph.run import History, in_words
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 
@@ -120,11 +120,11 @@ def dot_streams(history: History) -> str:
     for index, stream in enumerate(history.streams, 1):
         shade = history.shades.get(stream.app, NOBODY)
         made += [f"  subgraph cluster_{index} {{", f"    label={quote(f'stream {stream.name}')};"]
-        for number, span in enumerate(stream.spans, 1):
+        for number, span in enumerate(stream.pieces, 1):
             fill = {"runs": colours.fill(shade), "away": "gray85", "broken": "#ffcecb"}[span.kind]
-            label = quote(f"{span.words}\n{span.begin:.2f} to {span.end:.2f} s")
+            label = quote(f"{in_words(span)}\n{span.begin:.2f} to {span.end:.2f} s")
             made.append(f'    s{index}_{number} [label={label}, fillcolor="{fill}"];')
-        chain = " -> ".join(f"s{index}_{number}" for number in range(1, len(stream.spans) + 1))
+        chain = " -> ".join(f"s{index}_{number}" for number in range(1, len(stream.pieces) + 1))
         made += [f"    {chain};"] if chain else [f'    s{index}_0 [label="nothing of it ran"];']
         made.append("  }")
     return "\n".join([*made, "}"]) + "\n"
@@ -203,10 +203,10 @@ def mermaid_streams(history: History) -> str:
     ]
     for stream in history.streams:
         made.append(f"  section {entity(stream.name)}")
-        for span in stream.spans:
+        for span in stream.pieces:
             mark = {"runs": "active", "away": "done", "broken": "crit"}[span.kind]
             begin, end = _date(span.begin), _date(max(span.end, span.begin + 0.001))
-            made.append(f"  {entity(span.words)} :{mark}, {begin}, {end}")
+            made.append(f"  {entity(in_words(span))} :{mark}, {begin}, {end}")
     return "\n".join(made) + "\n"
 
 
@@ -266,7 +266,7 @@ def data_streams(history: History) -> str:
                     {"kind": span.kind, "begin": span.begin, "end": span.end}
                     | ({"by": span.by} if span.by else {})
                     | ({"rule": span.rule} if span.rule else {})
-                    for span in stream.spans
+                    for span in stream.pieces
                 ],
             }
             for stream in history.streams

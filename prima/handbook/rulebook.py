@@ -17,6 +17,8 @@ from typing import Any
 from prima import api
 from prima.errors import UsageError, did_you_mean
 from prima.report import strip
+from prima.transcript.run import Run
+from prima.transcript.spans import base
 from prima.transcript.table import Row, format_rows
 
 PAGE = "mediation.md"
@@ -311,7 +313,7 @@ def suggestion(word: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class Shown:
     """An example's run: the rows around the one to look at, its number, and a picture."""
 
     rows: list[Row]
@@ -319,7 +321,7 @@ class Run:
     picture: str
 
 
-def run_of(name: str, columns: int = 80) -> Run:
+def run_of(name: str, columns: int = 80) -> Shown:
     """Run a rule's example, and find where it shows the rule.
 
     Raises:
@@ -328,12 +330,12 @@ def run_of(name: str, columns: int = 80) -> Run:
     example = _example(name)
     made = api.rehearse(api.documents_folder() / example.scenario, example.policy or None)
     rows = made.rows()
-    number = _looked_at(name, example, rows, made.records)
-    end = made.records[-1]["time"]
+    number = _looked_at(name, example, rows, made.run())
+    end = made.run().end
     time = rows[number].time
     span = (0.0, end) if end <= WHOLE else (max(time - BEFORE, 0.0), min(time + AFTER, end))
-    picture = strip.draw(made.records, rows, *span, columns)
-    return Run(rows[max(number - AROUND, 0) : number + AROUND + 1], number, picture)
+    picture = strip.draw(made.run(), rows, *span, columns)
+    return Shown(rows[max(number - AROUND, 0) : number + AROUND + 1], number, picture)
 
 
 def _example(name: str) -> Example:
@@ -343,22 +345,22 @@ def _example(name: str) -> Example:
     return EXAMPLES[name]
 
 
-def _looked_at(name: str, example: Example, rows: list[Row], records: list[Any]) -> int:
+def _looked_at(name: str, example: Example, rows: list[Row], run: Run) -> int:
     """The number of the row to look at."""
     found = (row.number for row in rows if example.row in row.what)
-    number = next(found if example.row else _decided(name, rows, records), None)
+    number = next(found if example.row else _decided(name, rows, run), None)
     if number is None:
         raise UsageError(f"{example.scenario} does not show the rule {name}.")
     return number
 
 
-def _decided(name: str, rows: list[Row], records: list[Any]) -> Iterator[int]:
+def _decided(name: str, rows: list[Row], run: Run) -> Iterator[int]:
     """The rows of what a rule decided: put there by it, or held back by it before."""
     yield from (row.number for row in rows if row.rule == name)
-    for record in (one for one in records if one.get("rule") == name):
-        behavior = (record.get("behavior") or record.get("winner") or "").partition(".")[0]
+    for entry in (one for one in run.entries if one.rule == name):
+        behavior = base(entry.behavior or entry.winner)
         for row in rows:
-            if row.behavior.partition(".")[0] == behavior and row.time >= record["time"]:
+            if base(row.behavior) == behavior and row.time >= entry.time:
                 yield row.number
 
 

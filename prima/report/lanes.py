@@ -1,4 +1,4 @@
-"""What a timeline shows of a run: its bars and flags, from the records alone, in linear time."""
+"""What a timeline shows of a run: its bars and flags, in linear time."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from prima.messages import Record
-from prima.transcript.colours import apps_of
+from prima.transcript.run import Run
+from prima.transcript.spans import Floor, Hold, State, base
 from prima.transcript.table import Row, describe
 
 MOST_APPS = 24
@@ -20,10 +20,10 @@ MOST_ON_FLOOR = 8
 
 @dataclass(slots=True)
 class Bar:
-    """Something that lasts, in seconds; ``end`` is less than 0 until it is known."""
+    """Something that lasts, in seconds."""
 
     begin: float
-    end: float = -1.0
+    end: float
     name: str = ""
     app: str = ""
     text: str = ""
@@ -54,27 +54,29 @@ class Lanes:
     streams: list[Bar]
 
 
-def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
+def make_lanes(run: Run, rows: Sequence[Row]) -> Lanes:
     """The lanes of a run with its table's rows."""
-    seconds = float(max((record["time"] for record in records), default=0.0))
-    apps = apps_of(records)
-    behaviors = _behaviors(records, rows)
+    behaviors = _behaviors(run, rows)
     devices = sorted({device for bar in behaviors for device in bar.devices})
     lanes = Lanes(
-        seconds,
-        apps,
-        apps[:MOST_APPS],
+        run.end,
+        run.apps,
+        run.apps[:MOST_APPS],
         devices[:MOST_DEVICES],
         behaviors,
-        _between(records, "tree", {"suspend"}, {"resume", "stream-end"}),
-        _between(records, "behavior", {"hold"}, {"start", "cancel", "fail"}),
-        _floor(records),
-        _streams(records),
+        [
+            _waits(one, one.tree, one.by)
+            for one in run.states
+            if one.state == "suspended" and one.lasts
+        ],
+        [_waits(one, one.name, one.name) for one in run.holds if one.lasts],
+        [_floor(one) for one in run.floors if one.stack and one.lasts],
+        [
+            Bar(one.begin, one.end, one.tree, one.app, f"stream {one.tree}", cuts=one.windows)
+            for one in run.lives
+        ],
     )
-    for bars in (lanes.behaviors, lanes.away, lanes.held, lanes.floor, lanes.streams):
-        for bar in bars:
-            bar.end = bar.end if bar.end >= 0 else seconds
-    marks = _Marks(records, rows)
+    marks = _Marks(run, rows)
     untold = [bar for bar in behaviors if bar.row < 0]
     for bar in (*untold, *lanes.away, *lanes.held, *lanes.floor, *lanes.streams):
         bar.row = marks.row(bar.by or bar.name, bar.begin)
@@ -84,18 +86,17 @@ def make_lanes(records: Sequence[Record], rows: Sequence[Row]) -> Lanes:
 class _Marks:
     """The row of the table that a stream or an AB belongs to from a moment on."""
 
-    def __init__(self, records: Iterable[Record], rows: Iterable[Row]) -> None:
-        tree_of = {r["behavior"]: r.get("tree") for r in records if r["phase"] == "request"}
+    def __init__(self, run: Run, rows: Iterable[Row]) -> None:
         self._rows: dict[str, list[tuple[float, int]]] = {}
         self._all = [(row.time, row.number) for row in rows]
         for row in rows:
-            name = _base(row.behavior)
-            for key in {name, tree_of.get(name) or ""} - {""}:
+            name, asked = base(row.behavior), run.asked(row.behavior)
+            for key in {name, asked.tree if asked else ""} - {""}:
                 self._rows.setdefault(key, []).append((row.time, row.number))
 
     def row(self, name: str, begin: float) -> int:
         """The first row of a stream or AB from then on; else its last, or the last of all."""
-        own = self._rows.get(_base(name), [])
+        own = self._rows.get(base(name), [])
         place = bisect_left(own, (begin, -1))
         if own:
             return own[min(place, len(own) - 1)][1]
@@ -103,92 +104,30 @@ class _Marks:
         return self._all[max(place - 1, 0)][1] if self._all else -1
 
 
-def _base(behavior: str) -> str:
-    return behavior.partition(".")[0]
-
-
-def _behaviors(records: Iterable[Record], rows: Iterable[Row]) -> list[Bar]:
+def _behaviors(run: Run, rows: Iterable[Row]) -> list[Bar]:
     """Every AB that ran; loops that follow one another without a gap are one bar."""
     row_of = {(row.behavior, row.time): row.number for row in rows if row.behavior}
     last_row: dict[str, int] = {}
-    asked: dict[str, Record] = {}
     made: list[Bar] = []
-    last: dict[str, Bar] = {}
-    for record in records:
-        phase, behavior, time = record["phase"], record.get("behavior") or "", record["time"]
-        name = _base(behavior)
-        bar = last.get(name)
-        if phase == "request":
-            asked[name] = record
-        elif phase == "start" and bar is not None and bar.end == time and not record.get("resumed"):
-            bar.cuts.append(time)
-            bar.end = -1.0
-        elif phase == "start":
-            request = asked.get(name, record)
-            row = row_of.get((behavior, time), last_row.get(name, -1))
-            last_row[name] = row
-            unit = record["command"] == "iu"
-            words = describe(record["command"], record.get("text"), request.get("args"))
-            devices = tuple(record.get("devices") or ())[:MOST_DEVICES]
-            bar = Bar(time, -1.0, name, record["app"], "unit" if unit else words, row, devices)
-            last[name] = bar
-            made.append(bar)
-        elif phase in ("end", "cancel", "fail", "interrupt") and bar is not None and bar.end < 0:
-            bar.end = time
+    for spell in run.spells:
+        start, name = spell.start, spell.behavior.name
+        row = row_of.get((start.behavior, start.time), last_row.get(name, -1))
+        last_row[name] = row
+        words = describe(start.command, start.text, spell.behavior.asked.args)
+        text = "unit" if spell.unit else words
+        devices = tuple(start.devices)[:MOST_DEVICES]
+        made.append(Bar(spell.begin, spell.end, name, start.app, text, row, devices, spell.cuts))
     return made
 
 
-def _between(records: Iterable[Record], key: str, begin: set[str], end: set[str]) -> list[Bar]:
-    """From the first record of some phases about a thing to the next of others about it."""
-    made: list[Bar] = []
-    under_way: dict[str, Bar] = {}
-    for record in records:
-        name = _base(record.get(key) or "")
-        if not name:
-            continue
-        if record["phase"] in begin and name not in under_way:
-            app = record.get("app") or name.partition(":")[0].partition("#")[0]
-            by = record.get("by") or ""
-            why = f"{by or 'another'} ({record.get('rule') or 'no rule'})"
-            cause = by if record["phase"] == "suspend" else name
-            under_way[name] = Bar(record["time"], -1.0, name, app, why, by=cause)
-            made.append(under_way[name])
-        elif record["phase"] in end and name in under_way:
-            under_way.pop(name).end = record["time"]
-    return [bar for bar in made if bar.end < 0 or bar.end > bar.begin]
+def _waits(span: State | Hold, name: str, by: str) -> Bar:
+    """A stream is suspended, or an AB is held back; its text says because of what."""
+    why = f"{span.by or 'another'} ({span.rule or 'no rule'})"
+    return Bar(span.begin, span.end, name, span.app, why, by=by)
 
 
-def _floor(records: Iterable[Record]) -> list[Bar]:
-    """Who holds the floor, from and until when; its text names the stack beneath."""
-    made: list[Bar] = []
-    for record in records:
-        if record["phase"] != "floor":
-            continue
-        if made and made[-1].end < 0:
-            made[-1].end = record["time"]
-        stack = (record.get("floor") or [])[-MOST_ON_FLOOR:]
-        if stack:
-            app = stack[-1].partition(":")[0]
-            made.append(Bar(record["time"], -1.0, stack[-1], app, " on ".join(reversed(stack))))
-    return [bar for bar in made if bar.end < 0 or bar.end > bar.begin]
-
-
-def _streams(records: Iterable[Record]) -> list[Bar]:
-    """Every Communication Stream, from its first request to its end, with its windows."""
-    made: list[Bar] = []
-    under_way: dict[str, Bar] = {}
-    for record in records:
-        tree = record.get("tree") or ""
-        if not tree:
-            continue
-        if record["phase"] == "request" and tree not in under_way:
-            app = record["app"]
-            under_way[tree] = Bar(record["time"], -1.0, tree, app, f"stream {tree}")
-            made.append(under_way[tree])
-        elif record["phase"] == "window" and tree in under_way:
-            cuts = under_way[tree].cuts
-            if not cuts or cuts[-1] != record["time"]:
-                cuts.append(record["time"])
-        elif record["phase"] == "stream-end" and tree in under_way:
-            under_way.pop(tree).end = record["time"]
-    return made
+def _floor(span: Floor) -> Bar:
+    """Who holds the floor; its text names the stack beneath."""
+    stack = span.stack[-MOST_ON_FLOOR:]
+    app = stack[-1].partition(":")[0]
+    return Bar(span.begin, span.end, stack[-1], app, " on ".join(reversed(stack)))

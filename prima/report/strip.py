@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from prima.errors.visible import visible
-from prima.messages import Record
 from prima.report.lanes import Bar, make_lanes
+from prima.transcript.run import Run
 from prima.transcript.table import Row
 
 STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
@@ -71,11 +71,9 @@ class Lane:
         ]
 
 
-def draw(
-    records: Sequence[Record], rows: Sequence[Row], begin: float, end: float, columns: int
-) -> str:
+def draw(run: Run, rows: Sequence[Row], begin: float, end: float, columns: int) -> str:
     """The part of a run from ``begin`` to ``end`` (s), at most so many columns wide."""
-    lanes = make_lanes(records, rows)
+    lanes = make_lanes(run, rows)
     left = max([8, *map(len, lanes.apps)]) + 2
     axis = Axis(begin, end, left, max(columns - left, 20))
     lines = _events(rows, axis)

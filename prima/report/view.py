@@ -7,14 +7,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from prima.errors import UsageError
 from prima.errors.visible import visible
-from prima.messages import Json, Record
+from prima.messages import Json
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import Walk, walk_of
-from prima.transcript.criteria import observe
+from prima.transcript.run import Run
+from prima.transcript.spans import base
 from prima.transcript.table import LONGEST_SHOWN, Row, describe
-from prima.transcript.why import Reasons
+from prima.transcript.why import reasons
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -57,33 +57,21 @@ def view_of(transcript: Transcript, rows: list[Row], loaded: Loaded | None) -> V
     Raises:
         UsageError: a record lacks what its phase has, or the scenario is not the transcript's.
     """
-    walk = walk_of(transcript, loaded)
-    try:
-        return _view(transcript, rows, loaded, walk)
-    except (KeyError, TypeError, ValueError, AttributeError):
-        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
-
-
-def _view(transcript: Transcript, rows: list[Row], loaded: Loaded | None, walk: Walk) -> View:
-    records = transcript.records
-    head = records[0].get("data") if records[0]["phase"] == "run" else None
-    head = head if isinstance(head, dict) else {}
-    requests = [record for record in records if record["phase"] == "request"]
-    asked = {request["behavior"]: request for request in requests}
-    asked |= {request["tree"]: request for request in reversed(requests) if "tree" in request}
-    whys, names = _whys(records, rows, asked)
+    walk, run = walk_of(transcript, loaded), transcript.run()
+    head = run.head
+    whys, names = _whys(run, rows)
     scenario = _short(head.get("scenario")) or transcript.name
     files = head.get("files")
     files = files if isinstance(files, dict) else {}
     view = View(
         transcript.name,
-        _facts(records, head),
-        _measures(records),
+        _facts(run),
+        _measures(run),
         rows,
-        _spoken(rows, asked, _languages(records)),
+        _spoken(rows, run),
         whys,
         names,
-        make_lanes(records, rows),
+        make_lanes(run, rows),
         walk,
         f"{scenario}, policy {_short(head.get('policy')) or 'not told'}",
         [(_short(name), _short(digest)) for name, digest in list(files.items())[:200]],
@@ -113,16 +101,16 @@ ENDS = {
 }
 
 
-def _facts(records: Sequence[Record], head: dict[str, Json]) -> list[tuple[str, str]]:
+def _facts(run: Run) -> list[tuple[str, str]]:
     """What a transcript's head and end tell of the run."""
+    head = run.head
     apps = []
-    for record in records:
-        if record["phase"] == "load" and record["actor"] == "mediator":
-            kind = (record.get("data") or {}).get("kind")
-            apps.append(record["app"] + (f" ({str(kind).upper()})" if kind else ""))
+    for one in run.started:
+        kind = one.data.get("kind")
+        apps.append(one.app + (f" ({str(kind).upper()})" if kind else ""))
     apps = list(dict.fromkeys(apps))
-    last = records[-1]
-    outcome = last.get("outcome") or "" if last["phase"] == "over" else ""
+    last = run.entries[-1]
+    outcome = last.outcome if last.phase == "over" else ""
     end = ENDS.get(outcome, outcome) if outcome else "the transcript is cut off"
     told = [
         ("Scenario", _short(head.get("scenario"))),
@@ -132,21 +120,15 @@ def _facts(records: Sequence[Record], head: dict[str, Json]) -> list[tuple[str, 
         ("Applications", _short(", ".join(apps))),
         ("Date of the run", _short(head.get("date"))),
         ("PRIMA", _short(head.get("version"))),
-        ("Length", f"{last['time']:.2f} s; {_short(end)}"),
+        ("Length", f"{last.time:.2f} s; {_short(end)}"),
     ]
     return [(name, value) for name, value in told if value]
 
 
-def _starved(records: Sequence[Record]) -> list[tuple[str, str, str]]:
-    """What another application has kept waiting for too long, if anything."""
-    count = sum(record["phase"] == "starve" for record in records)
-    told = "behaviours that another application has kept waiting for too long (E4, E6)"
-    return [("Starved", str(count), told)] if count else []
-
-
-def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
+def _measures(run: Run) -> list[tuple[str, str, str]]:
     """The measures of docs/measures.md."""
-    found = observe(records)
+    found, starved = run.criteria, len(run.of("starve"))
+    waiting = "behaviours that another application has kept waiting for too long (E4, E6)"
     reaction = f"{found.reaction_mean:.2f} / {found.reaction_max:.2f} s"
     response = f"{found.response_mean:.2f} / {found.response_max:.2f} s"
     return [
@@ -156,7 +138,7 @@ def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
         ("Waiting", str(found.broken_waiting), "waits for a server that were broken"),
         ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
         ("Left", str(found.left), "conversations that the robot left"),
-        *_starved(records),
+        *([("Starved", str(starved), waiting)] if starved else []),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
         ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
         (
@@ -170,19 +152,18 @@ def _measures(records: Sequence[Record]) -> list[tuple[str, str, str]]:
 # What is said, and in which language ---------------------------------------------------------
 
 
-def _spoken(
-    rows: Iterable[Row], asked: dict[str, Record], own: dict[str, str]
-) -> dict[int, tuple[str, str]]:
-    """The words of each row that says something, with their language; ``own`` are applications'."""
+def _spoken(rows: Iterable[Row], run: Run) -> dict[int, tuple[str, str]]:
+    """The words of each row that says something, with their language."""
+    own = run.languages
     alike = set(own.values())
     common = next(iter(alike)) if len(alike) == 1 else ""
     said: dict[int, tuple[str, str]] = {}
     for row in rows:
-        if row.kind == "speech":
+        if row.kind == "speech" and row.what != '""':
             said[row.number] = (row.what[1:-1], common)
             continue
-        request = asked.get(row.behavior.partition(".")[0])
-        text = request.get("text") if request is not None else None
+        request = run.asked(row.behavior)
+        text = request.text if request is not None else ""
         if text and f'"{text}"' in row.what:
             said[row.number] = (text, own.get(row.app, ""))
     japanese = any(KANA.search(text) for text, _ in said.values())
@@ -190,13 +171,6 @@ def _spoken(
         number: (shown(text), lang or language(text, japanese))
         for number, (text, lang) in said.items()
     }
-
-
-def _languages(records: Iterable[Record]) -> dict[str, str]:
-    """The languages of applications, as far as the transcript tells."""
-    loads = [r for r in records if r["phase"] == "load" and r["actor"] == "mediator"]
-    told = {record["app"]: (record.get("data") or {}).get("lang") for record in loads}
-    return {app: lang for app, lang in told.items() if isinstance(lang, str)}
 
 
 def language(text: str, japanese: bool = False) -> str:
@@ -213,45 +187,36 @@ def language(text: str, japanese: bool = False) -> str:
 # Why -----------------------------------------------------------------------------------------
 
 
-def _whys(
-    records: Sequence[Record], rows: Sequence[Row], asked: dict[str, Record]
-) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
+def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
     """Why each row came where it did, and what the ABs are that are named there."""
-    reasons = Reasons(records)
     first: dict[str, int] = {}
     for row in rows:
         if row.behavior:
-            first.setdefault(row.behavior.partition(".")[0], row.number)
+            first.setdefault(base(row.behavior), row.number)
     places = {(row.time, row.kind): row.number for row in reversed(rows)}
-    events: dict[int, int] = {}
-    for record in records:
-        if record["phase"] == "event" and record.get("serial"):
-            number = places.get((record["time"], record["event"]))
-            if number is not None:
-                events[record["serial"]] = number
+    events = {
+        serial: places[event.time, event.event]
+        for serial, event in run.events.items()
+        if serial and (event.time, event.event) in places
+    }
     whys: list[dict[str, Json]] = []
     names: dict[str, list[Json]] = {}
     for row in rows:
-        base = row.behavior.partition(".")[0]
-        found = reasons.of(row, MOST_REASONS)
+        asked = run.asked(row.behavior)
         why: dict[str, Json] = {}
         if row.source:
             why["source"] = _short(row.source)
         if row.actor != "R":
             why["outside"] = True
-        cause = (asked.get(base) or {}).get("cause")
-        if cause in events:
-            why["cause"] = events[cause]
+        if asked is not None and asked.cause in events:
+            why["cause"] = events[asked.cause]
         told: list[Json] = []
-        for reason in found:
-            rivals: list[Json] = []
-            for name in (*reason.lost, reason.by):
-                one = name.partition(".")[0]
-                if not one or one == base:
-                    continue
+        for reason in reasons(run, row, MOST_REASONS):
+            others = (base(name) for name in (*reason.lost, reason.by))
+            rivals = [one for one in others if one and one != base(row.behavior)]
+            for one in rivals:
                 if one not in names:
-                    names[one] = _named(one, asked, first)
-                rivals.append(one)
+                    names[one] = _named(one, run, first)
             told.append([reason.time, shown(reason.text), _short(reason.rule), rivals])
         if told:
             why["told"] = told
@@ -259,12 +224,13 @@ def _whys(
     return whys, names
 
 
-def _named(name: str, asked: dict[str, Record], first: dict[str, int]) -> list[Json]:
+def _named(name: str, run: Run, first: dict[str, int]) -> list[Json]:
     """What an AB is that a reason names, or the first AB of a stream."""
-    request = asked.get(name)
+    stream = run.streams.get(name)
+    request = stream.asked if stream is not None else run.asked(name)
     if request is None:
         return ["the transcript does not tell what it is", "", -1]
-    text = describe(request["command"], request.get("text"), request.get("args"))
-    words = "a unit" if request["command"] == "iu" else shown(text)
-    words = f"the stream that began with {words}" if name == request.get("tree") else words
-    return [words, _short(request.get("source")), first.get(request["behavior"], -1)]
+    text = describe(request.command, request.text, request.args)
+    words = "a unit" if request.command == "iu" else shown(text)
+    words = f"the stream that began with {words}" if stream is not None else words
+    return [words, _short(request.source), first.get(request.behavior, -1)]

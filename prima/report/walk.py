@@ -7,7 +7,7 @@ same records come out of it, since else it was another run.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
     from prima.sim.map import Map
     from prima.sim.world import World
+    from prima.transcript.run import Run
 
 MOST_POSES = 60_000
 """Poses that a page holds of each of robot and user."""
@@ -48,17 +49,15 @@ class Walk:
     radius: float = 0.2
 
 
-def reported(records: Iterable[Record]) -> list[Pose]:
-    """The poses that a transcript's motions end with."""
+def reported(run: Run) -> list[Pose]:
+    """The poses that a run's motions end with."""
     poses: list[Pose] = []
-    for record in records:
-        data = record.get("data") if record["phase"] in ("end", "halted") else None
-        if not isinstance(data, dict):
+    for entry in run.entries:
+        if entry.phase not in ("end", "halted") or len(poses) >= MOST_POSES:
             continue
-        x, y, heading = (_number(data.get(name)) for name in ("x", "y", "heading"))
-        if x is None or y is None or heading is None or len(poses) >= MOST_POSES:
-            continue
-        poses.append((float(record["time"]), x, y, heading))
+        x, y, heading = (_number(entry.data.get(name)) for name in ("x", "y", "heading"))
+        if x is not None and y is not None and heading is not None:
+            poses.append((entry.time, x, y, heading))
     return poses
 
 
@@ -76,10 +75,10 @@ def walk_of(transcript: Transcript, loaded: Loaded | None) -> Walk:
         UsageError: the scenario's files are not those that the transcript was made with.
     """
     if loaded is None:
-        return Walk(reported(transcript.records))
+        return Walk(reported(transcript.run()))
     check_files(transcript, loaded)
     profile = loaded.cast.robot
-    walk = _again(transcript, loaded) or Walk(reported(transcript.records))
+    walk = _again(transcript, loaded) or Walk(reported(transcript.run()))
     walk.plan = plan_of(loaded.cast.world, {area.id: app for area, app in loaded.cast.offers})
     walk.camera = (profile.camera_angle, profile.camera_range)
     walk.radius = profile.radius
@@ -92,8 +91,7 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
     Raises:
         UsageError: they are not.
     """
-    head = transcript.records[0]
-    told = head["data"].get("files") if head["phase"] == "run" else None
+    told = transcript.run().head.get("files")
     if not isinstance(told, dict) or not told:
         message = "the transcript does not tell which files it was made with; leave out --scenario."
         raise UsageError(f"{transcript.name}: {message}")
@@ -112,7 +110,7 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished
 
-    head = transcript.records[0]["data"]
+    head = transcript.run().head
     policy, bound = head.get("policy"), head.get("bound")
     if bound is not None and (not isinstance(bound, int) or bound < 1):
         return None

@@ -15,8 +15,9 @@ from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
+from prima.transcript.run import run_of
 from prima.transcript.table import Row, describe
-from prima.transcript.why import Reasons
+from prima.transcript.why import told
 
 SHOWN = 6
 """Answers to a question that are shown."""
@@ -220,7 +221,7 @@ class Conversation:
         if rest and not (rest.isascii() and rest.isdigit() and int(rest[:9]) < len(rows)):
             raise UsageError(f'There is no row "{rest}"; the rows are 0 to {len(rows) - 1}.')
         row = rows[int(rest)] if rest else rows[-1]
-        self.screen.show("\n".join(_reasons(row, Reasons(self.game.records))))
+        self.screen.show("\n".join(told(run_of(self.game.records), row)))
 
     def _who(self, rest: str) -> None:
         _nothing("who", rest)
@@ -287,16 +288,6 @@ def _unheard(text: str, asking: str) -> str:
 def _nothing(name: str, rest: str) -> None:
     if rest:
         raise UsageError(f'Nothing follows "/{name}".')
-
-
-def _reasons(row: Row, reasons: Reasons) -> list[str]:
-    """Why a row came where it did."""
-    lines = [f"Row {row.number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
-    if row.source:
-        lines.append(f"Requested at {row.source}.")
-    if row.actor != "R":
-        lines.append("It came from outside; no rule decided when.")
-    return lines + [f"{reason.time:.3f} s: {reason.text}" for reason in reasons.of(row)]
 
 
 def _situation(game: Game) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from typing import Any
@@ -11,10 +11,12 @@ from prima.errors import Place
 from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
-from prima.messages import Record
 from prima.sim.expectations import Expectation
 from prima.sim.scenario import Scenario
 from prima.testing.tracing import Change, States
+from prima.transcript.record import Entry
+from prima.transcript.run import Run
+from prima.transcript.spans import base
 from prima.transcript.table import Row, describe, format_head, format_row, shape_of
 
 AROUND = 2
@@ -49,8 +51,8 @@ class Fact:
     number: int
     time: int
     phase: str
-    record: Record
-    request: Record
+    record: Entry
+    request: Entry
     """The request of the Behavior, where there is one."""
     said: str = ""
     """What the Behavior says."""
@@ -83,7 +85,7 @@ class Window:
 
 
 @dataclass(slots=True)
-class Run:
+class Checked:
     """What is known of a run: its facts and rows, and the states that applications were in."""
 
     facts: list[Fact]
@@ -95,41 +97,31 @@ class Run:
     """Why applications ended."""
 
 
-def make_run(records: Sequence[Record], rows: list[Row], states: States) -> Run:
-    """Make what expectations are checked on of a transcript's records (times in s)."""
-    facts = list(_facts(records))
-    end = round(records[-1]["time"] * 1000) if records else 0
-    ended = {
-        fact.record["app"]: fact.record.get("outcome") or ""
-        for fact in facts
-        if fact.phase == "unload"
-    }
-    return Run(facts, rows, states, end, ended)
+def make_run(run: Run, rows: list[Row], states: States) -> Checked:
+    """Make what expectations are checked on of a run."""
+    ended = {one.app: one.outcome for one in run.of("unload") if one.actor == "mediator"}
+    return Checked(list(_facts(run)), rows, states, round(run.end * 1000), ended)
 
 
-def _facts(records: Iterable[Record]) -> Iterable[Fact]:
+def _facts(run: Run) -> Iterable[Fact]:
     """What may be expected or waited for: no loops but the first, and no decisions."""
-    asked: dict[str, Record] = {}
     texts: dict[str, str] = {}
     number = 0
-    for record in records:
-        phase, name = record["phase"], record.get("behavior") or ""
-        base, _, loop = name.partition(".")
-        if phase == "request":
-            asked[name] = record
-        if phase == "start" and record.get("text"):
-            texts[base] = record["text"]
-        first = phase == "start" and loop in ("", "1") and not record.get("resumed")
-        ended = phase == "end" and record.get("outcome") != "again"
-        gone = phase == "unload" and record["actor"] == "mediator"
+    for entry in run.entries:
+        phase, name = entry.phase, base(entry.behavior)
+        if phase == "start" and entry.text:
+            texts[name] = entry.text
+        ended = phase == "end" and entry.outcome != "again"
+        gone = phase == "unload" and entry.actor == "mediator"
+        first = phase == "start" and entry.first
         if first or ended or gone or phase in ("listening", "event", "log", "send"):
-            request = asked.get(base, record)
-            time = round(record["time"] * 1000)
-            yield Fact(number, time, phase, record, request, texts.get(base, ""))
+            request = run.asked(name) or entry
+            time = round(entry.time * 1000)
+            yield Fact(number, time, phase, entry, request, texts.get(name, ""))
             number += 1
 
 
-def check(scenario: Scenario, run: Run) -> list[Failure]:
+def check(scenario: Scenario, run: Checked) -> list[Failure]:
     """Check all that a scenario expects; gives what was not so, in document order."""
     return Checker(scenario, run).failures
 
@@ -137,7 +129,7 @@ def check(scenario: Scenario, run: Run) -> list[Failure]:
 class Checker:
     """Goes through the expectations of one scenario."""
 
-    def __init__(self, scenario: Scenario, run: Run) -> None:
+    def __init__(self, scenario: Scenario, run: Checked) -> None:
         self.run = run
         self.failures: list[Failure] = []
         self._found: dict[int, Fact | None] = {}
@@ -277,11 +269,11 @@ class Checker:
 
     def _row(self, fact: Fact) -> str:
         """The row of the table that shows a fact."""
-        name = (fact.record.get("behavior") or "").partition(".")[0]
+        name = (fact.record.behavior).partition(".")[0]
         kind = fact.phase if fact.phase in ("log", "unload") else ""
         for row in self.run.rows:
             same = row.behavior.partition(".")[0] == name and row.kind == (kind or row.kind)
-            now = round(row.time * 1000) == fact.time and row.app == (fact.record.get("app") or "")
+            now = round(row.time * 1000) == fact.time and row.app == (fact.record.app)
             if same and now:
                 return f" (row {row.number})"
         return ""
@@ -304,7 +296,7 @@ class Checker:
         """What is nearest to what never happens: said by another, or with other words."""
         wanted = [fact for fact in self.run.facts if fits(one, fact, whoever=True)]
         if wanted:
-            who, at = wanted[0].record.get("app"), self._at(wanted[:1])
+            who, at = wanted[0].record.app, self._at(wanted[:1])
             told = f"It is {who} that does, {at}." if who else f"It does for all, {at}."
             return wanted[0], told
         loose = [fact for fact in self.run.facts if fits(one, fact, whatever=True)]
@@ -312,14 +304,12 @@ class Checker:
             told = ", ".join(f"{key} {shown(value)}" for key, value in values(loose[0]).items())
             return loose[0], f"It does so with {told or 'no values'}, {self._at(loose[:1])}."
         if loose and one.reason:
-            return loose[
-                0
-            ], f"It ends with {loose[0].record.get('outcome')}, {self._at(loose[:1])}."
+            return loose[0], f"It ends with {loose[0].record.outcome}, {self._at(loose[:1])}."
         name = "says" if "says" in one.words else "logs" if "logs" in one.words else ""
         found = _likest(one.words[name], name, self.run.facts) if name else None
         if found is None:
             return None, "It never does."
-        who, text = found.record.get("app") or "", _text(found, name)
+        who, text = found.record.app, _text(found, name)
         return found, f'It never does. Nearest: {who} {name} "{text}" {self._at([found])}.'
 
 
@@ -363,13 +353,13 @@ def _within(rows: list[Row], window: Window) -> set[int]:
 def fits(one: Expectation, fact: Fact, whoever: bool = False, whatever: bool = False) -> bool:
     """Whether a fact is what is expected; also of another application, or with other values."""
     record = fact.record
-    if one.by and not whoever and record.get("app") != one.by:
+    if one.by and not whoever and record.app != one.by:
         return False
     if not all(_is(name, word, fact) for name, word in one.words.items()):
         return False
     if whatever:
         return True
-    if one.reason and not _reason(one.reason, record.get("outcome") or ""):
+    if one.reason and not _reason(one.reason, record.outcome):
         return False
     held = values(fact) if one.data else {}
     return all(name in held and _same(text, held[name]) for name, text in one.data.items())
@@ -381,17 +371,17 @@ def _is(name: str, word: str, fact: Fact) -> bool:
         case "says":
             return phase == "start" and bool(fact.said) and fold(word) in fold(fact.said)
         case "does":
-            return phase == "start" and record.get("command") == word
+            return phase == "start" and record.command == word
         case "finishes":
             return triggers("done", word, fact)
         case "event":
-            return phase == "event" and takes(word, record["event"])
+            return phase == "event" and takes(word, record.event)
         case "logs":
-            return phase == "log" and fold(word) in fold(record["message"])
+            return phase == "log" and fold(word) in fold(record.message)
         case "sends":
-            return phase == "send" and _to(word, str((record.get("data") or {}).get("to") or ""))
+            return phase == "send" and _to(word, str(record.data.get("to") or ""))
         case "ends":
-            return phase == "unload" and record.get("app") == word
+            return phase == "unload" and record.app == word
     return False
 
 
@@ -412,8 +402,8 @@ def values(fact: Fact) -> dict[str, Any]:
     """What was given along: a Command's arguments, an event's or a message's values."""
     record, request = fact.record, fact.request
     if fact.phase in ("start", "end"):
-        return {**(request.get("args") or {}), **(request.get("extra") or {})}
-    data = dict(record.get("data") or {})
+        return {**(request.args), **(request.extra)}
+    data = dict(record.data)
     params = data.get("params")
     return params if isinstance(params, dict) else data
 
@@ -439,13 +429,13 @@ def triggers(name: str, what: Any, fact: Fact) -> bool:
         case "asked":
             return phase == "listening" and _holds(what, fact)
         case "said":
-            done = phase == "end" and record.get("outcome") == "done"
+            done = phase == "end" and record.outcome == "done"
             return (phase == "listening" or done) and _holds(what, fact)
         case "doing":
-            return phase == "start" and record.get("command") == what
+            return phase == "start" and record.command == what
         case "done":
-            return phase == "end" and record.get("command") == what
-    return phase == "event" and takes(what, record["event"])
+            return phase == "end" and record.command == what
+    return phase == "event" and takes(what, record.event)
 
 
 def _holds(what: str, fact: Fact) -> bool:
@@ -453,7 +443,7 @@ def _holds(what: str, fact: Fact) -> bool:
 
 
 def _text(fact: Fact, name: str) -> str:
-    return fact.said if name == "says" else str(fact.record.get("message") or "")
+    return fact.said if name == "says" else str(fact.record.message)
 
 
 def _likest(word: str, name: str, facts: list[Fact]) -> Fact | None:

@@ -95,9 +95,9 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
     if choice.coverage:
         made.coverage = covered(marks_of(transcript.visits))
     states = states_of(transcript.visits)
-    made.simulated = transcript.records[-1]["time"]
+    made.simulated = transcript.run().end
     rows = transcript.rows()
-    made.failures = check(scenario, make_run(transcript.records, rows, states))
+    made.failures = check(scenario, make_run(transcript.run(), rows, states))
     if made.failures:
         made.status = "failed"
     own = choice.policy in (None, scenario.policy)

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import chain
 from zlib import crc32
-
-from prima.messages import Record
 
 PALETTE = (
     ("#cfe3f7", "#1c5d99", "#1d3f61", "#7db7ee"),
@@ -37,18 +34,6 @@ def colours(apps: Iterable[str]) -> dict[str, int]:
         found[app] = min(free, key=lambda one: (one - wanted) % NOBODY)
         free.remove(found[app])
     return found
-
-
-def apps_of(records: Iterable[Record]) -> list[str]:
-    """A run's applications, as they were loaded."""
-    told = [(record["phase"], str(record["app"])) for record in records if record.get("app")]
-    loaded = (app for phase, app in told if phase == "load")
-    return list(dict.fromkeys(chain(loaded, (app for _, app in told))))
-
-
-def of_run(records: Iterable[Record]) -> dict[str, int]:
-    """The places in the palette of a run's applications."""
-    return colours(apps_of(records))
 
 
 def fill(index: int, dark: bool = False) -> str:

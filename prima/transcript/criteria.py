@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from prima.messages import Record
+from prima.transcript.record import Entry
 
 
 @dataclass(slots=True)
@@ -59,7 +60,7 @@ class _Tree:
 
     name: str
     app: str
-    pending: dict[str, Record] = field(default_factory=dict)
+    pending: dict[str, Entry] = field(default_factory=dict)
     """Requests of it that have not ended, by AB."""
     topics: set[str] = field(default_factory=set)
     """Those of them that do not leave the user."""
@@ -156,27 +157,27 @@ class Observer:
         self._waits: dict[tuple[str, str], _Wait] = {}
         """Applications that wait for a service's answer, by application and service."""
 
-    def add(self, record: Record, time: float | None = None) -> None:
-        """Take in one record; ``time`` in seconds, where the record's own is not."""
-        self._now = record["time"] if time is None else time
-        match record["phase"]:
+    def add(self, record: Entry) -> None:
+        """Take in one record."""
+        self._now = record.time
+        match record.phase:
             case "request":
                 self._request(record)
             case "start":
                 self._start(record)
-            case "end" | "cancel" | "fail" if record.get("behavior"):
+            case "end" | "cancel" | "fail" if record.behavior:
                 self._end(record)
             case "stream-end":
-                self._forget(record["tree"])
+                self._forget(record.tree)
             case "event":
-                self._event(record)
+                self._event(record, record.event)
             case "emergency":
-                pressed = record["outcome"] == "pressed"
-                self._event({**record, "event": f"emergency.{'stop' if pressed else 'release'}"})
+                pressed = record.outcome == "pressed"
+                self._event(record, f"emergency.{'stop' if pressed else 'release'}")
             case "send":
-                app = record["app"]
+                app = record.app
                 talking = any(tree.begun for tree in self._trees.values() if tree.app == app)
-                self._waits[app, record["data"]["to"]] = _Wait(talking, self._now)
+                self._waits[app, record.data["to"]] = _Wait(talking, self._now)
                 if len(self._waits) > MOST_STREAMS:
                     del self._waits[next(iter(self._waits))]
             case "collision":
@@ -196,63 +197,63 @@ class Observer:
             unfaced=unfaced,
         )
 
-    def _request(self, record: Record) -> None:
-        tree = self._trees.get(record["tree"])
+    def _request(self, record: Entry) -> None:
+        tree = self._trees.get(record.tree)
         if tree is None:
-            tree = self._trees[record["tree"]] = _Tree(record["tree"], record["app"])
+            tree = self._trees[record.tree] = _Tree(record.tree, record.app)
             if len(self._trees) > MOST_STREAMS:
                 self._forget(next(iter(self._trees)))
-        tree.pending[record["behavior"]] = record
-        if not record.get("leaves"):
-            tree.topics.add(record["behavior"])
-        self._of[record["behavior"]] = tree
-        tree.asks = tree.asks or record["command"] == "q-and-a"
+        tree.pending[record.behavior] = record
+        if not record.leaves:
+            tree.topics.add(record.behavior)
+        self._of[record.behavior] = tree
+        tree.asks = tree.asks or record.command == "q-and-a"
 
     def _forget(self, name: str) -> None:
         """A stream is over, or there are too many."""
         tree = self._trees.pop(name, None)
         self.found.unfaced += tree is not None and tree.unfaced
 
-    def _start(self, record: Record) -> None:
-        name = record["behavior"].partition(".")[0]
+    def _start(self, record: Entry) -> None:
+        name = record.behavior.partition(".")[0]
         tree = self._of.get(name)
         if tree is None:
             return
         request = tree.pending.get(name, record)
-        if record.get("cause") in self._events:
-            self._react(tree, record["cause"], self._events[record["cause"]])
-        if record.get("reactive"):
+        if record.cause is not None and record.cause in self._events:
+            self._react(tree, record.cause, self._events[record.cause])
+        if record.reactive:
             tree.reacting = self._now
-        if record.get("text"):
+        if record.text:
             self._talk(tree, record)
-        again = not record.get("resumed") and record["behavior"].partition(".")[2] not in ("", "1")
+        again = not record.resumed and record.behavior.partition(".")[2] not in ("", "1")
         if not again:
             self._begin(tree, record, request)
-        self._go_on(tree, not again and "speaker" in request.get("devices", ()))
+        self._go_on(tree, not again and "speaker" in request.devices)
         tree.begun = True
         tree.running.add(name)
-        if request.get("leaves"):
+        if request.leaves:
             tree.leaving.add(name)
-        if request.get("feedback"):
+        if request.feedback:
             tree.looping.add(name)
-        tree.engaged = tree.engaged or bool(request.get("engages"))
+        tree.engaged = tree.engaged or bool(request.engages)
 
-    def _talk(self, tree: _Tree, record: Record) -> None:
+    def _talk(self, tree: _Tree, record: Entry) -> None:
         """Something is said: its application is noticed while it waits; a conversation begins."""
         for (app, _), wait in self._waits.items():
             wait.talked = wait.talked or app == tree.app
-        if record["command"] != "active-sensing-human" and tree.faced is None:
+        if record.command != "active-sensing-human" and tree.faced is None:
             tree.faced = self._seen
 
-    def _begin(self, tree: _Tree, record: Record, request: Record) -> None:
+    def _begin(self, tree: _Tree, record: Entry, request: Entry) -> None:
         """A behavior begins or resumes: what does it do to the others, and is it a response?"""
-        speaks = "speaker" in request.get("devices", ())
+        speaks = "speaker" in request.devices
         self._come_in(tree, speaks)
-        if request.get("leaves"):
-            self._leave(tree, record["behavior"])
+        if request.leaves:
+            self._leave(tree, record.behavior)
         if speaks:
-            tree.speaking.add(record["behavior"].partition(".")[0])
-        if record.get("text") or (request.get("engages") and record["command"] != "q-and-a"):
+            tree.speaking.add(record.behavior.partition(".")[0])
+        if record.text or (request.engages and record.command != "q-and-a"):
             self._respond(tree)
 
     def _go_on(self, tree: _Tree, speaks: bool) -> None:
@@ -337,8 +338,8 @@ class Observer:
                 other.left_by.add(tree.name)
                 self.found.left += 1
 
-    def _end(self, record: Record, again: bool = False) -> None:
-        name = record["behavior"].partition(".")[0]
+    def _end(self, record: Entry, again: bool = False) -> None:
+        name = record.behavior.partition(".")[0]
         tree = self._of.get(name)
         if tree is None:
             return
@@ -346,30 +347,29 @@ class Observer:
         tree.leaving.discard(name)
         tree.looping.discard(name)
         tree.speaking.discard(name)
-        if not (again or record.get("outcome") in ("again", "halted")):
+        if not (again or record.outcome in ("again", "halted")):
             tree.pending.pop(name, None)
             tree.topics.discard(name)
             del self._of[name]
             self._cut.discard(name)
 
-    def _event(self, record: Record) -> None:
-        name = record["event"]
+    def _event(self, record: Entry, name: str) -> None:
         if name in ("human.found", "human.lost"):
             self._seen = name == "human.found"
         event = _Event(name, self._now)
-        if record.get("serial"):
-            self._events[record["serial"]] = event
+        if record.serial:
+            self._events[record.serial] = event
             if len(self._events) > MOST_EVENTS:
                 del self._events[next(iter(self._events))]
         for kind in ("reply.", "error.service."):
             service = name.removeprefix(kind)
-            wait = self._waits.pop((record.get("app") or "", service), None)
+            wait = self._waits.pop((record.app, service), None)
             if name.startswith(kind) and wait is not None and wait.broken:
-                event.waited = record["app"]
+                event.waited = record.app
 
-    def _collide(self, record: Record) -> None:
-        name = record["behavior"].partition(".")[0]
-        mine, theirs = self._of.get(name), self._of.get(record["by"].partition(".")[0])
+    def _collide(self, record: Entry) -> None:
+        name = record.behavior.partition(".")[0]
+        mine, theirs = self._of.get(name), self._of.get(record.by.partition(".")[0])
         if mine is None or theirs is None or mine.app == theirs.app or name in self._cut:
             return
         self._cut.add(name)
@@ -385,5 +385,5 @@ def observe(records: Iterable[Record]) -> Criteria:
     """Count the criteria in a whole transcript."""
     observer = Observer()
     for record in records:
-        observer.add(record)
+        observer.add(Entry(record))
     return observer.result()

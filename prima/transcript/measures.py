@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
-from prima.messages import Record
-from prima.transcript.criteria import Observer
+from prima.transcript.criteria import Criteria, Observer
+from prima.transcript.record import Entry
+from prima.transcript.run import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,34 +39,35 @@ class Measure:
         self._starved = 0
         self._observer = Observer(delays=False)
 
-    def add(self, record: Record, time: float) -> None:
-        """Take a record in; ``time`` in seconds."""
+    def add(self, entry: Entry) -> None:
+        """Take a record in."""
         self.records += 1
-        self._last = time
-        self._collisions += record["phase"] == "collision"
-        self._starved += record["phase"] == "starve"
-        self._observer.add(record, time)
+        self._last = entry.time
+        self._collisions += entry.phase == "collision"
+        self._starved += entry.phase == "starve"
+        self._observer.add(entry)
 
     def summary(self) -> Summary:
         """What has been counted so far."""
-        found = self._observer.result()
-        return Summary(
-            self._last,
-            found.broken,
-            self._collisions,
-            found.reactions,
-            found.reaction_mean,
-            found.reaction_max,
-            found.responses,
-            found.response_mean,
-            found.response_max,
-            self._starved,
-        )
+        return _summary(self._last, self._observer.result(), self._collisions, self._starved)
 
 
-def summarize(records: Iterable[Record]) -> Summary:
-    """Measure a transcript: how long it took, what broke, how soon events were answered."""
-    measure = Measure()
-    for record in records:
-        measure.add(record, record["time"])
-    return measure.summary()
+def summarize(run: Run) -> Summary:
+    """Measure a run: how long it took, what broke, how soon events were answered."""
+    last = run.entries[-1].time if run.entries else 0.0
+    return _summary(last, run.criteria, len(run.of("collision")), len(run.of("starve")))
+
+
+def _summary(last: float, found: Criteria, collisions: int, starved: int) -> Summary:
+    return Summary(
+        last,
+        found.broken,
+        collisions,
+        found.reactions,
+        found.reaction_mean,
+        found.reaction_max,
+        found.responses,
+        found.response_mean,
+        found.response_max,
+        starved,
+    )

@@ -1,165 +1,340 @@
-"""A transcript's record as a model: what a line may hold. Makes the JSON Schema."""
+"""A transcript's record, declared: its phases, its fields with their types and meanings.
+
+From here come what is written and in which order, the check of what is read, the JSON Schema,
+and both tables of the documentation. :class:`Entry` is a record as the fold sees it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from functools import cache
-from typing import Annotated, Any, Literal, NotRequired
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Literal,
+    NamedTuple,
+    get_args,
+    get_type_hints,
+)
 
-from pydantic import BaseModel, ConfigDict, Field
+from prima.messages import Record
 
-PHASES = [
-    "run",
-    "load",
-    "unload",
-    "request",
-    "decision",
-    "start",
-    "end",
-    "cancel",
-    "fail",
-    "hold",
-    "suspend",
-    "resume",
-    "floor",
-    "window",
-    "leave",
-    "stream-end",
-    "stop",
-    "collision",
-    "starve",
-    "emergency",
-    "listening",
-    "held",
-    "interrupt",
-    "halted",
-    "substitute",
-    "event",
-    "fetched",
-    "transferred",
-    "sensed",
-    "note",
-    "send",
-    "log",
-    "error",
-    "over",
-]
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
+MEANING = """One line of a transcript. Fields that do not apply are left out.
 
+Times are seconds of the run. ``inbound`` marks what came from outside: the
+inbound records of a transcript are enough to run it again."""
 LONGEST = 1e9
 """Seconds that a run may last: no drawing of a longer one would come to an end."""
 
 
-class Record(BaseModel):
-    """One line of a transcript. Fields that do not apply are left out.
+class Phase(NamedTuple):
+    """What a record tells, its notable fields, and those without which it says nothing."""
 
-    Times are seconds of the run. ``inbound`` marks what came from outside: the
-    inbound records of a transcript are enough to run it again.
+    meaning: str
+    notable: str
+    needed: tuple[str, ...] = ()
+
+
+PHASES = {
+    "run": Phase(
+        "the run begins",
+        "`data`",
+        ("data",),
+    ),
+    "load": Phase(
+        "an application starts; once as inbound, once by the mediator",
+        "`app`",
+        ("app",),
+    ),
+    "unload": Phase(
+        "an application has ended or is taken out",
+        "`outcome`: why",
+        ("app",),
+    ),
+    "request": Phase(
+        "an AB enters working memory",
+        "`behavior`, `tree`, `command`, `text`, `args`, `extra`, `parent`, `parents`, "
+        "`devices`, `priority`, `reactive`, `cause`, `feedback`, `leaves`, `engages`, `order`, "
+        "`state`, `unit`, `inserted`, `before`, `restartable`, `hold`, `connect`, `motion`, "
+        "`source`",
+        ("behavior", "command", "app", "tree", "priority"),
+    ),
+    "decision": Phase(
+        "a selection; losers could have started in the winner's place",
+        "`winner`, `rule`, `losers`, `losers_count`",
+        ("winner", "rule", "losers", "losers_count"),
+    ),
+    "start": Phase(
+        "an AB starts",
+        "`behavior`, `devices`, `reactive`, `cause`, `resumed`, `rule`",
+        ("behavior", "command", "app"),
+    ),
+    "end": Phase(
+        "an AB ends by itself; `again` as `outcome` of a loop that another follows",
+        "`outcome`, `goal`, `data`",
+        ("behavior", "command", "app"),
+    ),
+    "cancel": Phase(
+        "an AB is deleted, or halted by the emergency stop",
+        "`rule`, `outcome`: the state it was in",
+    ),
+    "fail": Phase(
+        "an AB fails, or a Command is refused",
+        "`event`, `device`, `message`, `rule`",
+    ),
+    "hold": Phase(
+        "a waiting AB may not start",
+        "`rule`, `by`",
+        ("behavior", "rule", "by"),
+    ),
+    "suspend": Phase(
+        "a stream is suspended by another",
+        "`tree`, `by`, `rule`",
+    ),
+    "resume": Phase(
+        "a suspended stream goes on",
+        "`tree`, `behavior`, `rule`",
+    ),
+    "floor": Phase(
+        "the floor is taken or returned",
+        "`tree`, `outcome`, `floor`, `rule`",
+    ),
+    "window": Phase(
+        "an application begins or ends to handle the end of its Command",
+        "`tree`, `outcome`",
+    ),
+    "leave": Phase(
+        "an application has left a state of its document",
+        "`state`, `rule`",
+        ("app", "state"),
+    ),
+    "stream-end": Phase(
+        "a stream ends",
+        "`tree`",
+        ("tree",),
+    ),
+    "stop": Phase(
+        "the body is stopped, since nobody moves it on",
+        "`behavior`, `rule`",
+    ),
+    "collision": Phase(
+        "without a mediator: an AB loses a device",
+        "`by`, `device`",
+        ("behavior", "by"),
+    ),
+    "starve": Phase(
+        "an AB has waited for another application for many loops of its feedback Command (E4), "
+        "or for as long as the run's `patience` (E6)",
+        "`behavior`, `by`, `rule`: why it waits, E6 if its turn is next; `loop`, or `data`: "
+        "`waited` (s)",
+        ("behavior",),
+    ),
+    "emergency": Phase(
+        "the emergency stop is pressed or released",
+        "`outcome`, `serial`",
+        ("outcome",),
+    ),
+    "listening": Phase(
+        "a question has been said, and listens",
+        "`behavior`",
+        ("behavior",),
+    ),
+    "held": Phase(
+        "a stream is kept open for an event, or no longer (x3)",
+        "`tree`, `outcome`: `begun`, `joined`, `left` or `over`; `data`: until when (s)",
+    ),
+    "interrupt": Phase(
+        "a restartable AB gives way to a reaction (x2)",
+        "`behavior`, `by`, `rule`",
+    ),
+    "halted": Phase(
+        "the device tells how much of it was done",
+        "`behavior`, `data`: `done` (0 to 1), `heard`; of what has marks, `mark` and how many "
+        "were `passed`",
+        ("behavior",),
+    ),
+    "substitute": Phase(
+        "another Command takes the place of one that the robot lacks (x6)",
+        "`command`, `by`",
+    ),
+    "event": Phase(
+        "an event, or what the user says (`speech`, with `text`; where the recogniser is not "
+        "sure, `data` has `confidence`, and `alternatives` with `text` and `confidence` of "
+        "each)",
+        "`event`, `serial`, `data`",
+        ("event",),
+    ),
+    "fetched": Phase(
+        "the answer to what an application has asked a URI for",
+        "`data`",
+        ("app", "data"),
+    ),
+    "transferred": Phase(
+        "what has become of a call",
+        "`serial`, `outcome`, `data`",
+        ("app", "serial", "outcome", "data"),
+    ),
+    "sensed": Phase(
+        "sensor values have changed: all of them at first, then those that some document looks at",
+        "`data`",
+        ("data",),
+    ),
+    "note": Phase(
+        "a remark for the reader",
+        "`text`",
+        ("text",),
+    ),
+    "send": Phase(
+        "a message to a service or a URI; a call to somebody, or its end, where `data` has "
+        "`transfer`",
+        "`data`, `serial`",
+    ),
+    "log": Phase(
+        "what a `log` element says",
+        "`message`, `source`",
+        ("message",),
+    ),
+    "error": Phase(
+        "an error that no handler took",
+        "`message`, `source`",
+    ),
+    "over": Phase(
+        "the run has ended",
+        "`outcome`: `over`, `quiet`, `until` or `limit`",
+    ),
+}
+"""The phases by their names."""
+
+
+_NOTHING: dict[str, Any] = {}
+_NONE: list[Any] = []
+
+
+class Entry:
+    """A record with a value for each field: the empty one where the record lacks it.
+
+    The annotations declare the fields in their order: the type, what it means, and where only
+    some words are allowed, those. Times are seconds of the run; ``time`` where the record's own is not.
     """
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    def __init__(self, record: Record, time: float | None = None) -> None:
+        held = dict(record)
+        if None in held.values():
+            held = {name: value for name, value in held.items() if value is not None}
+        self.__dict__ = held
+        if time is not None:
+            self.time = time
 
-    time: float = Field(
-        ge=0, le=LONGEST, allow_inf_nan=False, description="Seconds since the run began."
+    @property
+    def spoken(self) -> bool:
+        """Whether it is what the user says."""
+        return self.phase == "event" and self.event == "speech"
+
+    @property
+    def first(self) -> bool:
+        """Whether it is about no further loop of a feedback Command, and nothing resumes."""
+        return self.behavior.partition(".")[2] in ("", "1") and not self.resumed
+
+    def only(self, names: Iterable[str]) -> Entry:
+        """The record with some of its fields alone."""
+        return Entry({name: self.__dict__[name] for name in names if name in self.__dict__})
+
+    time: Annotated[float, "Seconds since the run began."]
+    phase: Annotated[str, "What the record tells."]
+    actor: Annotated[str, "Whose doing it is.", "robot", "user", "environment", "mediator"]
+    app: Annotated[str, "The application concerned."] = ""
+    behavior: Annotated[str, "The AB: APP#N, or APP#N.LOOP for a loop of a feedback Command."] = ""
+    tree: Annotated[str, "The Communication Stream: APP:N."] = ""
+    command: Annotated[str, "The Command's type; iu for a unit."] = ""
+    text: Annotated[str, "What is said."] = ""
+    args: Annotated[dict[str, Any], "Motion arguments; times in ms."] = _NOTHING
+    extra: Annotated[dict[str, Any], "Additional arguments of an FA."] = _NOTHING
+    cues: Annotated[
+        list[dict[str, Any]],
+        "Pauses, rates and marks of the text, each `at` a place in it; in ms.",
+    ] = _NONE
+    parent: Annotated[str, "The AB that this one follows."] = ""
+    parents: Annotated[list[str], "All ABs that it waits for, where more than one."] = _NONE
+    devices: Annotated[list[str], "The devices that it occupies."] = _NONE
+    priority: Annotated[str, "K2.", "high", "low"] = ""
+    reactive: Annotated[bool, "Whether it carries the reactive flag (C5)."] = False
+    cause: Annotated[int | None, "The serial number of the event reacted to."] = None
+    feedback: Annotated[bool, "Whether it makes one loop after another (U2)."] = False
+    leaves: Annotated[bool, "Whether it leaves the user (K1)."] = False
+    engages: Annotated[bool, "Whether it engages the user (K1)."] = False
+    order: Annotated[str, "Set for a Command wanted now (O2).", "now"] = ""
+    state: Annotated[
+        int | None, "The activation of a document's state that asks, or is left (O3)."
+    ] = None
+    inserted: Annotated[str, "The rule by which the mediator put it in itself (X1, X4)."] = ""
+    before: Annotated[str, "The AB that it was put in before."] = ""
+    restartable: Annotated[bool, "Whether it gives way to a reaction and starts again (X2)."] = (
+        False
     )
-    phase: Literal[
-        "run", "load", "unload", "request", "decision", "start", "end", "cancel", "fail",
-        "hold", "suspend", "resume", "floor", "window", "leave", "stream-end", "stop", "collision",
-        "starve", "emergency", "listening",
-        "held", "interrupt", "halted", "substitute", "event", "fetched", "transferred", "sensed", "note", "send", "log", "error",
-        "over",
-    ] = Field(description="What the record tells.")  # fmt: skip
-    actor: Literal["robot", "user", "environment", "mediator"] = Field(
-        description="Whose doing it is."
+    hold: Annotated[float, "How long (s) its stream is held for an event afterwards (X3)."] = 0.0
+    connect: Annotated[bool, "Whether the robot has to face the user before it starts (X4)."] = (
+        False
     )
-    app: str | None = Field(None, description="The application concerned.")
-    behavior: str | None = Field(
-        None, description="The AB: APP#N, or APP#N.LOOP for a loop of a feedback Command."
-    )
-    tree: str | None = Field(None, description="The Communication Stream: APP:N.")
-    command: str | None = Field(None, description="The Command's type; iu for a unit.")
-    text: str | None = Field(None, description="What is said.")
-    args: dict[str, Any] | None = Field(None, description="Motion arguments; times in ms.")
-    extra: dict[str, Any] | None = Field(None, description="Additional arguments of an FA.")
-    cues: list[dict[str, Any]] | None = Field(
-        None, description="Pauses, rates and marks of the text, each `at` a place in it; in ms."
-    )
-    parent: str | None = Field(None, description="The AB that this one follows.")
-    parents: list[str] | None = Field(
-        None, description="All ABs that it waits for, where more than one."
-    )
-    devices: list[str] | None = Field(None, description="The devices that it occupies.")
-    priority: Literal["high", "low"] | None = Field(None, description="K2.")
-    reactive: bool | None = Field(None, description="Whether it carries the reactive flag (C5).")
-    cause: int | None = Field(None, description="The serial number of the event reacted to.")
-    feedback: bool | None = Field(None, description="Whether it makes one loop after another (U2).")
-    leaves: bool | None = Field(None, description="Whether it leaves the user (K1).")
-    engages: bool | None = Field(None, description="Whether it engages the user (K1).")
-    order: Literal["now"] | None = Field(None, description="Set for a Command wanted now (O2).")
-    state: int | None = Field(
-        None, description="The activation of a document's state that asks, or is left (O3)."
-    )
-    inserted: str | None = Field(
-        None, description="The rule by which the mediator put it in itself (X1, X4)."
-    )
-    before: str | None = Field(None, description="The AB that it was put in before.")
-    restartable: bool | None = Field(
-        None, description="Whether it gives way to a reaction and starts again (X2)."
-    )
-    hold: float | None = Field(
-        None, description="How long (s) its stream is held for an event afterwards (X3)."
-    )
-    connect: bool | None = Field(
-        None, description="Whether the robot has to face the user before it starts (X4)."
-    )
-    motion: Literal["free", "faithful"] | None = Field(
-        None, description="How it moves the body: free in its path, or faithful to its own (X5)."
-    )
-    unit: str | None = Field(None, description="The unit that it is a part of (U4, U5).")
-    event: str | None = Field(None, description="An event's name.")
-    serial: int | None = Field(None, description="An event's or message's serial number.")
-    rule: str | None = Field(None, description="The rule that decided.")
-    winner: str | None = Field(None, description="Who was selected.")
-    losers: list[str] | None = Field(None, description="Who was not: the first eight.")
-    losers_count: int | None = Field(None, description="How many were not.")
-    by: str | None = Field(None, description="The AB or stream because of which.")
-    floor: list[str] | None = Field(
-        None, description="The stack of streams, the floor's holder last (F3)."
-    )
-    outcome: str | None = Field(None, description="How it ended.")
-    goal: bool | None = Field(None, description="Whether a feedback Command has met its goal (U2).")
-    resumed: bool | None = Field(
-        None, description="Whether an interrupted Command starts afresh (U2)."
-    )
-    device: str | None = Field(None, description="The device concerned.")
-    loop: int | None = Field(None, description="A number of loops.")
-    message: str | None = Field(None, description="More about it, for people.")
-    data: dict[str, Any] | None = Field(None, description="Values given along.")
-    source: str | None = Field(None, description="The document and line that asked: FILE:LINE.")
-    inbound: bool | None = Field(None, description="Whether it came from outside.")
+    motion: Annotated[
+        str,
+        "How it moves the body: free in its path, or faithful to its own (X5).",
+        "free",
+        "faithful",
+    ] = ""
+    unit: Annotated[str, "The unit that it is a part of (U4, U5)."] = ""
+    event: Annotated[str, "An event's name."] = ""
+    serial: Annotated[int | None, "An event's or message's serial number."] = None
+    rule: Annotated[str, "The rule that decided."] = ""
+    winner: Annotated[str, "Who was selected."] = ""
+    losers: Annotated[list[str], "Who was not: the first eight."] = _NONE
+    losers_count: Annotated[int, "How many were not."] = 0
+    by: Annotated[str, "The AB or stream because of which."] = ""
+    floor: Annotated[list[str], "The stack of streams, the floor's holder last (F3)."] = _NONE
+    outcome: Annotated[str, "How it ended."] = ""
+    goal: Annotated[bool, "Whether a feedback Command has met its goal (U2)."] = False
+    resumed: Annotated[bool, "Whether an interrupted Command starts afresh (U2)."] = False
+    device: Annotated[str, "The device concerned."] = ""
+    loop: Annotated[int, "A number of loops."] = 0
+    message: Annotated[str, "More about it, for people."] = ""
+    data: Annotated[dict[str, Any], "Values given along."] = _NOTHING
+    source: Annotated[str, "The document and line that asked: FILE:LINE."] = ""
+    inbound: Annotated[bool, "Whether it came from outside."] = False
+
+
+FIELDS = tuple(Entry.__annotations__)
+"""The fields in the order in which they are written."""
+REQUIRED = ("time", "phase", "actor")
+
+
+def lacking(record: Record) -> str:
+    """The first field that a record lacks of those without which its phase says nothing."""
+    needed = PHASES[record["phase"]].needed
+    return next((name for name in needed if record.get(name) is None), "")
 
 
 @cache
-def quick_reader() -> Callable[[str], dict[str, Any]]:
-    """What reads a line and checks it at once, a few times as fast as one after the other.
-
-    It raises pydantic's ``ValidationError`` for whatever it does not take; it refuses nothing
-    of :class:`Record` but escaped halves of letters and very deep values, and takes what is no
-    JSON, the numbers ``NaN`` and ``Infinity``. Times are floats.
-    """
-    from pydantic import TypeAdapter
-    from typing_extensions import TypedDict
+def model() -> type[BaseModel]:
+    """The model that a line is checked against; its JSON Schema is published."""
+    from pydantic import ConfigDict, Field, create_model
 
     fields: dict[str, Any] = {}
-    for name, field in Record.model_fields.items():
-        kind: Any = field.annotation
-        for bound in field.metadata:
-            kind = Annotated[kind, bound]
-        fields[name] = kind if field.is_required() else NotRequired[kind]
-    made = TypedDict("Quick", fields)  # type: ignore[misc]
-    setattr(made, "__pydantic_config__", Record.model_config)  # noqa: B010
-    read: Callable[[str], dict[str, Any]] = TypeAdapter(made).validator.validate_json
-    return read
-
-
-FIELDS = tuple(Record.model_fields)
+    for name, hint in get_type_hints(Entry, include_extras=True).items():
+        kind, meaning, *words = get_args(hint)
+        if get_args(kind) and get_args(kind)[-1] is type(None):
+            kind = get_args(kind)[0]
+        words = list(PHASES) if name == "phase" else words
+        kind = Literal[tuple(words)] if words else kind
+        if name == "time":
+            held = Field(ge=0, le=LONGEST, allow_inf_nan=False, description=meaning)
+            fields[name] = (kind, held)
+        elif name in REQUIRED:
+            fields[name] = (kind, Field(description=meaning))
+        else:
+            fields[name] = (kind | None, Field(None, description=meaning))
+    return create_model(
+        "Record", __config__=ConfigDict(extra="forbid", strict=True), __doc__=MEANING, **fields
+    )

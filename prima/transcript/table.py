@@ -11,6 +11,8 @@ from prima.errors import counted
 from prima.errors.visible import visible
 from prima.language.commands import TABLE_4_2
 from prima.messages import Record
+from prima.transcript.record import Entry
+from prima.transcript.spans import base
 
 LONGEST_SHOWN = 5000
 """Letters of a row that are printed."""
@@ -75,33 +77,30 @@ class Row:
         return (self.actor, self.app, self.kind, self.what.removeprefix("resumes "))
 
 
-def make_rows(records: Iterable[Record]) -> list[Row]:
+def make_rows(entries: Iterable[Entry]) -> list[Row]:
     """The rows of a transcript, numbered; of its records only those are kept that may have one."""
-    held: list[Record] = []
+    held: list[Entry] = []
     handled: set[int] = set()
-    asked: dict[str, Record] = {}
+    asked: dict[str, Entry] = {}
     ends: dict[str, float] = {}
-    for record in records:
-        phase = record["phase"]
-        if record.get("cause"):
-            handled.add(record["cause"])
-        if phase == "request":
-            asked[record["behavior"]] = {
-                name: record[name] for name in ASKED if record.get(name) is not None
-            }
-        elif phase == "end":
-            if record["command"] == "iu":
-                ends[record["behavior"]] = record["time"]
-            if record.get("goal"):
+    for record in entries:
+        if record.cause:
+            handled.add(record.cause)
+        if record.phase == "request":
+            asked[record.behavior] = record.only(ASKED)
+        elif record.phase == "end":
+            if record.command == "iu":
+                ends[record.behavior] = record.time
+            if record.goal:
                 held.append(record)
-        elif phase not in UNSEEN:
+        elif record.phase not in UNSEEN:
             held.append(record)
     rows: list[Row] = []
     collided: set[tuple[str, str]] = set()
     for record in held:
         row = _row(record, asked, handled)
-        if record["phase"] == "collision":
-            pair = (_base(record["behavior"]), _base(record.get("by") or ""))
+        if record.phase == "collision":
+            pair = (base(record.behavior), base(record.by))
             row = None if pair in collided else row  # loops collide at every turn
             collided.add(pair)
         if row is not None:
@@ -121,9 +120,9 @@ class Growing:
 
     def __init__(self) -> None:
         self.rows: list[Row] = []
-        self._asked: dict[str, Record] = {}
+        self._asked: dict[str, Entry] = {}
         self._handled: set[int] = set()
-        self._ignored: dict[int, Record] = {}
+        self._ignored: dict[int, Entry] = {}
         """Events that nobody has minded yet, by their serial numbers."""
         self._collided: set[tuple[str, str]] = set()
         self._units: set[str] = set()
@@ -131,24 +130,24 @@ class Growing:
 
     def add(self, records: Iterable[Record]) -> list[Row]:
         """Take in the records of an instant, times in seconds; gives the rows they make."""
-        held = list(records)
+        held = [Entry(record) for record in records]
         before = len(self.rows)
         for record in held:
-            if record.get("cause"):
-                self._handled.add(record["cause"])
-            if record["phase"] == "request":
-                self._asked[record["behavior"]] = record
+            if record.cause:
+                self._handled.add(record.cause)
+            if record.phase == "request":
+                self._asked[record.behavior] = record
         minded = [self._ignored.pop(one) for one in sorted(self._handled & self._ignored.keys())]
         for record in (*minded, *held):
             self._add(record)
         return self.rows[before:]
 
-    def _add(self, record: Record) -> None:
-        if record["phase"] == "event" and record["actor"] == "robot" and "serial" in record:
-            if record["serial"] not in self._handled:
-                self._ignored[record["serial"]] = record
-        elif record["phase"] == "collision":
-            pair = (_base(record["behavior"]), _base(record.get("by") or ""))
+    def _add(self, record: Entry) -> None:
+        if record.phase == "event" and record.actor == "robot" and record.serial is not None:
+            if record.serial not in self._handled:
+                self._ignored[record.serial] = record
+        elif record.phase == "collision":
+            pair = (base(record.behavior), base(record.by))
             if pair in self._collided:
                 return
             self._collided.add(pair)
@@ -161,115 +160,111 @@ class Growing:
             elif self._units:
                 row.bracket = "|"
             self.rows.append(row)
-        if record["phase"] in ("end", "cancel", "fail", "interrupt"):
-            self._units.discard(record.get("behavior") or "")
+        if record.phase in ("end", "cancel", "fail", "interrupt"):
+            self._units.discard(record.behavior)
 
 
-def _base(behavior: str) -> str:
-    return behavior.partition(".")[0]
-
-
-def _row(record: Record, asked: dict[str, Record], handled: set[int]) -> Row | None:
-    match record["phase"]:
+def _row(record: Entry, asked: dict[str, Entry], handled: set[int]) -> Row | None:
+    match record.phase:
         case "start":
             return _start_row(record, asked)
-        case "end" if record.get("goal") and record.get("outcome") != "again":
+        case "end" if record.goal and record.outcome != "again":
             return _goal_row(record, asked)
         case "event":
             return _event_row(record, handled)
         case "fetched":
             return _fetched_row(record)
         case "transferred":
-            return _call_row(record, record["data"]["uri"], record["outcome"])
-        case "send" if "transfer" in record["data"]:
+            return _call_row(record, record.data["uri"], record.outcome)
+        case "send" if "transfer" in record.data:
             return _transfer_row(record)
         case "note":
-            letter = "U" if record["actor"] == "user" else "E"
-            return Row(record["time"], letter, "", record["text"], kind="note")
-        case "load" | "unload" if record["actor"] == "environment":
+            letter = "U" if record.actor == "user" else "E"
+            return Row(record.time, letter, "", record.text, kind="note")
+        case "load" | "unload" if record.actor == "environment":
             return _place_row(record)
         case "interrupt":
-            request = asked.get(record["behavior"], record)
-            what = describe(record["command"], record.get("text"), request.get("args"))
-            what = "the unit" if record["command"] == "iu" else what
+            request = asked.get(record.behavior, record)
+            what = describe(record.command, record.text, request.args)
+            what = "the unit" if record.command == "iu" else what
             return _plain(record, f"breaks off {what}", "interrupt")
-        case "load" if record["actor"] == "mediator":
-            return Row(record["time"], "R", record["app"], f"starts {record['app']}", kind="load")
-        case "unload" if record["actor"] == "mediator":
-            return _plain(record, f"ends {record['app']}: {record.get('outcome', '')}", "unload")
+        case "load" if record.actor == "mediator":
+            return Row(record.time, "R", record.app, f"starts {record.app}", kind="load")
+        case "unload" if record.actor == "mediator":
+            return _plain(record, f"ends {record.app}: {record.outcome}", "unload")
         case "fail":
-            title = describe(record.get("command") or "iu", None, None)
+            title = describe(record.command or "iu", None, None)
             title = "the unit" if title == "Iu" else title
-            what = f"{title} fails: {record.get('message') or record.get('event')}"
+            what = f"{title} fails: {record.message or record.event}"
             return _plain(record, what, "fail", event=True)
         case "emergency":
-            what = "the emergency stop is " + str(record["outcome"])
-            return Row(record["time"], "E", "", what, event=True, kind="emergency")
+            what = "the emergency stop is " + str(record.outcome)
+            return Row(record.time, "E", "", what, event=True, kind="emergency")
         case "collision":
-            what = f"{record.get('command')} loses the {record.get('device')}"
+            what = f"{record.command} loses the {record.device}"
             return _plain(record, what, "collision")
         case "starve":
-            request = asked.get(record["behavior"].partition(".")[0], record)
-            what = describe(request.get("command") or "", request.get("text"), request.get("args"))
+            request = asked.get(base(record.behavior), record)
+            what = describe(request.command, request.text, request.args)
             return _plain(record, f"still waits after {_waited(record)}: {what}", "starve")
         case "log":
-            return _plain(record, f"log: {record['message']}", "log")
+            return _plain(record, f"log: {record.message}", "log")
     return None
 
 
-def _waited(record: Record) -> str:
+def _waited(record: Entry) -> str:
     """How long an AB has waited: so many loops of another (E4), or seconds."""
-    if record.get("loop"):
-        return counted(record["loop"], "loop")
-    return f"{(record.get('data') or {}).get('waited', 0):g} s"
+    if record.loop:
+        return counted(record.loop, "loop")
+    return f"{record.data.get('waited', 0):g} s"
 
 
-def _place_row(record: Record) -> Row | None:
+def _place_row(record: Entry) -> Row | None:
     """The robot comes to where an application is offered, or goes away from there."""
-    place = (record.get("data") or {}).get("place")
+    place = record.data.get("place")
     if not place:
         return None
-    verb = "enters" if record["phase"] == "load" else "leaves"
-    return Row(record["time"], "R", "", f"{verb} {place}", kind=verb)
+    verb = "enters" if record.phase == "load" else "leaves"
+    return Row(record.time, "R", "", f"{verb} {place}", kind=verb)
 
 
-def _plain(record: Record, what: str, kind: str, event: bool = False) -> Row:
+def _plain(record: Entry, what: str, kind: str, event: bool = False) -> Row:
     return Row(
-        record["time"],
+        record.time,
         "R",
-        record.get("app") or "",
+        record.app,
         what,
         event=event,
         kind=kind,
-        rule=record.get("rule") or "",
-        behavior=record.get("behavior") or "",
-        source=record.get("source") or "",
+        rule=record.rule,
+        behavior=record.behavior,
+        source=record.source,
     )
 
 
-def _start_row(record: Record, asked: dict[str, Record]) -> Row | None:
-    command, loop = record["command"], record["behavior"].partition(".")[2]
-    resumed = bool(record.get("resumed"))
+def _start_row(record: Entry, asked: dict[str, Entry]) -> Row | None:
+    command, loop = record.command, record.behavior.partition(".")[2]
+    resumed = bool(record.resumed)
     if command in SILENT or (loop not in ("", "1") and not resumed):
         return None
-    request = asked.get(record["behavior"].partition(".")[0], record)
-    what = describe(command, record.get("text"), request.get("args"), request.get("extra"))
-    if resumed and (record.get("data") or {}).get("mark"):
-        what += f" from the mark {record['data']['mark']}"
-    if request.get("inserted"):
-        what += f" [inserted, {request['inserted']}]"
+    request = asked.get(base(record.behavior), record)
+    what = describe(command, record.text, request.args, request.extra)
+    if resumed and record.data.get("mark"):
+        what += f" from the mark {record.data['mark']}"
+    if request.inserted:
+        what += f" [inserted, {request.inserted}]"
     return Row(
-        record["time"],
+        record.time,
         "R",
-        record["app"],
+        record.app,
         f"resumes {what}" if resumed else what,
         star=bool(loop),
-        unit=record.get("unit") or "",
+        unit=record.unit,
         resumed=resumed,
-        rule=record.get("rule") or "",
+        rule=record.rule,
         kind=command,
-        behavior=record["behavior"],
-        source=request.get("source") or "",
+        behavior=record.behavior,
+        source=request.source,
     )
 
 
@@ -305,45 +300,45 @@ def _value(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _goal_row(record: Record, asked: dict[str, Record]) -> Row:
-    request = asked.get(record["behavior"].partition(".")[0], record)
-    args = request.get("args") or {}
-    if record["command"] == "active-sensing-human":
+def _goal_row(record: Entry, asked: dict[str, Entry]) -> Row:
+    request = asked.get(base(record.behavior), record)
+    args = request.args
+    if record.command == "active-sensing-human":
         what = "finds the user"
     elif "to" in args:
         what = f"reaches {args['to']}"
     else:
-        what = f"reaches the goal of {describe(record['command'], None, args)}"
+        what = f"reaches the goal of {describe(record.command, None, args)}"
     return Row(
-        record["time"],
+        record.time,
         "R",
-        record["app"],
+        record.app,
         what,
         event=True,
-        kind=f"goal {record['command']}",
-        behavior=record["behavior"],
+        kind=f"goal {record.command}",
+        behavior=record.behavior,
     )
 
 
-def _fetched_row(record: Record) -> Row:
+def _fetched_row(record: Entry) -> Row:
     """The answer to what an application has asked a URI for."""
-    data = record["data"]
+    data = record.data
     what = f"fails: {data['problem']}" if data.get("problem") else "answers"
-    return Row(record["time"], "E", record["app"], f"{data['uri']} {what}", event=True)
+    return Row(record.time, "E", record.app, f"{data['uri']} {what}", event=True)
 
 
-def _transfer_row(record: Record) -> Row:
+def _transfer_row(record: Entry) -> Row:
     """An application calls somebody, or ends its call."""
-    data = record["data"]
+    data = record.data
     if data["transfer"] == "over":
         return _plain(record, f"ends the call to {data['to']}: {data['outcome']}", "call")
     return _plain(record, f"transfers to {data['to']}", "call")
 
 
-def _call_row(record: Record, uri: str, outcome: str) -> Row:
+def _call_row(record: Entry, uri: str, outcome: str) -> Row:
     """What becomes of a call."""
     what = CALLS.get(outcome, f"fails: {outcome}")
-    return Row(record["time"], "E", record["app"], f"{uri} {what}", event=True, kind="call")
+    return Row(record.time, "E", record.app, f"{uri} {what}", event=True, kind="call")
 
 
 def _heard(text: str, data: Record) -> str:
@@ -359,19 +354,19 @@ def _heard(text: str, data: Record) -> str:
     return f"{said} (confidence {data['confidence']}{others})"
 
 
-def _event_row(record: Record, handled: set[int]) -> Row | None:
-    name, data = record["event"], record.get("data") or {}
+def _event_row(record: Entry, handled: set[int]) -> Row | None:
+    name, data = record.event, record.data
     if name == "speech":
-        return Row(record["time"], "U", "", _heard(record["text"], data), kind="speech")
-    if record["actor"] == "robot" and record.get("serial") not in handled:
+        return Row(record.time, "U", "", _heard(record.text, data), kind="speech")
+    if record.actor == "robot" and record.serial not in handled:
         return None  # the camera sees the human, and nobody minds
-    if name == "human.found" and record["actor"] == "robot":
+    if name == "human.found" and record.actor == "robot":
         return (
             None
             if data.get("sensed")
-            else Row(record["time"], "R", "", "sees the user", event=True, kind=name)
+            else Row(record.time, "R", "", "sees the user", event=True, kind=name)
         )
-    letter = {"user": "U", "robot": "R"}.get(record["actor"], "E")
+    letter = {"user": "U", "robot": "R"}.get(record.actor, "E")
     if name.startswith("touch."):
         what = f"touches the robot's {data.get('sensor', name[6:])}"
     elif name == "message":
@@ -384,7 +379,7 @@ def _event_row(record: Record, handled: set[int]) -> Row | None:
     else:
         details = ", ".join(str(value) for value in data.values())
         what = name + (f" ({details})" if details else "")
-    return Row(record["time"], letter, record.get("app") or "", what, event=True, kind=name)
+    return Row(record.time, letter, record.app, what, event=True, kind=name)
 
 
 def _bracket(rows: list[Row], ends: dict[str, float]) -> None:

@@ -1,0 +1,242 @@
+"""What a run consists of: behaviors and their spells, streams, states, holds, floor. In seconds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from prima.transcript.criteria import Criteria
+from prima.transcript.record import Entry
+
+OPEN = 1 << 62
+"""Says of a span that it has not ended with the transcript."""
+
+
+def base(name: str) -> str:
+    """An AB's name without the number of its loop."""
+    return name.partition(".")[0]
+
+
+@dataclass(slots=True)
+class Span:
+    """Something that lasts; one that is open ends with the transcript."""
+
+    begin: float
+    end: float = -1.0
+    closed: int = OPEN
+    """The number of the record with which it ended: in this order spans are over."""
+
+    def close(self, now: float, number: int) -> None:
+        """End it."""
+        self.end, self.closed = now, number
+
+    @property
+    def lasts(self) -> bool:
+        """Whether it takes time, or has not ended."""
+        return self.closed == OPEN or self.end > self.begin
+
+
+@dataclass(slots=True)
+class Behavior:
+    """An Atomic Behavior: what was asked, and how it is."""
+
+    name: str
+    asked: Entry
+    """Its request; without one, its first start."""
+    requested: bool
+    state: str = "waiting"
+    began: float | None = None
+    last: float = 0.0
+    """When the transcript mentions it last."""
+    spell: Spell | None = None
+    """The spell that has not ended, or waits for its next loop."""
+    broken: Saying | None = None
+    """What it was saying when it was interrupted."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Spell(Span):
+    """An AB from a start to an end; loops without a gap between them are one spell."""
+
+    behavior: Behavior
+    start: Entry
+    """The record of its first start."""
+    cuts: list[float] = field(default_factory=list)
+    """Where one loop ends and the next begins."""
+    outcome: str = ""
+    by: str = ""
+    parts: list[Spell] = field(default_factory=list)
+    """What a unit consists of."""
+    paused: bool = False
+    """Whether its last loop has ended, and the next has not begun."""
+    uses: dict[str, Use] = field(default_factory=dict)
+    saying: Saying | None = None
+
+    @property
+    def unit(self) -> bool:
+        """Whether it is of an Information Unit."""
+        return self.start.command == "iu"
+
+
+@dataclass(slots=True, kw_only=True)
+class Use(Span):
+    """A device that a spell has."""
+
+    device: str
+    spell: Spell
+    outcome: str = ""
+    by: str = ""
+
+
+@dataclass(slots=True, kw_only=True)
+class Saying(Span):
+    """What a spell says, until it listens or is over; ``heard`` if it was broken off."""
+
+    spell: Spell
+    outcome: str = ""
+    heard: str = ""
+
+
+@dataclass(slots=True, kw_only=True)
+class Hold(Span):
+    """A waiting AB is held back by a rule."""
+
+    name: str
+    app: str
+    by: str
+    rule: str
+
+
+@dataclass(slots=True, kw_only=True)
+class Floor(Span):
+    """The stack of streams on the floor, the holder last; empty where nobody has it."""
+
+    stack: list[str]
+    rule: str
+
+
+@dataclass(slots=True, kw_only=True)
+class State(Span):
+    """A stream is ``active`` or ``suspended``."""
+
+    tree: str
+    app: str
+    state: str
+    rule: str = ""
+    by: str = ""
+
+
+@dataclass(slots=True, kw_only=True)
+class Life(Span):
+    """A stream from its first request to its end."""
+
+    tree: str
+    app: str
+    windows: list[float] = field(default_factory=list)
+    """When windows open or close."""
+
+
+@dataclass(slots=True)
+class Piece:
+    """Something of a stream: it ``runs``, is ``away`` (suspended, then resumed) or ``broken``.
+
+    It is broken where another application has come in by no reaction; ``by`` says for whom.
+    """
+
+    begin: float
+    end: float
+    kind: str
+    by: str = ""
+    rule: str = ""
+
+
+@dataclass(slots=True)
+class Stream:
+    """A Communication Stream with its pieces."""
+
+    name: str
+    asked: Entry
+    """Its first request."""
+    app: str
+    begin: float
+    end: float = -1.0
+    ended: bool = False
+    pieces: list[Piece] = field(default_factory=list)
+    running: set[str] = field(default_factory=set)
+    since: float = 0.0
+    """When the first of what runs began."""
+    paused: float | None = None
+    """When the last of what ran ended."""
+
+    away: Piece | None = None
+    """Since when it is suspended, if it is."""
+
+    def put(self, piece: Piece) -> None:
+        """Add a piece; what runs on without a gap is one."""
+        last = self.pieces[-1] if self.pieces else None
+        if last and piece.kind == last.kind == "runs" and last.end == piece.begin:
+            last.end = piece.end
+        elif piece.end > piece.begin or piece.kind == "broken":
+            self.pieces.append(piece)
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """An application's first start because of an event."""
+
+    event: Entry
+    start: Entry
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """All that a transcript tells of its run."""
+
+    entries: list[Entry]
+    end: float
+    apps: list[str]
+    """The applications as they were loaded."""
+    behaviors: dict[str, Behavior]
+    spells: list[Spell]
+    uses: list[Use]
+    sayings: list[Saying]
+    streams: dict[str, Stream]
+    lives: list[Life]
+    states: list[State]
+    floors: list[Floor]
+    holds: list[Hold]
+    reactions: list[Reaction]
+    events: dict[int, Entry]
+    """Events by their serial numbers."""
+    about: dict[str, list[tuple[int, Entry]]]
+    """What says when an AB came, by its name, with the number of each record."""
+    phases: dict[str, list[Entry]]
+    criteria: Criteria
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """What the first record tells of the run; empty if it is not the run's."""
+        first = self.entries[0] if self.entries else None
+        return first.data if first is not None and first.phase == "run" else {}
+
+    @property
+    def languages(self) -> dict[str, str]:
+        """The languages of applications, as far as the transcript tells."""
+        told = {one.app: one.data.get("lang") for one in self.started}
+        return {app: lang for app, lang in told.items() if isinstance(lang, str)}
+
+    @property
+    def started(self) -> list[Entry]:
+        """The records of applications that the mediator has started."""
+        return [one for one in self.of("load") if one.actor == "mediator"]
+
+    def of(self, phase: str) -> list[Entry]:
+        """The records of a phase."""
+        return self.phases.get(phase, [])
+
+    def asked(self, name: str) -> Entry | None:
+        """What was requested under an AB's name, if the transcript tells."""
+        found = self.behaviors.get(base(name))
+        return found.asked if found is not None and found.requested else None
