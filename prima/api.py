@@ -183,7 +183,7 @@ def rehearse(
     except UsageError as error:
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
-        raise UsageError(" ".join(problem))
+        raise UsageError(f"{problem[0]} {problem[1].text}")
     if patience is None:
         patience = cast.scenario.patience
     web = fetcher(list(hosts), len(cast.documents))

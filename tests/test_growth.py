@@ -15,7 +15,8 @@ from bench.large import FAMILIES, Family
 from prima import loading
 from prima.certificate import certificates
 from prima.checks.ignores import Ignores
-from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses, in_order
+from prima.errors import Place, Problem, did_you_mean, few_guesses, in_order
+from prima.errors.guesses import MANY_WORDS
 from prima.interpreter.reader import read_document
 from prima.lsp import naming
 from prima.lsp.complete import complete
@@ -86,7 +87,7 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
         for problem in spots(
             desk, path, [one for some in check(desk, path).values() for one in some]
         ):
-            fixes(page, problem)
+            fixes(page.lines, problem.problem)
         for offset in (text.find('"', len(text) // 2) + 1, text.find("<", len(text) // 2) + 2):
             hover(desk, path, offset)
             complete(desk, path, offset)

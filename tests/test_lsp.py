@@ -751,7 +751,7 @@ def test_nothing_is_done_about_a_name_that_is_cut() -> None:
     path = next(iter(desk.open))
     (found,) = spots(desk, path, check(desk, path)[path])
     assert found.problem.code == "undeclared-variable" and "[...]" in found.problem.remedy
-    assert fixes(desk.open[path].page, found) == []
+    assert fixes(desk.open[path].page.lines, found.problem) == []
 
 
 # Robustness --------------------------------------------------------------------------------
@@ -827,8 +827,8 @@ def everything(desk: Desk, path: Path, offset: int) -> None:
     links(desk, path)
     for one in spots(desk, path, check(desk, path)[path]):
         assert 0 <= one.start <= one.end <= len(page.text)
-        for fix in fixes(page, one):
-            assert all(0 <= c.start <= c.end <= len(page.text) for c in fix.changes)
+        for _, changes in fixes(page.lines, one.problem):
+            assert all(0 <= c.start <= c.end <= len(page.text) for c in changes)
 
 
 SAMPLES = [

@@ -44,7 +44,7 @@ def test_a_mistake_is_told_once_in_its_place_with_a_remedy(name: str) -> None:
     expected = EXPECTED[name]
     found = problems_of(MISTAKES / name)
     assert len(found) == 1, found
-    place, _, code, message, remedy = found[0]
+    place, (_, code, message, remedy) = found[0].place, found[0].sentence
     assert f"{place.line}:{place.column} {code}" == expected["at"]
     assert Path(place.file) == MISTAKES / expected.get("in", name)
     line = Path(place.file).read_text(encoding="utf-8").split("\n")[place.line - 1]

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from prima.errors import Problem, Severity
+from prima.errors.problems import Problem, Severity
 from prima.errors.visible import visible
 
 WIDEST = 100
@@ -23,7 +23,7 @@ Lines = Callable[[str], list[str]]
 
 def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
     """A problem with its source line and a caret under what is wrong."""
-    place, severity, code, message, remedy = problem
+    place, (severity, code, message, remedy) = problem.place, problem.sentence
 
     def paint(text: str, style: str) -> str:
         return f"\033[{style}m{text}\033[0m" if colour else text

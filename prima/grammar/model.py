@@ -61,6 +61,8 @@ class Reference:
     where: Where
     media: str = ""
     rule: Rule | None = None
+    lead: int = 0
+    """Characters at that place before the URI."""
 
 
 @dataclass(slots=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from prima.errors import Problem, parted
+from prima.errors import Hint, Problem
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -65,7 +65,8 @@ from prima.language.commands import (
     missing_argument,
     too_long,
 )
-from prima.language.values import XML_SPACE, nearest, outside, read_value, within
+from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.script.evaluation import SCOPES
@@ -109,7 +110,7 @@ class Builder:
     # Reading attributes -----------------------------------------------------
 
     def problem(
-        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+        self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
     ) -> None:
         """Note a problem at an element or at the value of one of its attributes."""
         place = node.attribute_place(attribute) if attribute in node.attributes else node.place
@@ -133,7 +134,8 @@ class Builder:
         """Note an attribute's number that is not within the bounds of what it says."""
         if isinstance(value, int | float) and not within(float(value), item.low, item.high):
             message = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
-            remedy = nearest(item.kind, float(value), item.low, item.high)
+            spans = value_span(node, name)
+            remedy = nearest(item.kind, float(value), item.low, item.high, *spans)
             self.problem(node, "out-of-range", message, remedy, name)
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
@@ -348,9 +350,9 @@ class Builder:
                 item, text = PROPERTIES[name], child.get("value")
                 try:
                     found[name] = value = read_value(item.kind, text)
-                except ValueError as error:
-                    wrong, remedy = parted(str(error))
-                    self.problem(child, "bad-value", f'{name} "{text}" {wrong}', remedy, "value")
+                except BadValue as error:
+                    message = f'{name} "{text}" {error.wrong}'
+                    self.problem(child, "bad-value", message, error.remedy, "value")
                     continue
                 self.bounded(child, "value", item, value)
         return found
@@ -669,11 +671,11 @@ class Builder:
             try:
                 check_argument(bare, argument, text)
                 args[bare] = text  # the mediator reads it, as it reads what an expression gives
-            except ValueError as error:
-                if "out of range" in str(error):
-                    value = float(read_value(argument.kind, text))
-                    remedy = nearest(argument.kind, value, argument.low, argument.high)
-                    self.problem(node, "out-of-range", str(error), remedy, key)
+            except BadValue as error:
+                if error.beyond:
+                    value, spans = float(read_value(argument.kind, text)), value_span(node, key)
+                    remedy = nearest(argument.kind, value, argument.low, argument.high, *spans)
+                    self.problem(node, "out-of-range", error.wrong, remedy, key)
         return args
 
     def check_complete(

@@ -10,7 +10,7 @@ from functools import cached_property
 from itertools import chain
 from typing import Any
 
-from prima.errors import Place, Problem, Severity, did_you_mean, few, parted
+from prima.errors import Hint, Place, Problem, Severity, Span, few, suggestion
 from prima.interpreter.elements import (
     Act,
     Acts,
@@ -65,7 +65,8 @@ from prima.language.commands import (
     check_argument,
     missing_argument,
 )
-from prima.language.values import nearest, read_value
+from prima.language.values import BadValue, nearest, read_value
+from prima.markup.spans import Declarations, instead, value_span
 from prima.markup.tree import Node
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
@@ -135,10 +136,8 @@ def _cannot(
     """A Command that a robot lacks; ``heard`` are the events that the document handles."""
     place = command.node.place
     if command.type not in TABLE_4_2:
-        message, hint = (
-            f'This robot has no Command "{command.type}".',
-            did_you_mean(command.type, commands),
-        )
+        message = f'This robot has no Command "{command.type}".'
+        hint = suggestion(command.type, commands, *value_span(command.node, "type"))
         return Problem(place, "error", "unsupported-command", message, hint)
     lacking = sorted(TABLE_4_2[command.type].devices - devices) if devices else []
     lacks = f": it lacks {', '.join(lacking)}" if lacking else ""
@@ -147,8 +146,8 @@ def _cannot(
     if row is not None:
         message += f" With the extension x6 {row.substitute} takes its place."
     handled = any(takes(name, event) for name in heard)
-    hint = "" if handled else f'Handle it: <on event="{event}">.'
-    return Problem(place, "warning", "unsupported-command", message, hint)
+    remedy = "" if handled else f'Handle it: <on event="{event}">.'
+    return Problem(place, "warning", "unsupported-command", message, remedy)
 
 
 def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
@@ -157,7 +156,10 @@ def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
     for name, _ in command.extra:
         if name not in row.extra and name not in row.arguments:
             message = f'This robot\'s {command.type} has no additional argument "{name}".'
-            hint = did_you_mean(name, row.extra | set(row.arguments))
+            known = row.extra | set(row.arguments)
+            params = [one for one in command.node.all("param") if one.get("name") == name]
+            spans = [span for one in params[:1] for span in value_span(one, "name")]
+            hint = suggestion(name, known, *spans)
             yield Problem(place, "error", "no-such-argument", message, hint)
     if command.node.tag == "command":  # arguments of others are attributes, looked at already
         given = dict(command.extra)
@@ -177,7 +179,7 @@ def given_to(
     """
     for name, value in given.items():
         if name in row.arguments and isinstance(value, str):
-            yield from _argument(_given_place(node, name), name, row.arguments[name], value)
+            yield from _argument(node, name, row.arguments[name], value)
     if missing := missing_argument(row, given):
         needed = [name for name, one in row.arguments.items() if one.required or one.choice]
         lacking = next(name for name in needed if name not in given)
@@ -190,25 +192,20 @@ def given_to(
         yield Problem(node.place, "error", "stray-text", f"{row.name} cannot say anything.", remedy)
 
 
-def _argument(place: Place, name: str, argument: Argument, text: str) -> Iterator[Problem]:
-    """What is wrong with a motion argument's value."""
+def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[Problem]:
+    """What is wrong with a motion argument's value: of a param, or of the element's own attribute."""
+    param = next((one for one in node.all("param") if one.get("name") == name), None)
+    holder, attribute = (node, name) if param is None else (param, "value")
+    place = holder.attribute_place(attribute) if attribute in holder.attributes else holder.place
     try:
         check_argument(name, argument, text)
-    except ValueError as error:
-        code = "bad-value"
-        wrong, remedy = parted(str(error))
-        if "out of range" in wrong:
-            code, value = "out-of-range", float(read_value(argument.kind, text))
-            remedy = nearest(argument.kind, value, argument.low, argument.high)
-        yield Problem(place, "error", code, wrong, remedy)
-
-
-def _given_place(node: Node, name: str) -> Place:
-    """Where the value of an argument stands: of a param, or of the element's own attribute."""
-    param = next((one for one in node.all("param") if one.get("name") == name), None)
-    if param is None:
-        return node.attribute_place(name)
-    return param.attribute_place("value") if "value" in param.attributes else param.place
+    except BadValue as error:
+        if not error.beyond:
+            yield Problem(place, "error", "bad-value", error.wrong, error.remedy)
+            return
+        value, spans = float(read_value(argument.kind, text)), value_span(holder, attribute)
+        hint = nearest(argument.kind, value, argument.low, argument.high, *spans)
+        yield Problem(place, "error", "out-of-range", error.wrong, hint)
 
 
 def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
@@ -337,7 +334,7 @@ class Checker:
         node: Node,
         code: str,
         message: str,
-        remedy: str = "",
+        remedy: str | Hint = "",
         attribute: str = "",
         severity: Severity = "error",
     ) -> None:
@@ -367,7 +364,8 @@ class Checker:
         forms = self.document.forms
         if name not in forms and "#" in node.get(attribute):  # else told already
             message = f'There is no form "{name}" to go to.'
-            self.note(node, "no-such-form", message, did_you_mean(name, forms), attribute)
+            hint = suggestion(name, forms, *value_span(node, attribute, name))
+            self.note(node, "no-such-form", message, hint, attribute)
 
     def _targets(self) -> None:
         for form, act in self.acts.of(Goto):
@@ -388,10 +386,11 @@ class Checker:
             names = self._item_names[form.id if form else None]
             if act.item not in names:
                 message = f'There is no form item "{act.item}" to go to.'
-                remedy = did_you_mean(act.item, names)
+                hint = suggestion(act.item, names, *value_span(act.node, "nextitem"))
                 if act.item in self.document.forms:
                     remedy = f'It is a form: write next="#{act.item}".'
-                self.note(act.node, "no-such-item", message, remedy, "nextitem")
+                    hint = instead(remedy, act.node, "nextitem", "next", f"#{act.item}")
+                self.note(act.node, "no-such-item", message, hint, "nextitem")
 
     @cached_property
     def _item_names(self) -> dict[str | None, set[str]]:
@@ -587,8 +586,9 @@ class Checker:
         for name in names:
             if name not in known:
                 message = f'There is no {what} "{name}".'
-                remedy = did_you_mean(name, known.written)
-                self.note(holder.node, "no-such-item", message, remedy, "namelist")
+                spans = value_span(holder.node, "namelist", name)
+                hint = suggestion(name, known.written, *spans)
+                self.note(holder.node, "no-such-item", message, hint, "namelist")
 
     def _gather(self) -> None:
         """Names by the form that declares them, found in one go."""
@@ -679,7 +679,9 @@ class Checker:
             head, dot, rest = assign.name.partition(".")
             name = rest.partition(".")[0] if dot and head in SCOPED else head
             if name not in names:
-                self._undeclared(assign.node.attribute_place("name"), name, names)
+                at = assign.node.attribute_place("name")
+                at = at._replace(column=at.column + len(head) + 1) if name != head else at
+                self._undeclared(assign.node, at, name, names)
         listed: list[tuple[Form | None, Clear | Return]] = [
             *self.acts.of(Clear),
             *self.acts.of(Return),
@@ -688,26 +690,43 @@ class Checker:
             names = self.known_in(form)
             for name in listing.names:
                 if name not in names:
-                    self._undeclared(listing.node.attribute_place("namelist"), name, names)
+                    at = listing.node.attribute_place("namelist")
+                    spans = value_span(listing.node, "namelist", name)
+                    self._undeclared(listing.node, at, name, names, spans=spans)
 
     def _undeclared(
         self,
+        node: Node,
         place: Place,
         name: str,
         known: Known,
         bare: bool = False,
         called: bool = False,
+        spans: Sequence[Span] = (),
     ) -> None:
-        remedy = ABSENT.get(name) or did_you_mean(name, chain(VARIABLES, known.written()))
+        hint = self._meant(place, name, known, spans)
         if called:
             message = f'There is no function "{name}".'
-            remedy = remedy or "Define it in a <script>."
+            hint = hint or Hint("Define it in a <script>.")
         else:
             message = f'The variable "{name}" is not declared.'
-            remedy = remedy or f'Declare it: <var name="{name}"/>.'
+            declare = f'Declare it: <var name="{name}"/>.'
+            hint = hint or self._declarations.hint(declare, name, node)
         if bare and name not in ABSENT:
-            remedy = f"{remedy} For the text itself write '{name}'."
-        self.problems.append(Problem(place, "error", "undeclared-variable", message, remedy))
+            hint = hint._replace(text=f"{hint.text} For the text itself write '{name}'.")
+        self.problems.append(Problem(place, "error", "undeclared-variable", message, hint))
+
+    @cached_property
+    def _declarations(self) -> Declarations:
+        return Declarations(self.document.node)
+
+    @staticmethod
+    def _meant(place: Place, name: str, known: Known, spans: Sequence[Span] = ()) -> Hint:
+        """What was most likely meant by a name that nothing declares."""
+        if name in ABSENT:
+            return Hint(ABSENT[name])
+        every = chain(VARIABLES, known.written())
+        return suggestion(name, every, *(spans or [Span.of(place, name)]))
 
     def _expression(self, expr: Expression, known: Known) -> None:
         if compiled(expr.code) is None:
@@ -732,7 +751,7 @@ class Checker:
             if name not in known:
                 bare = expr.code.strip() == name and expr.node.tag != "value"
                 called = CALL.match(expr.code, start + len(name)) is not None
-                self._undeclared(_place_in(expr, start), name, known, bare, called)
+                self._undeclared(expr.node, _place_in(expr, start), name, known, bare, called)
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
                 self._unhandled(_place_in(expr, start), name)
@@ -769,10 +788,8 @@ class Checker:
                 message = f'The script uses "{name}", which nothing declares.'
                 place = _place_in(expr, start)
                 code = "undeclared-variable"
-                near = did_you_mean(name, chain(VARIABLES, known.written()))
-                self.problems.append(
-                    Problem(place, "warning", code, message, ABSENT.get(name) or near)
-                )
+                hint = self._meant(place, name, known)
+                self.problems.append(Problem(place, "warning", code, message, hint))
 
     def _compiles(self, expr: Expression, script: bool = False) -> bool:
         if expr.attribute and expr.attribute not in expr.node.attributes:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.errors import did_you_mean
+from prima.errors import Hint, suggestion
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
         """Notes a problem at an element or the value of one of its attributes."""
 
         def __call__(
-            self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+            self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
         ) -> None:
             """Note it, with what to write instead."""
 
@@ -39,7 +40,7 @@ def read_grammar(note: Note, node: Node) -> Grammar:
         grammar.root = "root"
         grammar.rules["root"] = _expansion(note, node)
     if grammar.root not in grammar.rules:
-        hint = did_you_mean(grammar.root, grammar.rules)
+        hint = suggestion(grammar.root, grammar.rules, *value_span(node, "root"))
         note(node, "no-such-rule", f'There is no rule "{grammar.root}".', hint, "root")
         grammar.rules[grammar.root] = Choice([])
     _check_references(note, node, grammar)
@@ -55,7 +56,7 @@ def _check_references(note: Note, node: Node, grammar: Grammar) -> None:
     for child in node.nodes:
         name = child.get("uri").strip().removeprefix("#")
         if child.tag == "ruleref" and name not in grammar.rules:
-            hint = did_you_mean(name, grammar.rules)
+            hint = suggestion(name, grammar.rules, *value_span(child, "uri", name))
             if "#" in child.get("uri"):  # else told already
                 note(child, "no-such-rule", f'There is no rule "{name}".', hint, "uri")
             grammar.rules[name] = Choice([])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Hint, Problem, Span, one_of, suggestion
 from prima.interpreter.elements import (
     CommandTemplate,
     Document,
@@ -19,6 +19,7 @@ from prima.interpreter.elements import (
 )
 from prima.interpreter.events import event_place, handlers_of
 from prima.interpreter.grammar import fold
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
@@ -62,8 +63,11 @@ def check_sensor(node: Node, event: str, names: Surroundings) -> list[Problem]:
     first, _, sensor = event.partition(".")
     if first != "touch" or not sensor or sensor in names.sensors:
         return []
-    message, remedy = f'The robot has no touch sensor "{sensor}".', nearest(sensor, names.sensors)
-    return [Problem(event_place(node, event), "warning", "no-such-name", message, remedy)]
+    message = f'The robot has no touch sensor "{sensor}".'
+    place = event_place(node, event)
+    last = place._replace(column=place.column + len("touch."))
+    hint = nearest(sensor, names.sensors, Span.of(last, sensor))
+    return [Problem(place, "warning", "no-such-name", message, hint)]
 
 
 def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
@@ -90,14 +94,16 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
     whose = "The robot knows" if what == "gesture" else "The world has"
     message = f'{whose} no {what} "{value}".'
     place = node.attribute_place(name)
-    return [Problem(place, "warning", "no-such-name", message, nearest(value, known))]
+    hint = nearest(value, known, *value_span(node, name))
+    return [Problem(place, "warning", "no-such-name", message, hint)]
 
 
-def nearest(word: str, known: Collection[str]) -> str:
-    """What was probably meant, or what there is."""
-    if hint := did_you_mean(word, known):
+def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:
+    """What was probably meant, or what there is; a fix writes it into some spans."""
+    if hint := suggestion(word, known, *spans):
         return hint
-    return f"There is {one_of(known).replace(' or ', ' and ')}." if 0 < len(known) <= FEW else ""
+    few = 0 < len(known) <= FEW
+    return Hint(f"There is {one_of(known).replace(' or ', ' and ')}." if few else "")
 
 
 def commands_of(document: Document) -> list[CommandTemplate]:

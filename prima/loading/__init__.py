@@ -17,15 +17,18 @@ from typing import TYPE_CHECKING, TypeVar
 from prima.checks.ignores import Ignores
 from prima.errors import (
     DocumentError,
+    Hint,
     Place,
     Problem,
+    Span,
     UsageError,
-    did_you_mean,
     few_guesses,
     in_order,
     listed,
+    meant,
     one_of,
-    parted,
+    replaced,
+    suggestion,
 )
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
@@ -37,6 +40,7 @@ from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
 from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -319,7 +323,9 @@ def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[
                 continue
             message = f'There is no file "{file[:80]}" here: this will be error.badfetch.'
             place = node.attribute_place(name)
-            yield Problem(place, "warning", "no-such-file", message, _nearby(folder / file))
+            spans = value_span(node, name, file.rpartition("/")[2])
+            hint = _nearby(folder / file, *spans)
+            yield Problem(place, "warning", "no-such-file", message, hint)
 
 
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
@@ -606,7 +612,9 @@ class _Reading:
         except UsageError as error:
             message = str(error).removeprefix(f"{target}: ")
             told = f'"{name}" {message}'
-            self.problems.append(Problem(place, "error", "no-such-file", told, _nearby(target)))
+            at = place._replace(column=place.column + len(name) - len(target.name))
+            hint = _nearby(target, Span.of(at, target.name))
+            self.problems.append(Problem(place, "error", "no-such-file", told, hint))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
@@ -713,16 +721,18 @@ class _Reading:
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""
-        from prima.scheduler.policy import policy_named
+        from prima.scheduler.policy import UnknownPolicy, policy_named
 
         place = scenario.node.attribute_place("policy")
         try:
             policy_named(scenario.policy)
-        except UsageError as error:
-            wrong, remedy = parted(f"{error} {FAVOURITE}")
-            self.problems.append(Problem(place, "error", "bad-value", wrong, remedy))
-        if problem := favourite_problem(scenario.policy, self.documents):
-            self.problems.append(Problem(place, "error", "no-such-name", *problem))
+        except UnknownPolicy as error:
+            spans = value_span(scenario.node, "policy", error.word) if error.meant else ()
+            hint = replaced(f"{error.remedy} {FAVOURITE}", error.meant, *spans)
+            self.problems.append(Problem(place, "error", "bad-value", error.wrong, hint))
+        if problem := favourite_problem(scenario.policy, self.documents, scenario.node):
+            wrong, hint = problem
+            self.problems.append(Problem(place, "error", "no-such-name", wrong, hint))
 
 
 def _other_kind(
@@ -744,16 +754,15 @@ def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) ->
     return problem._replace(place=place, message=f'"{name}": {problem.message}')
 
 
-def _nearby(path: Path) -> str:
+def _nearby(path: Path, *spans: Span) -> Hint:
     """The file beside that a name which leads nowhere most likely means: its ending says little."""
     try:
         beside = sorted(islice(path.parent.iterdir(), MOST_BESIDE))
     except (OSError, ValueError):
-        return ""
+        return Hint()
     alike = sorted(beside, key=lambda one: one.suffix == path.suffix)  # the last one counts
     stems = {one.stem: one.name for one in alike if one.name != path.name}
-    meant = stems.get(near(path.stem, stems))
-    return f'Did you mean "{meant}"?' if meant else ""
+    return meant(stems.get(near(path.stem, stems), ""), *spans)
 
 
 MOST_BESIDE = 300
@@ -762,13 +771,16 @@ FAVOURITE = "fixed:APP prefers the application APP."
 """What to write for a policy that prefers one application."""
 
 
-def favourite_problem(policy: str, documents: list[AnyDocument]) -> tuple[str, str] | None:
+def favourite_problem(
+    policy: str, documents: list[AnyDocument], node: Node | None = None
+) -> tuple[str, Hint] | None:
     """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
     kind, _, first = policy.partition(":")
     names = [document.id for document in documents]
     if kind != "fixed" or not first or first in names:
         return None
-    hint = did_you_mean(first, names) or f"Write {one_of(names)}."
+    spans = value_span(node, "policy", first) if node is not None else ()
+    hint = suggestion(first, names, *spans) or Hint(f"Write {one_of(names)}.")
     return f'The policy "{policy}" names an application that is not in the scenario.', hint
 
 

@@ -5,11 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of, parted
-from prima.language.values import KINDS, XML_SPACE, read_value
-from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
+from prima.errors import (
+    DocumentError,
+    Hint,
+    Place,
+    Problem,
+    meant,
+    nearest_word,
+    one_of,
+    replaced,
+    suggestion,
+)
+from prima.language.values import KINDS, XML_SPACE, BadValue, read_value
+from prima.markup.slips import TEXTS, meant_value, misplaced_remedy, text_remedy
+from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.vocabulary import Attribute, Element, Instead, Vocabulary
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 
@@ -49,10 +60,11 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     expected = [entry for entry in expected if entry[0] == root.tag] or expected
     wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
     message = f"The root element <{root.tag}> has {found}."
-    near = did_you_mean(root.namespace, [namespace for _, namespace in expected])
-    remedy = near or f"Begin with {wanted}."
+    spaces = [namespace for _, namespace in expected]
+    near = suggestion(root.namespace, spaces, *value_span(root, "xmlns"))
+    hint = near or f"Begin with {wanted}."
     place = root.source.place(root.index, "xmlns", value=True)
-    raise DocumentError([Problem(place, "error", "wrong-namespace", message, remedy)])
+    raise DocumentError([Problem(place, "error", "wrong-namespace", message, hint)])
 
 
 def kind_of(root: Node) -> str:
@@ -146,12 +158,23 @@ def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
         message = f'<{tag}> is of another namespace, "{child.namespace}".'
         return Problem(child.place, "error", "wrong-namespace", message)
     if tag not in vocabulary.tags:
-        remedy = vocabulary.hints.get(tag) or did_you_mean(tag, vocabulary.children(parent.key))
-        remedy = remedy or did_you_mean(tag, vocabulary.tags)
-        return Problem(child.place, "error", "unknown-element", f"There is no <{tag}>.", remedy)
+        hint = _known_instead(child, parent, vocabulary)
+        return Problem(child.place, "error", "unknown-element", f"There is no <{tag}>.", hint)
     message = f"<{tag}> cannot stand in <{parent.tag}>."
     remedy = misplaced_remedy(tag, parent, vocabulary)
     return Problem(child.place, "error", "misplaced-element", message, remedy)
+
+
+def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
+    """The element to write instead of one that the language lacks."""
+    hint = vocabulary.hints.get(child.tag)
+    if isinstance(hint, Instead):
+        return renamed(str(hint), child, hint.tag)
+    if hint:
+        return Hint(hint)
+    inside = vocabulary.children(parent.key)
+    tag = nearest_word(child.tag, inside) or nearest_word(child.tag, vocabulary.tags)
+    return meant(tag, *(name_spans(child) if tag else ()))
 
 
 def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
@@ -190,12 +213,9 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
         if entry is None:
             unknown.append(name)
             continue
-        message = _value_problem(*entry, text)
-        if message:
-            place = node.attribute_place(name)
-            wrong, remedy = parted(message)
-            wrong = f'{name} "{text}" {wrong}'
-            problems.append(Problem(place, "error", "bad-value", wrong, remedy))
+        bad = _value_problem(*entry, text)
+        if bad is not None:
+            problems.append(_bad_value(node, name, bad))
     missing: list[Attribute] = []
     for item in element.attributes:
         if not item.required or item.name in node.attributes:
@@ -207,17 +227,23 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
     for item in missing:
         message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
         value = item.choices[0] if len(item.choices) == 1 else "..."
-        remedy = f'Write {item.name}="{value}".'
+        remedy = added(f'Write {item.name}="{value}".', node, item)
         problems.append(Problem(node.place, "error", "missing-attribute", message, remedy))
+
+
+def _bad_value(node: Node, name: str, bad: BadValue) -> Problem:
+    message = f'{name} "{node.get(name)}" {bad.wrong}'
+    spans = value_span(node, name) if bad.right else ()
+    title = f"Change to {bad.right}" if bad.right.startswith("#") else ""
+    remedy = replaced(bad.remedy, bad.right, *spans, title=title)
+    return Problem(node.attribute_place(name), "error", "bad-value", message, remedy)
 
 
 def _language_problem(node: Node, text: str) -> list[Problem]:
     try:
         read_value("language", text)
-    except ValueError as error:
-        wrong, remedy = parted(f'xml:lang "{text}" {error}')
-        place = node.attribute_place("xml:lang")
-        return [Problem(place, "error", "bad-value", wrong, remedy)]
+    except BadValue as error:
+        return [_bad_value(node, "xml:lang", error)]
     return []
 
 
@@ -226,6 +252,7 @@ def _unknown_attribute(
 ) -> Problem:
     """An attribute that is not known; what is missing and meant by it is told with it."""
     wanted = [item.name for item in missing]
+    remedy: str | Hint = ""
     if name == "xml:lang":
         remedy = "It stands on the root element alone."
     elif name == "lang" and node.index == 0:
@@ -235,16 +262,16 @@ def _unknown_attribute(
         missing[:] = [item for item in missing if item.name != name[:-4]]
     elif name == "next" and "goto" in element.children:
         remedy = f'Put a goto inside: <goto next="{node.get(name)}"/>.'
-    elif near := did_you_mean(name, wanted):
-        remedy = near
-        missing[:] = [item for item in missing if f'"{item.name}"' not in near]
+    elif near := nearest_word(name, wanted):
+        remedy = meant(near, attribute_span(node, name))
+        missing[:] = [item for item in missing if item.name != near]
     elif missing:
         item = missing.pop(0)
         remedy = f'Write {item.name}="...": {item.doc}.'
     elif element.text and name in TEXTS:
         remedy = f"Write the text inside: <{node.tag}>...</{node.tag}>."
     else:
-        remedy = did_you_mean(name, known)
+        remedy = suggestion(name, known, attribute_span(node, name))
     if not remedy:
         remedy = f"It may have {one_of(known)}." if known else "It has no attributes."
     message = f'<{node.tag}> has no attribute "{name}".'
@@ -252,16 +279,17 @@ def _unknown_attribute(
     return Problem(place, "error", "unknown-attribute", message, remedy)
 
 
-def _value_problem(item: Attribute, is_expression: bool, text: str) -> str:
+def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue | None:
     if item.choices and not is_expression:
         if text in item.choices:
-            return ""
-        hint = did_you_mean(text, item.choices) or f"Write {one_of(item.choices)}."
-        return f"is not allowed here. {hint}"
+            return None
+        near = nearest_word(text, item.choices)
+        remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
+        only = item.choices[0] if len(item.choices) == 1 else ""
+        return BadValue("is not allowed here.", remedy, right=near or only)
     try:
         read_value("expression" if is_expression else item.kind, text)
-    except ValueError as error:
-        right = "" if is_expression else meant(item.kind, text)
-        wrong = str(error).partition(". ")[0].rstrip(".")
-        return f'{wrong}. Write "{right}".' if right else str(error)
-    return ""
+    except BadValue as error:
+        right = "" if is_expression else meant_value(item.kind, text)
+        return BadValue(error.wrong, f'Write "{right}".', right=right) if right else error
+    return None

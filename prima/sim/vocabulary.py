@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from prima.language.commands import DEVICES
-from prima.markup.vocabulary import Element, Vocabulary, attribute
+from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 from prima.script.prelude import START
 
 _VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
@@ -94,9 +94,9 @@ WORLD = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("room", "location", "position", "node", "waypoint"), "Write <place>."),
-        **dict.fromkeys(("path", "road", "route", "edge", "link"), "Write <way>."),
-        **dict.fromkeys(("object", "item", "landmark"), "Write <thing>."),
+        **dict.fromkeys(("room", "location", "position", "node", "waypoint"), Instead("place")),
+        **dict.fromkeys(("path", "road", "route", "edge", "link"), Instead("way")),
+        **dict.fromkeys(("object", "item", "landmark"), Instead("thing")),
         **dict.fromkeys(("robot", "person"), "It is the scenario that says who is where."),
     },
 )
@@ -258,10 +258,10 @@ ROBOT = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("sensor", "touch-sensor"), 'Write <touch sensor="..."/>.'),
+        **dict.fromkeys(("sensor", "touch-sensor"), Instead("touch", 'sensor="..."/')),
         **{name: f'Write <device name="{name}"/>.' for name in DEVICES},
-        **dict.fromkeys(("command", "add"), 'Write <adds command="...">.'),
-        "language": 'Write <voice lang="..."/>.',
+        **dict.fromkeys(("command", "add"), Instead("adds", 'command="..."')),
+        "language": Instead("voice", 'lang="..."/'),
     },
 )
 
@@ -619,15 +619,15 @@ SCENARIO = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("user", "human", "visitor"), "Write <person>."),
-        **dict.fromkeys(("app", "fa", "ea", "prima", "vxml"), 'Write <application src="..."/>.'),
+        **dict.fromkeys(("user", "human", "visitor"), Instead("person")),
+        **dict.fromkeys(("app", "fa", "ea", "prima", "vxml"), Instead("application", 'src="..."/')),
         **dict.fromkeys(("speak", "prompt", "says"), "Write <say>: what the user says."),
-        **dict.fromkeys(("tap", "press", "stroke"), 'Write <touch sensor="..."/>.'),
-        **dict.fromkeys(("go", "goto", "move", "topological-move"), 'Write <walk to="..."/>.'),
+        **dict.fromkeys(("tap", "press", "stroke"), Instead("touch", 'sensor="..."/')),
+        **dict.fromkeys(("go", "goto", "move", "topological-move"), Instead("walk", 'to="..."/')),
         **dict.fromkeys(("sleep", "pause", "delay", "after"), 'Write <wait for="3s"/>.'),
         **dict.fromkeys(("on", "at", "if", "then", "catch"), "Write <when>, with its trigger."),
-        **dict.fromkeys(("assert", "expected", "must"), "Write <expect>."),
-        **dict.fromkeys(("forbid", "must-not", "not"), "Write <never>."),
+        **dict.fromkeys(("assert", "expected", "must"), Instead("expect")),
+        **dict.fromkeys(("forbid", "must-not", "not"), Instead("never")),
         "world": 'Name it in the root element: <scenario world="..." robot="...">.',
         "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
         "comment": "Write <note>, or a comment of XML: <!-- ... -->.",

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TypeVar
 
-from prima.errors import Problem, did_you_mean, one_of, parted
+from prima.errors import Problem, one_of, suggestion
 from prima.interpreter.elements import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import TABLE_4_2
-from prima.language.values import milliseconds, read_value
+from prima.language.values import BadValue, milliseconds, read_value
+from prima.markup.spans import attribute_span
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
@@ -224,15 +225,15 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
         if name not in known:
             place = node.attribute_place(name, value=False)
             message = f'<p:{node.tag}> has no attribute "{name}".'
-            hint = did_you_mean(name, known)
+            hint = suggestion(name, known, attribute_span(node, name))
             problems.append(Problem(place, "error", "unknown-attribute", message, hint))
             continue
         try:
             read_value(known[name].kind, text)
-        except ValueError as error:
-            place, (wrong, remedy) = node.attribute_place(name), parted(str(error))
-            message = f'{name} "{text}" {wrong}'
-            problems.append(Problem(place, "error", "bad-value", message, remedy))
+        except BadValue as error:
+            place = node.attribute_place(name)
+            message = f'{name} "{text}" {error.wrong}'
+            problems.append(Problem(place, "error", "bad-value", message, error.remedy))
 
 
 def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from prima.errors import Problem
+from prima.errors import Problem, Span, meant
 from prima.interpreter.events import MOST_GUESSES, STANDARD, beginnings, event_place, slip_of
 from prima.markup.tree import Node
 
@@ -42,7 +42,8 @@ def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
     begins = {name for one in known for name in beginnings(one)}
     strange = [(node, name) for node, name in caught_in(root) if name not in begins]
     for node, name in strange[:MOST_GUESSES]:
-        meant = "" if name.startswith(OPEN) else slip_of(name, known)
-        if meant:
-            message, remedy = f'Nothing raises an event "{name}".', f'Did you mean "{meant}"?'
-            yield Problem(event_place(node, name), "warning", "unknown-event", message, remedy)
+        other = "" if name.startswith(OPEN) else slip_of(name, known)
+        if other:
+            message, place = f'Nothing raises an event "{name}".', event_place(node, name)
+            hint = meant(other, Span.of(place, name))
+            yield Problem(place, "warning", "unknown-event", message, hint)

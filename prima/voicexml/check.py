@@ -10,13 +10,24 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from prima.errors import Place, Problem, did_you_mean, few, one_of
+from prima.errors import (
+    Hint,
+    Place,
+    Problem,
+    few,
+    meant,
+    nearest_word,
+    one_of,
+    replaced,
+    suggestion,
+)
 from prima.interpreter.checks import given_to
 from prima.language.commands import TABLE_4_2, CommandType, excluding_arguments
 from prima.language.values import NUMBER, read_value
-from prima.markup.slips import meant
+from prima.markup.slips import meant_value
+from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Element
+from prima.markup.vocabulary import Element, Instead
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.globals import IDENTIFIER, RESERVED
@@ -47,11 +58,11 @@ from prima.voicexml.vocabulary import (
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 MOST_ALIKE = 5
 """Of problems that say the same, so many are told, each with its place."""
-HABITS = {
-    "speak": "Write <prompt>.",
-    "say": "Write <prompt>.",
-    "on": 'Write <catch event="...">.',
-    "send": "Write <submit>.",
+HABITS: dict[str, str | Instead] = {
+    "speak": Instead("prompt"),
+    "say": Instead("prompt"),
+    "on": Instead("catch", 'event="..."'),
+    "send": Instead("submit"),
     "iu": f'Write <p:iu> around Commands or form items, with xmlns:p="{PRIMA_NAMESPACE}".',
     "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
     "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
@@ -153,15 +164,27 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
 def _misplaced(child: Node, node: Node) -> Problem:
     if child.tag not in VOICEXML.tags:
         message = f"There is no <{child.tag}> in VoiceXML."
-        hint = HABITS.get(child.tag) or did_you_mean(child.tag, VOICEXML.tags)
-        if child.tag in COMMANDS and child.tag not in HABITS:
-            hint = f'It is a Command of PRIMA: write <p:{child.tag}>, with xmlns:p="{PRIMA_NAMESPACE}".'
-        return Problem(child.place, "error", "unknown-element", message, hint)
+        return Problem(child.place, "error", "unknown-element", message, _known_instead(child))
     holder = HOLDERS.get(node.key, f"<{node.tag}>")
     message = f"<{child.tag}> cannot stand in {holder}."
     others = [tag for tag in VOICEXML.parents(child.tag) if tag != node.tag]
     remedy = f"It may stand in {one_of(others)}."
     return Problem(child.place, "error", "misplaced-element", message, remedy)
+
+
+def _known_instead(child: Node) -> Hint:
+    """The element to write instead of one that VoiceXML lacks."""
+    habit = HABITS.get(child.tag)
+    if isinstance(habit, Instead):
+        return renamed(str(habit), child, habit.tag)
+    if habit:
+        return Hint(habit)
+    if child.tag in COMMANDS:
+        return Hint(
+            f'It is a Command of PRIMA: write <p:{child.tag}>, with xmlns:p="{PRIMA_NAMESPACE}".'
+        )
+    tag = nearest_word(child.tag, VOICEXML.tags)
+    return meant(tag, *(name_spans(child) if tag else ()))
 
 
 # Attributes -------------------------------------------------------------------------------
@@ -179,7 +202,8 @@ def _check_attributes(node: Node, entry: Entry, problems: list[Problem]) -> None
     for name in entry.required:
         if name not in node.attributes and node.key != "vxml":  # told already
             message = f'<{node.tag}> needs the attribute "{name}".'
-            problems.append(Problem(node.place, "error", "missing-attribute", message))
+            hint = added("", node, VOICEXML.attributes[node.key][name][0])
+            problems.append(Problem(node.place, "error", "missing-attribute", message, hint))
 
 
 def _capitals(node: Node, name: str) -> Problem:
@@ -191,7 +215,8 @@ def _capitals(node: Node, name: str) -> Problem:
         return _bad_value(node, name, text, kind)
     message = f'{name} "{text}" is read as "{small}".'
     place = node.attribute_place(name)
-    return Problem(place, "warning", "bad-value", message, f'Write "{small}".')
+    hint = replaced(f'Write "{small}".', small, *value_span(node, name))
+    return Problem(place, "warning", "bad-value", message, hint)
 
 
 _REMEDIES = {
@@ -236,15 +261,16 @@ def _reads(kind: str, text: str) -> bool:
 
 def _bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
     message = f'{name} "{text}" is not allowed here.'
-    right = meant("duration", text) if kind == "time" else ""
-    remedy = f'Write "{right}".' if right else _REMEDIES.get(kind, f"Write {one_of(kind.split())}.")
-    return Problem(node.attribute_place(name), "error", "bad-value", message, remedy)
+    hint = Hint(_REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
+    if kind == "time" and (right := meant_value("duration", text)):
+        hint = replaced(f'Write "{right}".', right, *value_span(node, name))
+    return Problem(node.attribute_place(name), "error", "bad-value", message, hint)
 
 
 def _unknown(node: Node, name: str) -> Problem:
     message = f'<{node.tag}> has no attribute "{name}".'
     place = node.attribute_place(name, value=False)
-    hint = did_you_mean(name, ENTRIES[node.key].known)
+    hint = suggestion(name, ENTRIES[node.key].known, attribute_span(node, name))
     return Problem(place, "error", "unknown-attribute", message, hint)
 
 
@@ -302,7 +328,7 @@ def _check_form(form: Node, problems: list[Problem]) -> None:
         for name in filled.get("namelist").split():
             if name not in inputs:
                 message = f'The form has no input item "{name}".'
-                hint = did_you_mean(name, inputs)
+                hint = suggestion(name, inputs, *value_span(filled, "namelist", name))
                 place = filled.attribute_place("namelist")
                 problems.append(Problem(place, "error", "no-such-item", message, hint))
 
@@ -319,7 +345,8 @@ def _check_say_as(node: Node, problems: list[Problem]) -> None:
     """What it is has to be told; older documents do by ``type`` (4.1.1)."""
     if not {"interpret-as", "type"} & node.attributes.keys():
         message = '<say-as> needs the attribute "interpret-as".'
-        problems.append(Problem(node.place, "error", "missing-attribute", message))
+        hint = added("", node, VOICEXML.attributes[node.key]["interpret-as"][0])
+        problems.append(Problem(node.place, "error", "missing-attribute", message, hint))
 
 
 RULES: dict[str, Callable[[Node, list[Problem]], None]] = {
@@ -335,7 +362,8 @@ RULES: dict[str, Callable[[Node, list[Problem]], None]] = {
 def _check_command(node: Node, parent: Node, problems: list[Problem]) -> None:
     if node.tag not in (*COMMANDS, *ARRANGING):
         known = [*COMMANDS, *ARRANGING]
-        message, hint = f"PRIMA has no Command <{node.tag}>.", did_you_mean(node.tag, known)
+        message = f"PRIMA has no Command <{node.tag}>."
+        hint = suggestion(node.tag, known, *name_spans(node))
         problems.append(Problem(node.place, "error", "unknown-element", message, hint))
         return
     if parent.key not in HOLDING and VOICEXML.child(parent.key, "assign") is None:
@@ -361,7 +389,7 @@ def _check_arguments(node: Node, problems: list[Problem]) -> None:
         if name.removesuffix("-expr") not in known and not name.startswith(("xml:", "{")):
             message = f'<{node.tag}> has no attribute "{name}".'
             place = node.attribute_place(name, value=False)
-            hint = did_you_mean(name, known)
+            hint = suggestion(name, known, attribute_span(node, name))
             problems.append(Problem(place, "error", "unknown-attribute", message, hint))
 
 
@@ -400,7 +428,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
             target = node.get(name)
             if target.startswith("#") and node.key != "grammar" and target[1:] not in dialogs:
                 message = f'There is no dialog "{target[1:]}" here: this will be error.badfetch.'
-                hint = did_you_mean(target[1:], dialogs)
+                hint = suggestion(target[1:], dialogs, *value_span(node, name, target[1:]))
                 place = node.attribute_place(name)
                 problems.append(Problem(place, "warning", "no-such-form", message, hint))
     return problems
@@ -519,10 +547,11 @@ def _type_problems(field: Node) -> list[Problem]:
         place = field.attribute_place("type")
         return [Problem(place, "warning", "exclusive", str(error), remedy)]
     except ValueError as error:
-        remedy = did_you_mean(kind, TYPES) or f"Write {one_of(TYPES)}, or a <grammar>."
-        remedy += " At run time it is error.unsupported.builtin."
+        hint = suggestion(kind, TYPES, *value_span(field, "type"))
+        hint = hint or Hint(f"Write {one_of(TYPES)}, or a <grammar>.")
+        hint = hint._replace(text=f"{hint.text} At run time it is error.unsupported.builtin.")
         place = field.attribute_place("type")
-        return [Problem(place, "warning", "no-such-name", str(error), remedy)]
+        return [Problem(place, "warning", "no-such-name", str(error), hint)]
     return []
 
 
@@ -594,7 +623,7 @@ def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Prob
         row = commands.get(node.get("type"))
         if row is None:
             message = f'This robot has no Command "{node.get("type")}".'
-            hint = did_you_mean(node.get("type"), commands)
+            hint = suggestion(node.get("type"), commands, *value_span(node, "type"))
             place = node.attribute_place("type")
             problems.append(Problem(place, "warning", "unsupported-command", message, hint))
         else:

@@ -10,6 +10,7 @@ from urllib.parse import urldefrag, urlsplit
 from prima.errors import DocumentError, Problem
 from prima.markup.check import check_root
 from prima.markup.reader import parse
+from prima.markup.spans import with_namespace
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
@@ -144,7 +145,8 @@ def _without_namespace(root: Node) -> list[Problem]:
         return []  # VoiceXML 1.0 has no namespace
     message = "The root element <vxml> has no namespace: it is read as VoiceXML."
     remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
-    return [Problem(root.place, "warning", "no-namespace", message, remedy)]
+    hint = with_namespace(remedy, root, NAMESPACE)
+    return [Problem(root.place, "warning", "no-namespace", message, hint)]
 
 
 @dataclass(slots=True)

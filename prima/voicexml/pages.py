@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from urllib.parse import unquote, urldefrag, urlsplit
 
-from prima.errors import DocumentError, Problem, did_you_mean
+from prima.errors import DocumentError, Problem, suggestion
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page, read_page
@@ -93,7 +94,8 @@ class Pages:
 def _not_there(node: Node, name: str, page: Page) -> Problem:
     message = f'There is no dialog "{name}" in {page.uri}: this will be error.badfetch.'
     place = node.attribute_place(LEADING[node.key])
-    return Problem(place, "warning", "no-such-form", message, did_you_mean(name, page.dialogs))
+    hint = suggestion(name, page.dialogs, *value_span(node, LEADING[node.key], name))
+    return Problem(place, "warning", "no-such-form", message, hint)
 
 
 def _named(page: Page) -> Iterator[str]:
@@ -117,7 +119,8 @@ def _untaken(node: Node, form: Node) -> Iterator[Problem]:
         if name and name not in names:
             which = f'The form "{form.get("id")}"' if form.get("id") else "The form that is called"
             message = f'{which} has no <var name="{name}"/>: this will be error.semantic.'
-            remedy = did_you_mean(name, names) or "Declare it in the form."
+            spans = value_span(param, "name")
+            remedy = suggestion(name, names, *spans) or "Declare it in the form."
             place = param.attribute_place("name")
             yield Problem(place, "warning", "undeclared-variable", message, remedy)
 

@@ -7,7 +7,9 @@ from collections.abc import Callable
 
 from prima.errors import Problem
 from prima.grammar.media import UNTYPED
+from prima.markup.spans import added
 from prima.markup.tree import Node
+from prima.markup.vocabulary import Attribute
 
 VERSIONS = ("2.0", "2.1")
 OLD = "1.0"
@@ -35,7 +37,8 @@ def version_problem(root: Node) -> Problem | None:
     if "version" not in root.attributes:
         message = '<vxml> needs the attribute "version": the document is read as VoiceXML 2.1.'
         remedy = 'Write version="2.0" or "2.1".'
-        return Problem(root.place, "warning", "missing-attribute", message, remedy)
+        hint = added(remedy, root, Attribute("version", "text", "the version", default="2.1"))
+        return Problem(root.place, "warning", "missing-attribute", message, hint)
     place = root.attribute_place("version")
     if version == OLD:
         message = "The document is of VoiceXML 1.0: it is read as 2.0, its older elements as newer."

@@ -10,9 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
-from prima.errors import Place, Problem, did_you_mean
+from prima.errors import Place, Problem, Span, suggestion
+from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, Scope
@@ -207,6 +209,17 @@ class _Look:
             inner = self.level(self.page, node.nodes, ordered=True)
             yield from self.check(inner.nodes, inner, outer, members)
 
+    @cached_property
+    def _declarations(self) -> Declarations:
+        return Declarations(self.page.root)
+
+    def _undeclared(self, read: Read, known: Known) -> Problem:
+        message = f'The variable "{read.name}" is not declared: {WILL}'
+        hint = suggestion(read.name, known.written(), Span.of(read.place, read.name))
+        declare = f'Declare it: <var name="{read.name}"/>.'
+        remedy = hint or self._declarations.hint(declare, read.name, read.node)
+        return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+
     def check(
         self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
     ) -> Iterator[Problem]:
@@ -218,7 +231,7 @@ class _Look:
                 if read.name in ALWAYS or read.name in outer or read.name in seen:
                     continue
                 if read.name not in level.names:
-                    yield _undeclared(read, Known(level.names, *outer.scopes))
+                    yield self._undeclared(read, Known(level.names, *outer.scopes))
                 elif read.at_once and (level.ordered or _in_order(read)):
                     yield _early(read)
             yield from self.members(node, members)
@@ -310,12 +323,6 @@ def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
 WILL = "this will be error.semantic."
 
 
-def _undeclared(read: Read, known: Known) -> Problem:
-    message = f'The variable "{read.name}" is not declared: {WILL}'
-    remedy = did_you_mean(read.name, known.written()) or f'Declare it: <var name="{read.name}"/>.'
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
-
-
 def _early(read: Read) -> Problem:
     message = f'The variable "{read.name}" is declared after this: {WILL}'
     remedy = "Declare it before."
@@ -324,6 +331,7 @@ def _early(read: Read) -> Problem:
 
 def _no_member(read: Read, holder: str, name: str, scope: Scope) -> Problem:
     message = f'The scope "{holder}" declares no variable "{name}": {WILL}'
-    near = did_you_mean(name, scope.written)
+    at = read.place._replace(column=read.place.column + len(holder) + 1)
+    near = suggestion(name, scope.written, Span.of(at, name))
     remedy = near or f'Declare it there: <var name="{name}"/>.'
     return Problem(read.place, "warning", "undeclared-variable", message, remedy)
