@@ -111,8 +111,8 @@ def test_an_expression_is_compiled_once(tmp_path: Path, monkeypatch: pytest.Monk
         asked[code] += 1
         return compiled(code)
 
-    monkeypatch.setattr("prima.interpreter.checks.compiled", counted)
-    monkeypatch.setattr("prima.voicexml.check.compiled", counted)
+    monkeypatch.setattr("prima.interpreter.checks.code.compiled", counted)
+    monkeypatch.setattr("prima.voicexml.checks.later.compiled", counted)
     for name in ("undeclared names in expressions", "VoiceXML undeclared names"):
         path = tmp_path / f"a{FAMILIES[name].suffix}"
         path.write_text(FAMILIES[name].text(SMALL), encoding="utf-8")

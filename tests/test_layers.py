@@ -56,9 +56,10 @@ INSIDE = {
         {"__init__"},
     ],
     "errors": [
-        {"codes", "visible", "words"},
+        {"visible", "words"},
         {"problems"},
-        {"diagnosis", "guesses", "rendering"},
+        {"diagnosis", "guesses"},
+        {"diagnoses", "rendering"},
         {"__init__"},
     ],
     "language": [{"values"}, {"commands"}, {"__init__"}],

@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import Any
 
 import prima
+from prima.checks.codes import diagnoses
 from prima.devices import loop
 from prima.errors import LONGEST_TEXT, UsageError
-from prima.errors.codes import CODES
 from prima.handbook import examples
 from prima.interpreter import (
     application,
@@ -371,17 +371,20 @@ def _type(item: Mapping[str, Any]) -> str:
 def codes() -> str:
     """The codes of problems."""
     return table(
-        ("code", "what it means"),
-        ((f"[`{name}`](#{name})", _quoted(text)) for name, text in CODES.items()),
+        ("code", "problem", "rule or section"),
+        (
+            (f"[`{one.code}`](#{one.code})", _quoted(one.title), one.rule)
+            for one in diagnoses().values()
+        ),
     )
 
 
 def code_examples() -> str:
     """A wrong and a right example for each code, with what is said of the wrong one."""
     parts = []
-    for code in CODES:
+    for code in diagnoses():
         wrong, right = examples.examples(code)
-        parts += [f"## {code}", _quoted(CODES[code])]
+        parts += [f"## {code}", _quoted(examples.meaning(code))]
         for name, text in examples.beside(code).items():
             parts += [f"`{name}`:", _listing(text)]
         parts += [examples.headline(code, "Wrong"), _listing(wrong.text)]

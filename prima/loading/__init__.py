@@ -382,7 +382,7 @@ def _fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
 
 def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
     """What is wrong with the grammars in files that a VoiceXML document names."""
-    from prima.voicexml.check import grammar_problems
+    from prima.voicexml.checks import grammar_problems
 
     site = page.site
     fetch, base = _fetcher(folder, site), site.whole(page.base()) if site else page.base()
@@ -714,9 +714,9 @@ class _Reading:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
             else:
-                from prima.voicexml import check, sketched
+                from prima.voicexml import checks, sketched
 
-                self.problems += check.check_commands(document.page.root, robot.commands)
+                self.problems += checks.check_commands(document.page.root, robot.commands)
                 self.problems += sketched.added_in_units(document.page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:

@@ -185,6 +185,10 @@ class Node:
         """Where an attribute stands, or its value does."""
         return self.source.place(self.index, name, value)
 
+    def place_of(self, attribute: str) -> Place:
+        """Where an attribute's value begins; where the element does, if it lacks the attribute."""
+        return self.attribute_place(attribute) if attribute in self.attributes else self.place
+
     def code_place(self, attribute: str, line: int, column: int) -> Place:
         """The place of a line and column of the code in an attribute, or in the text if ``""``.
 

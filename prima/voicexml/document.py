@@ -15,7 +15,7 @@ from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
 from prima.voicexml.arranging import is_unit
-from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.checks import check_code, check_tree
 from prima.voicexml.site import Site
 from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
