@@ -19,7 +19,7 @@ from prima.checks.codes import diagnoses
 from prima.errors import Diagnosis, Fix, Problem, UsageError
 from prima.errors.rendering import TOKEN
 from prima.handbook.examples import FOLDER, Example, beside, data, examples, shown
-from prima.loading import in_place_of_files
+from prima.loading.files import in_place_of_files
 from prima.lsp.fixes import changes
 from prima.lsp.text import Lines
 

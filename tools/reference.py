@@ -35,7 +35,7 @@ from prima.interpreter import (
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
-from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
+from prima.lsp.words import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
 from prima.markup.schema import (
@@ -582,7 +582,6 @@ def voicexml() -> Vocabulary:
     elements = [
         replace(
             element,
-            doc=VOICEXML_ELEMENTS.get(element.tag, ""),
             source=VOICEXML_SECTION.sub(r"VoiceXML \1", element.source),
             attributes=tuple(_voicexml_attribute(element, one) for one in element.attributes),
         )
