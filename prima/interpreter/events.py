@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from prima.errors import Place, Problem, Span, guessable, meant
+from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
 from prima.interpreter.elements import (
     Acts,
     CommandTemplate,
@@ -24,6 +25,14 @@ from prima.interpreter.elements import (
 from prima.language.commands import DEVICES
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
+
+NEVER_RAISED = UNKNOWN_EVENT.says("{wrong}", "Remove the handler.")
+NOT_HANDLED = UNHEARD_EVENT.says(
+    'No handler takes the event "{name}".', 'Write <on event="{name}">.'
+)
+ENDS_APPLICATION = UNHEARD_EVENT.says(
+    f"{NOT_HANDLED.message} It ends the application.", NOT_HANDLED.remedy
+)
 
 STANDARD = frozenset(
     [
@@ -180,8 +189,8 @@ class Events:
                     message, nearest = told
                     wanted.add(nearest)
                     place = event_place(handler.node, name)
-                    hint = meant(nearest, Span.of(place, name)) or "Remove the handler."
-                    found.append(Problem(place, "warning", "unknown-event", message, hint))
+                    hint = meant(nearest, Span.of(place, name))
+                    found.append(NEVER_RAISED.at(place, hint, wrong=message))
         found += [problem for one in self.raised if (problem := self._unheard(one, wanted))]
         return found
 
@@ -218,8 +227,6 @@ class Events:
         heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
         if one.name in wanted or heard:
             return None
-        ends = " It ends the application." if one.fatal else ""
-        message = f'No handler takes the event "{one.name}".{ends}'
         self._guesses += 1
         nearest = ""
         if self._guesses <= MOST_GUESSES:
@@ -228,8 +235,8 @@ class Events:
             nearest = self._near[one.name]
         place = one.node.attribute_place(one.attribute)
         spans = value_span(one.node, one.attribute, one.name) if nearest else ()
-        hint = meant(nearest, *spans) or f'Write <on event="{one.name}">.'
-        return Problem(place, "warning", "unheard-event", message, hint)
+        diagnosis = ENDS_APPLICATION if one.fatal else NOT_HANDLED
+        return diagnosis.at(place, meant(nearest, *spans), name=one.name)
 
 
 def event_place(node: Node, name: str) -> Place:
