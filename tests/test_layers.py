@@ -90,7 +90,7 @@ INSIDE = {
     ],
     "interpreter": [
         {"grammar"},
-        {"vocabulary"},
+        {"diagnoses", "vocabulary"},
         {"leads"},
         {"elements", "srgs"},
         {"events", "plain", "selection", "sensors"},

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.errors import Hint, suggestion
+from prima.errors import Diagnosis, Hint, suggestion
+from prima.errors.diagnosis import NO_HINT
+from prima.interpreter.diagnoses import (
+    BAD_REPEAT,
+    EMPTY_GRAMMAR,
+    NO_RULE,
+    TEXT_BESIDE_RULES,
+    TWO_RULES,
+)
 from prima.interpreter.grammar import Choice, Grammar, Part, Reference, Sequence, Tag, Words, fold
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -16,7 +24,12 @@ if TYPE_CHECKING:
         """Notes a problem at an element or the value of one of its attributes."""
 
         def __call__(
-            self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
+            self,
+            diagnosis: Diagnosis,
+            node: Node,
+            attribute: str = "",
+            hint: Hint = NO_HINT,
+            **parameters: object,
         ) -> None:
             """Note it, with what to write instead."""
 
@@ -28,20 +41,20 @@ def read_grammar(note: Note, node: Node) -> Grammar:
     for rule in rules:
         name = rule.get("id")
         if name in grammar.rules:
-            note(rule, "duplicate-id", f'There are two rules "{name}".', attribute="id")
+            note(TWO_RULES, rule, "id", name=name)
         grammar.rules[name] = _expansion(note, rule)
     if rules:
         grammar.root = node.get("root", rules[0].get("id"))
         if node.text:
-            note(node, "stray-text", "This grammar has rules; its own text counts for nothing.")
+            note(TEXT_BESIDE_RULES, node)
     else:
         if not node.nodes and not fold(node.text):
-            note(node, "empty-answer", "This grammar holds nothing to say.", "Write what it takes.")
+            note(EMPTY_GRAMMAR, node)
         grammar.root = "root"
         grammar.rules["root"] = _expansion(note, node)
     if grammar.root not in grammar.rules:
         hint = suggestion(grammar.root, grammar.rules, *value_span(node, "root"))
-        note(node, "no-such-rule", f'There is no rule "{grammar.root}".', hint, "root")
+        note(NO_RULE, node, "root", hint, name=grammar.root)
         grammar.rules[grammar.root] = Choice([])
     _check_references(note, node, grammar)
     if next(grammar.large(), None) is not None:
@@ -58,7 +71,7 @@ def _check_references(note: Note, node: Node, grammar: Grammar) -> None:
         if child.tag == "ruleref" and name not in grammar.rules:
             hint = suggestion(name, grammar.rules, *value_span(child, "uri", name))
             if "#" in child.get("uri"):  # else told already
-                note(child, "no-such-rule", f'There is no rule "{name}".', hint, "uri")
+                note(NO_RULE, child, "uri", hint, name=name)
             grammar.rules[name] = Choice([])
         _check_references(note, child, grammar)
 
@@ -93,11 +106,6 @@ def _repeat(note: Note, node: Node) -> tuple[int, int]:
         for part in (low, *([high] if high else []))
     )
     if not fits or (high and int(low) > int(high)):
-        note(
-            node,
-            "bad-value",
-            f'repeat "{text}" is not of the form 2, 0-1 or 1-, with numbers up to 999.',
-            attribute="repeat",
-        )
+        note(BAD_REPEAT, node, "repeat", value=text)
         return 1, 1
     return int(low), int(high) if high else (999 if dash else int(low))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from prima.errors import Problem, Span, meant
+from prima.errors.diagnoses.names import UNKNOWN_EVENT
 from prima.interpreter.events import MOST_GUESSES, STANDARD, beginnings, event_place, slip_of
 from prima.markup.tree import Node
 
@@ -36,6 +37,9 @@ def caught_in(root: Node) -> Iterator[tuple[Node, str]]:
             yield from ((node, name) for name in node.get("event").split())
 
 
+NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
+
+
 def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
     """Warnings of handlers whose event is most likely a slip: others may be thrown by anybody."""
     known = {*EVENTS, *thrown}
@@ -44,6 +48,5 @@ def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
     for node, name in strange[:MOST_GUESSES]:
         other = "" if name.startswith(OPEN) else slip_of(name, known)
         if other:
-            message, place = f'Nothing raises an event "{name}".', event_place(node, name)
-            hint = meant(other, Span.of(place, name))
-            yield Problem(place, "warning", "unknown-event", message, hint)
+            place = event_place(node, name)
+            yield NEVER_RAISED.at(place, meant(other, Span.of(place, name)), name=name)

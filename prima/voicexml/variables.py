@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from prima.errors import Place, Problem, Span, suggestion
+from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
 from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
@@ -214,11 +215,10 @@ class _Look:
         return Declarations(self.page.root)
 
     def _undeclared(self, read: Read, known: Known) -> Problem:
-        message = f'The variable "{read.name}" is not declared: {WILL}'
         hint = suggestion(read.name, known.written(), Span.of(read.place, read.name))
         declare = f'Declare it: <var name="{read.name}"/>.'
-        remedy = hint or self._declarations.hint(declare, read.name, read.node)
-        return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+        hint = hint or self._declarations.hint(declare, read.name, read.node)
+        return NOT_DECLARED.at(read.place, hint, name=read.name)
 
     def check(
         self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
@@ -320,18 +320,26 @@ def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
             yield Read(f"{use.holder}.{use.name}", node, attribute, start)
 
 
-WILL = "this will be error.semantic."
+NOT_DECLARED = UNDECLARED_VARIABLE.says(
+    'The variable "{name}" is not declared: this will be error.semantic.', severity="warning"
+)
+DECLARED_AFTER = UNDECLARED_VARIABLE.says(
+    'The variable "{name}" is declared after this: this will be error.semantic.',
+    "Declare it before.",
+    "warning",
+)
+NO_MEMBER = UNDECLARED_VARIABLE.says(
+    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
+    'Declare it there: <var name="{name}"/>.',
+    "warning",
+)
 
 
 def _early(read: Read) -> Problem:
-    message = f'The variable "{read.name}" is declared after this: {WILL}'
-    remedy = "Declare it before."
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+    return DECLARED_AFTER.at(read.place, name=read.name)
 
 
 def _no_member(read: Read, holder: str, name: str, scope: Scope) -> Problem:
-    message = f'The scope "{holder}" declares no variable "{name}": {WILL}'
     at = read.place._replace(column=read.place.column + len(holder) + 1)
-    near = suggestion(name, scope.written, Span.of(at, name))
-    remedy = near or f'Declare it there: <var name="{name}"/>.'
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+    hint = suggestion(name, scope.written, Span.of(at, name))
+    return NO_MEMBER.at(read.place, hint, scope=holder, name=name)
