@@ -63,7 +63,7 @@ INSIDE = {
         {"__init__"},
     ],
     "language": [{"values"}, {"commands"}, {"__init__"}],
-    "loading": [{"files", "web", "writing"}, {"__init__"}],
+    "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}],
     "experiments": [{"batch", "study"}, {"__init__"}],
     "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [

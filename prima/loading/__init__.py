@@ -35,6 +35,17 @@ from prima.interpreter.elements import Document
 from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading.diagnoses import (
+    BAD_POLICY,
+    BAD_SITE,
+    NEEDS_URI,
+    NO_AREA,
+    NO_FAVOURITE,
+    NO_FILE_HERE,
+    NOT_SERVED,
+    RUNS_AS_OTHER,
+    UNREADABLE,
+)
 from prima.loading.files import Folder, path_of, read_file
 from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
@@ -321,11 +332,9 @@ def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[
                 continue
             if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
                 continue
-            message = f'There is no file "{file[:80]}" here: this will be error.badfetch.'
-            place = node.attribute_place(name)
             spans = value_span(node, name, file.rpartition("/")[2])
             hint = _nearby(folder / file, *spans)
-            yield Problem(place, "warning", "no-such-file", message, hint)
+            yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
@@ -610,11 +619,10 @@ class _Reading:
             self.files[name] = _digest(content)
             return made_of(str(target), content)
         except UsageError as error:
-            message = str(error).removeprefix(f"{target}: ")
-            told = f'"{name}" {message}'
+            wrong = str(error).removeprefix(f"{target}: ")
             at = place._replace(column=place.column + len(name) - len(target.name))
             hint = _nearby(target, Span.of(at, target.name))
-            self.problems.append(Problem(place, "error", "no-such-file", told, hint))
+            self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
@@ -644,10 +652,8 @@ class _Reading:
             remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
             self.problems += _other_kind(document, f'"{src}"', who, place, remedy)
         if site is not None and node is not None and isinstance(document, Document):
-            message = f'"{src}" is not VoiceXML, which alone is served at a URI.'
-            remedy = "Remove uri and folder."
             where = node.attribute_place("uri", value=False)
-            self.problems.append(Problem(where, "error", "unknown-attribute", message, remedy))
+            self.problems.append(NOT_SERVED.at(where, src=src))
         return document
 
     def site(self, src: str, node: Node) -> Site | None:
@@ -658,24 +664,22 @@ class _Reading:
         if not uri and not folder:
             return None
         if not uri:
-            message, remedy = 'A folder is served at a "uri".', "Add it."
-            place = node.attribute_place("folder")
-            self.problems.append(Problem(place, "error", "missing-attribute", message, remedy))
+            self.problems.append(NEEDS_URI.at(node.attribute_place("folder")))
             return None
         try:
             above = normpath(self.path.parent / folder) if folder else ""
             return site_of(normpath(self.path.parent / src), uri, above)
         except ValueError as error:
-            place = node.attribute_place("uri")
-            self.problems.append(Problem(place, "error", "bad-value", *error.args))
+            wrong, *remedies = error.args
+            hint = Hint("".join(remedies))
+            self.problems.append(BAD_SITE.at(node.attribute_place("uri"), hint, wrong=wrong))
             return None
 
     def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
         """The applications that a world's areas offer, but those that the scenario runs itself."""
         if not world.areas:
             place = scenario.node.attribute_place("entrances")
-            message = f'The world "{world.id}" has no <area> that offers an application.'
-            self.problems.append(Problem(place, "error", "no-such-name", message))
+            self.problems.append(NO_AREA.at(place, world=world.id))
         beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
         known: dict[str, AnyDocument | None] = {}
         made = []
@@ -729,10 +733,10 @@ class _Reading:
         except UnknownPolicy as error:
             spans = value_span(scenario.node, "policy", error.word) if error.meant else ()
             hint = replaced(f"{error.remedy} {FAVOURITE}", error.meant, *spans)
-            self.problems.append(Problem(place, "error", "bad-value", error.wrong, hint))
+            self.problems.append(BAD_POLICY.at(place, hint, wrong=error.wrong))
         if problem := favourite_problem(scenario.policy, self.documents, scenario.node):
             wrong, hint = problem
-            self.problems.append(Problem(place, "error", "no-such-name", wrong, hint))
+            self.problems.append(NO_FAVOURITE.at(place, hint, wrong=wrong))
 
 
 def _other_kind(
@@ -742,16 +746,15 @@ def _other_kind(
     own = document.node.get("kind")
     if not isinstance(document, Document) or own in ("", document.kind):
         return []
-    runs = f"it runs as an {document.kind.upper()}"
-    message = f"{name} says that it is an {own.upper()}, but {who}: {runs}."
-    return [Problem(place, "warning", "other-kind", message, remedy)]
+    kind = document.kind.upper()
+    return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
 
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
     """A document of another kind than the scenario needs is the mistake of who names it."""
     if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
-    return problem._replace(place=place, message=f'"{name}": {problem.message}')
+    return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())
 
 
 def _nearby(path: Path, *spans: Span) -> Hint:
