@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
-from prima.errors.codes import CODES
 from prima.interpreter.elements import Document
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS
 from prima.language.values import LONGEST_MS
@@ -194,7 +193,7 @@ def rehearse(
     except UsageError as error:
         raise UsageError(f"{error} {FAVOURITE}") from None
     if problem := favourite_problem(name, cast.documents):
-        raise UsageError(" ".join(problem))
+        raise UsageError(f"{problem[0]} {problem[1].text}")
     if patience is None:
         patience = cast.scenario.patience
     web = fetcher(list(hosts), len(cast.documents))
@@ -432,9 +431,12 @@ def explain(code: str) -> str:
     Raises:
         UsageError: there is no such code.
     """
-    if code not in CODES:
-        raise UsageError(f'There is no code "{code}". {did_you_mean(code, CODES)}'.rstrip())
-    return CODES[code]
+    from prima.checks.codes import diagnoses
+
+    found = diagnoses()
+    if code not in found:
+        raise UsageError(f'There is no code "{code}". {did_you_mean(code, found)}'.rstrip())
+    return found[code].meaning
 
 
 def explain_row(transcript: Transcript, number: int) -> str:

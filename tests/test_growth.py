@@ -15,7 +15,8 @@ from bench.large import FAMILIES, Family
 from prima import loading
 from prima.certificate import certificates
 from prima.checks.ignores import Ignores
-from prima.errors import MANY_WORDS, Place, Problem, did_you_mean, few_guesses, in_order
+from prima.errors import Place, Problem, did_you_mean, few_guesses, in_order
+from prima.errors.guesses import MANY_WORDS
 from prima.interpreter.reader import read_document
 from prima.lsp import naming
 from prima.lsp.complete import complete
@@ -86,7 +87,7 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
         for problem in spots(
             desk, path, [one for some in check(desk, path).values() for one in some]
         ):
-            fixes(page, problem)
+            fixes(page.lines, problem.problem)
         for offset in (text.find('"', len(text) // 2) + 1, text.find("<", len(text) // 2) + 2):
             hover(desk, path, offset)
             complete(desk, path, offset)
@@ -110,8 +111,8 @@ def test_an_expression_is_compiled_once(tmp_path: Path, monkeypatch: pytest.Monk
         asked[code] += 1
         return compiled(code)
 
-    monkeypatch.setattr("prima.interpreter.checks.compiled", counted)
-    monkeypatch.setattr("prima.voicexml.check.compiled", counted)
+    monkeypatch.setattr("prima.interpreter.checks.code.compiled", counted)
+    monkeypatch.setattr("prima.voicexml.checks.later.compiled", counted)
     for name in ("undeclared names in expressions", "VoiceXML undeclared names"):
         path = tmp_path / f"a{FAMILIES[name].suffix}"
         path.write_text(FAMILIES[name].text(SMALL), encoding="utf-8")

@@ -177,8 +177,8 @@ def test_beside_an_error_nothing_is_said_to_be_ignored_in_vain(tmp_path: Path) -
     ("text", "says"),
     [
         ("[[ignore]\n", "This is not TOML"),
-        ("[ignor]\n", '"ignor" is no setting. Write [[ignore]]'),
-        ("ignore = 3\n", '"ignore" is no setting.'),
+        ("[ignor]\n", 'Unknown setting "ignor". Write [[ignore]]'),
+        ("ignore = 3\n", "ignore holds no entries. Write [[ignore]]"),
         ('[[ignore]]\ncode = "no-noinput"\n', 'Nothing says why "no-noinput" is ignored.'),
         ('[[ignore]]\nreason = "So."\n', "Nothing says which code is ignored."),
         ('[[ignore]]\ncode = "x"\nreason = "So."\n', 'There is no code "x".'),

@@ -50,14 +50,20 @@ INSIDE = {
     ],
     "markup": [
         {"limits", "opening", "uris", "vocabulary", "tree"},
-        {"slips"},
+        {"slips", "spans"},
         {"build", "check", "rnc", "schema"},
         {"reader"},
         {"__init__"},
     ],
-    "errors": [{"codes", "visible"}, {"rendering"}, {"__init__"}],
+    "errors": [
+        {"visible", "words"},
+        {"problems"},
+        {"diagnosis", "guesses"},
+        {"diagnoses", "rendering"},
+        {"__init__"},
+    ],
     "language": [{"values"}, {"commands"}, {"__init__"}],
-    "loading": [{"files", "web", "writing"}, {"__init__"}],
+    "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}],
     "experiments": [{"batch", "study"}, {"__init__"}],
     "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [
@@ -83,7 +89,7 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"vocabulary"},
+        {"diagnoses", "vocabulary"},
         {"elements"},
         {"events", "plain", "selection", "sensors"},
         {"naming"},

@@ -17,6 +17,7 @@ import pytest
 
 from prima import api, loading
 from prima.errors import DocumentError, Place, Problem, listed
+from prima.errors.diagnoses.reading import NOT_XML
 from prima.errors.rendering import excerpt, render, sarif
 from prima.interpreter.reader import read_document
 from prima.messages import Ended
@@ -194,7 +195,7 @@ def test_sarif_is_valid_by_its_schema(tmp_path: Path) -> None:
 
 def test_sarif_names_files_as_uris() -> None:
     problems = [Problem(Place(name), "note", "x", "m") for name in ("/a b.xml", "c/d.xml")]
-    results = sarif(problems, "1", {})["runs"][0]["results"]
+    results = sarif(problems, "1", {"x": NOT_XML})["runs"][0]["results"]
     uris = [one["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] for one in results]
     assert uris == ["file:///a%20b.xml", "c/d.xml"]
 

@@ -871,8 +871,8 @@ def test_the_choices_may_be_enumerated_in_a_sentence(tag: str) -> None:  # 2.2.4
     [
         ("<var name='_a'/>", ['"_a" is reserved']),
         ("<form><field name='a$'><option>x</option></field></form>", ['"a$" is reserved']),
-        ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is no name']),
-        ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is no name']),
+        ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is not a name']),
+        ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is not a name']),
         ("<menu><choice dtmf='1 x' event='e'>a</choice></menu>", ['dtmf "1 x"']),
         ("<menu><choice dtmf='1 2*#A' event='e.f-g_1'>a</choice></menu>", []),
         ("<form><field name='f'><option dtmf='one'>a</option></field></form>", ['dtmf "one"']),

@@ -19,10 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import prima
+from prima.checks.codes import diagnoses
 from prima.devices import loop
 from prima.devices.vocabulary import ROBOT
 from prima.errors import LONGEST_TEXT, UsageError
-from prima.errors.codes import CODES
 from prima.grammar import builtin, chart
 from prima.grammar.answers import TYPES
 from prima.grammar.types import read
@@ -38,7 +38,7 @@ from prima.interpreter import (
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
-from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
+from prima.lsp.words import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
 from prima.markup.schema import (
@@ -380,17 +380,20 @@ def _type(item: Mapping[str, Any]) -> str:
 def codes() -> str:
     """The codes of problems."""
     return table(
-        ("code", "what it means"),
-        ((f"[`{name}`](#{name})", _quoted(text)) for name, text in CODES.items()),
+        ("code", "problem", "rule or section"),
+        (
+            (f"[`{one.code}`](#{one.code})", _quoted(one.title), one.rule)
+            for one in diagnoses().values()
+        ),
     )
 
 
 def code_examples() -> str:
     """A wrong and a right example for each code, with what is said of the wrong one."""
     parts = []
-    for code in CODES:
+    for code in diagnoses():
         wrong, right = examples.examples(code)
-        parts += [f"## {code}", _quoted(CODES[code])]
+        parts += [f"## {code}", _quoted(examples.meaning(code))]
         for name, text in examples.beside(code).items():
             parts += [f"`{name}`:", _listing(text)]
         parts += [examples.headline(code, "Wrong"), _listing(wrong.text)]
@@ -599,7 +602,6 @@ def voicexml() -> Vocabulary:
     elements = [
         replace(
             element,
-            doc=VOICEXML_ELEMENTS.get(element.tag, ""),
             source=VOICEXML_SECTION.sub(r"VoiceXML \1", element.source),
             attributes=tuple(_voicexml_attribute(element, one) for one in element.attributes),
         )

@@ -16,8 +16,19 @@ from fnmatch import fnmatchcase
 from os.path import dirname, isabs, isfile, join, realpath, relpath
 from typing import Any
 
-from prima.errors import DocumentError, Place, Problem, UsageError, did_you_mean
-from prima.errors.codes import CODES
+from prima.errors import DocumentError, Place, Problem, UsageError, suggestion
+from prima.errors.diagnoses.validation import (
+    NO_CODE,
+    NO_COLON,
+    NO_ENTRIES,
+    NO_FILES,
+    NO_REASON,
+    NOT_TOML,
+    UNKNOWN_CODE,
+    UNKNOWN_KEY,
+    UNKNOWN_SETTING,
+    UNUSED_IGNORE,
+)
 from prima.markup.reader import decode
 from prima.markup.tree import MARKUP, Source
 
@@ -237,20 +248,18 @@ def absolute(file: str) -> str:
 
 
 def _unused(ignore: Ignore) -> Problem:
-    message = f'Nothing is ignored here: there is no warning or note "{ignore.code}".'
-    return Problem(ignore.place, "warning", "unused-ignore", message, "Remove it.")
+    return UNUSED_IGNORE.at(ignore.place, code=ignore.code)
 
 
 def _incomplete(place: Place, code: str, reason: str, form: str) -> Problem | None:
     """What is wrong with an ignore's code and reason, if anything is."""
-    if code in CODES and reason:
-        return None
-    if code in CODES:
-        message, remedy = f'Nothing says why "{code}" is ignored.', f"Say it. {form}"
-    else:
-        message = f'There is no code "{code}".' if code else "Nothing says which code is ignored."
-        remedy = did_you_mean(code, CODES) or form
-    return Problem(place, "warning", "bad-ignore", message, remedy)
+    from prima.checks.codes import diagnoses  # imports every check, and few documents ignore any
+
+    known = diagnoses()
+    if code in known:
+        return None if reason else NO_REASON.at(place, code=code, form=form)
+    hint = suggestion(code, known)
+    return (UNKNOWN_CODE if code else NO_CODE).at(place, hint, code=code, form=form)
 
 
 # Documents ----------------------------------------------------------------------------------
@@ -270,7 +279,7 @@ def in_document(file: str, data: bytes) -> tuple[list[Ignore], list[Problem]]:
         place = source.at(offset)
         problem = _incomplete(place, match[2], match[3], FORM)
         if not match[1]:
-            problem = Problem(place, "warning", "bad-ignore", f'"{WORD}" needs a colon.', FORM)
+            problem = NO_COLON.at(place, word=WORD, form=FORM)
         if problem is not None:
             problems.append(problem)
             continue
@@ -313,15 +322,14 @@ def read_settings(file: str) -> Settings:
             text = stream.read()
         tree = tomllib.loads(text)
     except (OSError, ValueError) as error:
-        message = f"This is not TOML: {error}."
-        settings.problems.append(Problem(Place(file), "error", "bad-ignore", message))
+        settings.problems.append(NOT_TOML.at(Place(file), error=error))
         return settings
     entries = tree.get("ignore", [])
     unknown = sorted(tree.keys() - {"ignore"})
-    if unknown or not isinstance(entries, list):
-        message = f'"{(unknown or ["ignore"])[0]}" is no setting.'
-        remedy = "Write [[ignore]], with code, reason and files."
-        settings.problems.append(Problem(Place(file), "error", "bad-ignore", message, remedy))
+    if unknown:
+        settings.problems.append(UNKNOWN_SETTING.at(Place(file), name=unknown[0]))
+    elif not isinstance(entries, list):
+        settings.problems.append(NO_ENTRIES.at(Place(file)))
     lines = [text.count("\n", 0, found.start()) + 1 for found in ENTRY.finditer(text)]
     for number, entry in enumerate(entries if isinstance(entries, list) else []):
         place = Place(file, lines[number] if number < len(lines) else 1)
@@ -338,12 +346,10 @@ def _entry(entry: Any, place: Place, settings: Settings) -> None:
     code, reason = given.get("code", ""), given.get("reason", "")
     problem = _incomplete(place, str(code), str(reason).strip(), form)
     if strange:
-        remedy = did_you_mean(strange[0], KEYS) or f"It may have {', '.join(KEYS)}."
-        message = f'An [[ignore]] has no "{strange[0]}".'
-        problem = Problem(place, "warning", "bad-ignore", message, remedy)
+        hint = suggestion(strange[0], KEYS)
+        problem = UNKNOWN_KEY.at(place, hint, name=strange[0], keys=", ".join(KEYS))
     elif not isinstance(named, list) or not all(isinstance(one, str) for one in named):
-        remedy = 'Write files = "ea/*.xml", or a list of such names.'
-        problem = Problem(place, "warning", "bad-ignore", "files names no files.", remedy)
+        problem = NO_FILES.at(place)
     if problem is None:
         settings.ignores.append(Ignore(str(code), place, files=tuple(named)))
     else:

@@ -19,10 +19,10 @@ def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> 
     """Rules and codes that begin so, or else files."""
     from click.shell_completion import CompletionItem
 
-    from prima.errors.codes import CODES
+    from prima.checks.codes import diagnoses
     from prima.handbook.rulebook import rules
 
-    names = [*rules(), *CODES]
+    names = [*rules(), *diagnoses()]
     found = [CompletionItem(name) for name in names if begun and name.startswith(begun)]
     return found or [CompletionItem(begun, type="file")]
 
@@ -44,14 +44,14 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     prima explain undeclared-variable
     prima explain mediated.jsonl 16
     """
-    from prima.errors.codes import CODES
+    from prima.checks.codes import diagnoses
     from prima.handbook.rulebook import named
 
     if what is None:
         _list(form)
         return
     rule = named(what)
-    known = bool(rule) or what in CODES
+    known = bool(rule) or what in diagnoses()
     if row is not None and known and not os.path.exists(what):
         kind = "rule" if rule else "code"
         raise UsageError(f"{what} is a {kind}, which has no rows: prima explain {what}.")
@@ -74,8 +74,8 @@ def explain(what: str | None, row: int | None, form: str) -> None:
 
 
 def _list(form: str) -> None:
-    """Every rule and every code with the first sentence of its explanation."""
-    from prima.errors.codes import CODES
+    """Every rule and every code in a few words."""
+    from prima.checks.codes import diagnoses
     from prima.handbook.rulebook import rules
 
     if form == "json":
@@ -84,14 +84,15 @@ def _list(form: str) -> None:
             for rule in rules().values()
         ]
         listed += [
-            {"code": code, "kind": "problem", "explanation": text} for code, text in CODES.items()
+            {"code": one.code, "kind": "problem", "title": one.title, "explanation": one.meaning}
+            for one in diagnoses().values()
         ]
         print_json(listed)
         return
     put("Rules of mediation:")
     _lines({rule.name: rule.brief for rule in rules().values()})
     put("\nCodes of problems:")
-    _lines({code: CODES[code].partition(". ")[0].rstrip(".") for code in sorted(CODES)})
+    _lines({code: one.title for code, one in diagnoses().items()})
 
 
 def _lines(told: dict[str, str]) -> None:
@@ -117,12 +118,14 @@ def _code(code: str, form: str) -> None:
     Raises:
         UsageError: there is no such code, nor a rule or a file of that name.
     """
-    from prima.errors.codes import CODES
+    from prima.checks.codes import diagnoses
     from prima.handbook.examples import data, shown
     from prima.handbook.rulebook import suggestion
 
-    if code not in CODES:
-        hint = suggestion(code) or did_you_mean(code, CODES) or "prima explain lists them all."
+    if code not in diagnoses():
+        hint = (
+            suggestion(code) or did_you_mean(code, diagnoses()) or "prima explain lists them all."
+        )
         raise UsageError(f'There is no rule, code or file "{code}". {hint}')
     if form == "json":
         print_json(data(code))

@@ -166,10 +166,10 @@ def _show(every: list[Problem], form: str) -> None:
         print_json(told)
     elif form == "sarif":
         from prima import __version__
-        from prima.errors.codes import CODES
+        from prima.checks.codes import diagnoses
         from prima.errors.rendering import sarif
 
-        print_json(sarif(problems, __version__, CODES))
+        print_json(sarif(problems, __version__, diagnoses()))
     elif problems and form == "text":
         from prima.errors.rendering import render
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field, replace
 
 from prima.devices.reading import Reader
 from prima.devices.vocabulary import ROBOT
-from prima.errors import Problem, did_you_mean
+from prima.errors import Problem, meant, suggestion
 from prima.interpreter.events import near
 from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 POINTING_MS = 1000
@@ -112,7 +113,10 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
     if lacking:
         device = min(lacking)
         message = f'"{name}" needs the device "{device}", which the robot lacks.'
-        remedy = did_you_mean(device, profile.devices) or f'Add <device name="{device}"/>.'
+        remedy = (
+            suggestion(device, profile.devices, *value_span(node, "devices", device))
+            or f'Add <device name="{device}"/>.'
+        )
         reader.problem(node, "no-such-name", message, "devices", remedy)
     profile.durations[name] = max(reader.get(node, "duration") or 1000, 1)
     motion = _motion(reader, node)
@@ -139,10 +143,9 @@ def _check_devices(reader: Reader, profile: Profile) -> None:
         name = node.get("name")
         if name in DEVICES or name in own:
             continue
-        meant = near(name, free)
         message = f'No Command of this robot needs a device "{name}".'
-        remedy = f'Did you mean "{meant}"?' if meant else ""
-        remedy = remedy or f'Name it in an <adds devices="{name}">, or remove it.'
+        hint = meant(near(name, free), *value_span(node, "name"))
+        remedy = hint or f'Name it in an <adds devices="{name}">, or remove it.'
         reader.problem(node, "no-such-name", message, "name", remedy, "warning")
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
-from prima.errors import DocumentError, Problem, Severity
+from prima.errors import DocumentError, Hint, Problem, Severity
 from prima.interpreter.surroundings import nearest as nearest_name
 from prima.language.values import nearest, outside, read_value, within
 from prima.markup.reader import read_tree
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 
@@ -42,7 +43,8 @@ class Reader:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and not within(float(value), item.low, item.high):
             message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
-            remedy = nearest(item.kind, float(value), item.low, item.high)
+            spans = value_span(node, name)
+            remedy = nearest(item.kind, float(value), item.low, item.high, *spans)
             self.problem(node, "out-of-range", message, name, remedy)
         return value
 
@@ -56,7 +58,7 @@ class Reader:
         code: str,
         message: str,
         attribute: str = "",
-        remedy: str = "",
+        remedy: str | Hint = "",
         severity: Severity = "error",
     ) -> None:
         """Note a problem."""
@@ -68,7 +70,8 @@ class Reader:
         word = node.get(name)
         if word and word not in words:
             message = f'There is no {what} "{word}".'
-            self.problem(node, "no-such-name", message, name, nearest_name(word, words))
+            hint = nearest_name(word, words, *value_span(node, name))
+            self.problem(node, "no-such-name", message, name, hint)
 
     def finish(self) -> None:
         """Raise what was found.

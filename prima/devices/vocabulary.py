@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.language.commands import DEVICES
-from prima.markup.vocabulary import Element, Vocabulary, attribute
+from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 
 VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
 ID = attribute("id", "id", "its name", "required")
@@ -165,9 +165,9 @@ ROBOT = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("sensor", "touch-sensor"), 'Write <touch sensor="..."/>.'),
+        **dict.fromkeys(("sensor", "touch-sensor"), Instead("touch", 'sensor="..."/')),
         **{name: f'Write <device name="{name}"/>.' for name in DEVICES},
-        **dict.fromkeys(("command", "add"), 'Write <adds command="...">.'),
-        "language": 'Write <voice lang="..."/>.',
+        **dict.fromkeys(("command", "add"), Instead("adds", 'command="..."')),
+        "language": Instead("voice", 'lang="..."/'),
     },
 )

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from prima.errors import Problem, Severity
+from prima.errors.diagnosis import Diagnosis
+from prima.errors.problems import Fix, Problem, Severity
 from prima.errors.visible import visible
 
 WIDEST = 100
@@ -23,7 +24,7 @@ Lines = Callable[[str], list[str]]
 
 def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
     """A problem with its source line and a caret under what is wrong."""
-    place, severity, code, message, remedy = problem
+    place, (severity, code, message, remedy) = problem.place, problem.sentence
 
     def paint(text: str, style: str) -> str:
         return f"\033[{style}m{text}\033[0m" if colour else text
@@ -82,41 +83,32 @@ def problem_data(problem: Problem) -> dict[str, Any]:
         "code": problem.code,
         "message": problem.message,
         "remedy": problem.remedy,
+        "fixes": [_fix_data(fix) for fix in problem.fixes],
     }
 
 
-def sarif(problems: Iterable[Problem], version: str, codes: dict[str, str]) -> dict[str, Any]:
-    """Problems as a SARIF 2.1.0 log; ``codes`` explains each code."""
+def _fix_data(fix: Fix) -> dict[str, Any]:
+    return {
+        "title": fix.title,
+        "edits": [{**edit.span._asdict(), "text": edit.text} for edit in fix.edits],
+    }
+
+
+def sarif(
+    problems: Iterable[Problem], version: str, known: Mapping[str, Diagnosis]
+) -> dict[str, Any]:
+    """Problems as a SARIF 2.1.0 log; ``known`` are the diagnoses by code."""
     held = list(problems)
     used = sorted({problem.code for problem in held})
     rules = [
         {
             "id": code,
-            "shortDescription": {"text": code.replace("-", " ")},
-            "fullDescription": {"text": codes.get(code, code)},
+            "shortDescription": {"text": known[code].title},
+            "fullDescription": {"text": known[code].meaning},
         }
         for code in used
     ]
-    results = [
-        {
-            "ruleId": problem.code,
-            "ruleIndex": used.index(problem.code),
-            "level": LEVELS[problem.severity],
-            "message": {"text": f"{problem.message} {problem.remedy}".strip()},
-            "locations": [
-                {
-                    "physicalLocation": {
-                        "artifactLocation": {"uri": _uri(problem.place.file)},
-                        "region": {
-                            "startLine": problem.place.line,
-                            "startColumn": problem.place.column,
-                        },
-                    }
-                }
-            ],
-        }
-        for problem in held
-    ]
+    results = [_result(problem, used.index(problem.code)) for problem in held]
     driver = {"name": "prima", "version": version, "rules": rules}
     run = {
         "tool": {"driver": driver},
@@ -124,6 +116,35 @@ def sarif(problems: Iterable[Problem], version: str, codes: dict[str, str]) -> d
         "results": results,
     }
     return {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _result(problem: Problem, rule: int) -> dict[str, Any]:
+    """A problem as a result of a SARIF log; ``rule`` is where the log explains its code."""
+    file = {"uri": _uri(problem.place.file)}
+    region = {"startLine": problem.place.line, "startColumn": problem.place.column}
+    result = {
+        "ruleId": problem.code,
+        "ruleIndex": rule,
+        "level": LEVELS[problem.severity],
+        "message": {"text": f"{problem.message} {problem.remedy}".strip()},
+        "locations": [{"physicalLocation": {"artifactLocation": file, "region": region}}],
+    }
+    if problem.fixes:
+        result["fixes"] = [_sarif_fix(fix, file) for fix in problem.fixes]
+    return result
+
+
+def _sarif_fix(fix: Fix, file: dict[str, str]) -> dict[str, Any]:
+    names = ("startLine", "startColumn", "endLine", "endColumn")
+    replacements = [
+        {
+            "deletedRegion": dict(zip(names, span, strict=True)),
+            "insertedContent": {"text": text},
+        }
+        for span, text in fix.edits
+    ]
+    changes = [{"artifactLocation": file, "replacements": replacements}]
+    return {"description": {"text": fix.title}, "artifactChanges": changes}
 
 
 def _uri(path: str) -> str:

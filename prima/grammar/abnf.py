@@ -11,7 +11,7 @@ from typing import Any
 
 from lark import Lark, TextSlice, Token, UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from prima.errors import Place, Problem, did_you_mean
+from prima.errors import Hint, Place, Problem, Span, suggestion
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
 from prima.grammar.media import FIRST_LINE, NO_HEADER
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
@@ -212,7 +212,7 @@ class _Reader:
     def _where(self, token: Token) -> Where:
         return partial(self.source.at, token.start_pos or 0)
 
-    def note(self, token: Token, code: str, message: str, remedy: str = "") -> None:
+    def note(self, token: Token, code: str, message: str, remedy: str | Hint = "") -> None:
         self.problems.note(self._where(token), code, message, remedy)
 
     # Header (section 4)
@@ -297,8 +297,13 @@ class _Reader:
     def start(self, found: list[Any]) -> None:
         root, rules = self.document.root, self.document.rules
         if self.root is not None and root not in rules:
-            hint = did_you_mean(root, rules)
+            hint = suggestion(root, rules, self._named(self.root))
             self.note(self.root, "no-such-rule", f'The root rule "{root}" is not there.', hint)
+
+    def _named(self, token: Token) -> Span:
+        """The name that a token has behind its $."""
+        place = self._where(token)()
+        return Span.of(place._replace(column=place.column + 1), token[1:])
 
     # Alternatives (2.4)
 
@@ -430,9 +435,11 @@ class _Reader:
             self.note(token, "bad-value", problem, "Choose another name.")
         return self._reference(f"#{name}", token)
 
-    def LINK(self, token: Token) -> Part:
+    def LINK(self, token: Token) -> Reference:
         uri, _, media = token[1:].partition("~")
-        return self._reference(uri[1:-1].strip(), token, media[1:-1].strip())
+        found = self._reference(uri[1:-1].strip(), token, media[1:-1].strip())
+        found.lead = len("$<")
+        return found
 
     def _reference(self, uri: str, token: Token, media: str = "") -> Reference:
         found = Reference(uri, self._where(token), media)

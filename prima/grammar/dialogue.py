@@ -5,12 +5,17 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from prima.errors import Place, did_you_mean
+from prima.errors import Diagnosis, Hint, Place, suggestion
+from prima.errors.diagnoses.grammars import EMPTY_ANSWER, NO_SUCH_RULE
+from prima.errors.diagnoses.structure import DUPLICATE_ID, STRAY_TEXT
+from prima.errors.diagnoses.values import BAD_VALUE
+from prima.errors.diagnosis import NO_HINT
 from prima.grammar.grammar import Grammar
 from prima.grammar.leads import index_choices
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Tag, Words
 from prima.grammar.text import fold
 from prima.grammar.values import choice, repeat, sequence
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -20,9 +25,21 @@ if TYPE_CHECKING:
         """Notes a problem at an element or the value of one of its attributes."""
 
         def __call__(
-            self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+            self,
+            diagnosis: Diagnosis,
+            node: Node,
+            attribute: str = "",
+            hint: Hint = NO_HINT,
+            **parameters: object,
         ) -> None:
             """Note it, with what to write instead."""
+
+
+TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
+NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
+TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
+EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
+BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')
 
 
 def read_grammar(note: Note, node: Node) -> Grammar:
@@ -44,12 +61,10 @@ class _Reader:
         for rule in rules:
             self._rule(rule)
         if rules and node.text:
-            message = "This grammar has rules; its own text counts for nothing."
-            self.note(node, "stray-text", message)
+            self.note(TEXT_BESIDE_RULES, node)
         if not rules:
             if not node.nodes and not fold(node.text):
-                message = "This grammar holds nothing to say."
-                self.note(node, "empty-answer", message, "Write what it takes.")
+                self.note(EMPTY_GRAMMAR, node)
             self._define("root", self._expansion(node))
         self.document.root = node.get("root", rules[0].get("id")) if rules else "root"
         self._rule_named(node, self.document.root, "root")
@@ -60,7 +75,7 @@ class _Reader:
     def _rule(self, node: Node) -> None:
         name = node.get("id")
         if name in self.document.rules:
-            self.note(node, "duplicate-id", f'There are two rules "{name}".', attribute="id")
+            self.note(TWO_RULES, node, "id", name=name)
         self._define(name, self._expansion(node))
 
     def _define(self, name: str, body: Part) -> Rule:
@@ -73,8 +88,8 @@ class _Reader:
         if found is not None:
             return found
         if not told:
-            hint = did_you_mean(name, self.document.rules)
-            self.note(node, "no-such-rule", f'There is no rule "{name}".', hint, attribute)
+            hint = suggestion(name, self.document.rules, *value_span(node, attribute, name))
+            self.note(NO_RULE, node, attribute, hint, name=name)
         return self._define(name, choice([], []))
 
     def _resolve(self, node: Node) -> None:
@@ -118,7 +133,7 @@ class _Reader:
         try:
             return Repeat(part, *repeat(node.get("repeat")))
         except ValueError as error:
-            self.note(node, "bad-value", str(error), 'Write one such as "0-1".', "repeat")
+            self.note(BAD_REPEAT, node, "repeat", wrong=str(error))
             return part
 
 

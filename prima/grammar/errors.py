@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from prima.errors import DocumentError, Place, Problem
+from prima.errors import DocumentError, Hint, Place, Problem
 
 MOST_PROBLEMS = 100
 """How many problems of one grammar are told."""
@@ -44,12 +44,12 @@ class Problems:
         """Whether there are so many that no more are told."""
         return len(self.found) >= MOST_PROBLEMS
 
-    def note(self, where: Where, code: str, message: str, remedy: str = "") -> None:
+    def note(self, where: Where, code: str, message: str, remedy: str | Hint = "") -> None:
         """Note one thing; after many, no more are looked at."""
         if not self.full:
             self.found.append(Problem(where(), "error", code, message, remedy))
 
-    def warn(self, where: Where, code: str, message: str, remedy: str = "") -> None:
+    def warn(self, where: Where, code: str, message: str, remedy: str | Hint = "") -> None:
         """Note what is accepted, and yet better written in another way."""
         if len(self.warnings) < MOST_PROBLEMS:
             self.warnings.append(Problem(where(), "warning", code, message, remedy))

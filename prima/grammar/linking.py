@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from urllib.parse import unquote, urldefrag, urlsplit
 
-from prima.errors import PrimaError, did_you_mean
+from prima.errors import PrimaError, Span, suggestion
 from prima.grammar.builtin import built_in
 from prima.grammar.errors import (
     GrammarError,
@@ -152,7 +152,7 @@ class Library:
     def _local(self, document: Document, reference: Reference, name: str) -> Rule | None:
         rule = document.rules.get(name)
         if rule is None:
-            hint = did_you_mean(name, document.rules)
+            hint = suggestion(name, document.rules, _name_in(reference, name))
             message = f'There is no rule "{name[:80]}".'
             self.problems.note(reference.where, "no-such-rule", message, hint)
         return rule
@@ -172,7 +172,7 @@ class Library:
             message = f'The grammar "{found.uri}" names no root rule.'
             note(reference.where, "no-root", message, f"Name a rule: {found.uri}#name.")
         elif rule is None:
-            hint = did_you_mean(name, found.rules)
+            hint = suggestion(name, found.rules, _name_in(reference, name))
             note(reference.where, "no-such-rule", f'There is no rule "{name[:80]}" there.', hint)
         elif named and not rule.public and found is not document:
             message = f'The rule "{name}" is private to its grammar.'
@@ -211,3 +211,10 @@ def joined(base: str, uri: str, where: Where) -> str:
         message = f'"{uri[:80]}" is no URI: {error}.'
         raise refuse(GrammarError, where(), "bad-value", message) from None
     return join(base, uri)
+
+
+def _name_in(reference: Reference, name: str) -> Span:
+    """The rule's name in a reference as written."""
+    place = reference.where()
+    before = reference.lead + reference.uri.find("#") + 1
+    return Span.of(place._replace(column=place.column + before), name)

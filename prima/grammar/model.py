@@ -67,6 +67,8 @@ class Reference:
     media: str = ""
     home: Document | None = None
     name: str = ""
+    lead: int = 0
+    """Characters at that place before the URI."""
 
     @property
     def rule(self) -> Rule | None:

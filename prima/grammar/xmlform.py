@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from prima.errors import Place, did_you_mean
+from prima.errors import Hint, Place, suggestion
 from prima.grammar.errors import Problems, Where
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys, tokens
@@ -20,6 +20,7 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
+from prima.markup.spans import attribute_span, name_spans, value_span
 from prima.markup.tree import Node
 
 SRGS = "http://www.w3.org/2001/06/grammar"
@@ -66,7 +67,7 @@ class _Reader:
         self.space = SRGS
 
     def note(
-        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+        self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
     ) -> None:
         self.problems.note(_where(node, attribute), code, message, remedy)
 
@@ -93,7 +94,7 @@ class _Reader:
         document.root = node.get("root").strip()
         self._children(node)
         if "root" in node.attributes and document.root not in document.rules:
-            hint = did_you_mean(document.root, document.rules)
+            hint = suggestion(document.root, document.rules, *value_span(node, "root"))
             message = f'The root rule "{document.root}" is not there.'
             self.note(node, "no-such-rule", message, hint, "root")
 
@@ -276,7 +277,8 @@ class _Reader:
             if special not in RESERVED:
                 message = f'"{special}" is no special rule: NULL, VOID and GARBAGE are.'
                 remedy = (
-                    did_you_mean(special, RESERVED) or 'Write uri="#name" for a rule of your own.'
+                    suggestion(special, RESERVED, *value_span(node, "special"))
+                    or 'Write uri="#name" for a rule of your own.'
                 )
                 self.note(node, "bad-value", message, remedy, "special")
             return [Special(special)]
@@ -337,7 +339,7 @@ class _Reader:
                 self.note(node, "wrong-namespace", message, f'Declare xmlns="{self.space}".')
             return False
         if node.tag not in ATTRIBUTES:
-            hint = did_you_mean(node.tag, ATTRIBUTES)
+            hint = suggestion(node.tag, ATTRIBUTES, *name_spans(node))
             self.note(node, "unknown-element", f"SRGS has no element <{node.tag}>.", hint)
             return False
         self._attributes(node, set())
@@ -350,7 +352,8 @@ class _Reader:
         for name in node.attributes:
             if name not in known and ":" not in name and not name.startswith("{"):
                 message = f"<{node.tag}> has no attribute {name}."
-                self.note(node, "unknown-attribute", message, did_you_mean(name, known), name)
+                hint = suggestion(name, known, attribute_span(node, name))
+                self.note(node, "unknown-attribute", message, hint, name)
         lang = node.attributes.get("xml:lang")
         if lang is not None and not is_language(lang):
             message = f'"{lang[:40]}" names no language.'

@@ -5,9 +5,35 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from prima.errors import Problem, parted
+from prima.errors import Diagnosis, Hint, Problem
+from prima.errors.diagnosis import NO_HINT
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
+from prima.interpreter.diagnoses import (
+    BAD_PROPERTY,
+    BEHIND_ELSE,
+    BEYOND,
+    EMPTY_OPTION,
+    EMPTY_UNIT,
+    FOR_FAS,
+    HAS_BOTH,
+    ID_WITH_DOT,
+    NAME_WITH_DOT,
+    NEEDS_ARGUMENT,
+    NEEDS_EITHER,
+    NEEDS_VALUE,
+    NO_DELAY,
+    NO_FORM_AT_ALL,
+    NO_GRAMMAR,
+    ONLY_A_PAUSE,
+    ONLY_ONE,
+    RESERVED_NAME,
+    SAYS_NOTHING,
+    SPEAKS_TOO_LONG,
+    TAKES_NO_ANSWER,
+    TWO_FORMS,
+    TWO_OPTIONS,
+)
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -62,7 +88,8 @@ from prima.language.commands import (
     missing_argument,
     too_long,
 )
-from prima.language.values import XML_SPACE, nearest, outside, read_value, within
+from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.script.evaluation import SCOPES
@@ -112,11 +139,15 @@ class Builder:
     # Reading attributes -----------------------------------------------------
 
     def problem(
-        self, node: Node, code: str, message: str, remedy: str = "", attribute: str = ""
+        self,
+        diagnosis: Diagnosis,
+        node: Node,
+        attribute: str = "",
+        hint: Hint = NO_HINT,
+        **parameters: object,
     ) -> None:
         """Note a problem at an element or at the value of one of its attributes."""
-        place = node.attribute_place(attribute) if attribute in node.attributes else node.place
-        self.problems.append(Problem(place, "error", code, message, remedy))
+        self.problems.append(diagnosis.at(node.place_of(attribute), hint, **parameters))
 
     def value(self, node: Node, name: str, kind: str, default: Json) -> Json:
         """An attribute as a value of its kind, within its bounds."""
@@ -135,9 +166,10 @@ class Builder:
     def bounded(self, node: Node, name: str, item: Attribute, value: Json) -> None:
         """Note an attribute's number that is not within the bounds of what it says."""
         if isinstance(value, int | float) and not within(float(value), item.low, item.high):
-            message = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
-            remedy = nearest(item.kind, float(value), item.low, item.high)
-            self.problem(node, "out-of-range", message, remedy, name)
+            wrong = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
+            spans = value_span(node, name)
+            hint = nearest(item.kind, float(value), item.low, item.high, *spans)
+            self.problem(BEYOND, node, name, hint, wrong=wrong)
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
         """An attribute as an expression, if it is there."""
@@ -171,8 +203,7 @@ class Builder:
         if one and other:
             self.exclusive(node, one, other)
         elif not (one or other or self.strange(node)):
-            message = f"<{node.tag}> needs either {first} or {second}."
-            self.problem(node, "missing-attribute", message)
+            self.problem(NEEDS_EITHER, node, tag=node.tag, first=first, second=second)
 
     @staticmethod
     def written(node: Node, name: str) -> str:
@@ -188,8 +219,7 @@ class Builder:
 
     def exclusive(self, node: Node, first: str, second: str) -> None:
         """Note that two attributes exclude each other."""
-        message = f'<{node.tag}> has both "{first}" and "{second}".'
-        self.problem(node, "exclusive", message, "Keep one of them.", second)
+        self.problem(HAS_BOTH, node, second, tag=node.tag, first=first, second=second)
 
     def text(self, node: Node) -> Text:
         """Text with values in it, white space folded."""
@@ -224,7 +254,7 @@ class Builder:
             if expr is not None and "value" in child.attributes:
                 self.exclusive(child, "value", "expr")
             elif expr is None and "value" not in child.attributes:
-                self.problem(child, "missing-attribute", "<param> needs a value or an expr.")
+                self.problem(NEEDS_VALUE, child)
             found.append((child.get("name"), expr or child.get("value")))
         return tuple(found)
 
@@ -242,17 +272,12 @@ class Builder:
         for node in parts.get("form", ()):
             name = node.get("id")
             if name in forms:
-                self.problem(
-                    node, "duplicate-id", f'There are two forms "{name}".', "Rename one.", "id"
-                )
+                self.problem(TWO_FORMS, node, "id", name=name)
             forms.setdefault(name, self.form(node))
         if "." in root.get("id"):
-            remedy = "Use letters, digits and hyphens: transcripts count with dots."
-            self.problem(root, "bad-value", f'id "{root.get("id")}" has a dot.', remedy, "id")
+            self.problem(ID_WITH_DOT, root, "id", name=root.get("id"))
         if not forms:
-            self.problem(
-                root, "no-form", "The application has no form.", "Write at least one <form>."
-            )
+            self.problem(NO_FORM_AT_ALL, root)
         document = Document(
             id=root.get("id"),
             kind=root.get("kind"),
@@ -329,11 +354,9 @@ class Builder:
         """A variable that is declared has a name without a scope's."""
         name = node.get(attribute)
         if "." in name:
-            remedy = "Declare it where it belongs, without a scope's name."
-            self.problem(node, "bad-value", f'{attribute} "{name}" has a dot.', remedy, attribute)
+            self.problem(NAME_WITH_DOT, node, attribute, attribute_name=attribute, name=name)
         elif name in RESERVED:
-            message = f'{attribute} "{name}" is a word of ECMAScript\'s own.'
-            self.problem(node, "bad-value", message, "Choose another name.", attribute)
+            self.problem(RESERVED_NAME, node, attribute, attribute_name=attribute, name=name)
 
     def script(self, node: Node) -> Script:
         """A script."""
@@ -351,9 +374,11 @@ class Builder:
                 item, text = PROPERTIES[name], child.get("value")
                 try:
                     found[name] = value = read_value(item.kind, text)
-                except ValueError as error:
-                    wrong, remedy = parted(str(error))
-                    self.problem(child, "bad-value", f'{name} "{text}" {wrong}', remedy, "value")
+                except BadValue as error:
+                    hint = Hint(error.remedy)
+                    self.problem(
+                        BAD_PROPERTY, child, "value", hint, name=name, value=text, wrong=error.wrong
+                    )
                     continue
                 self.bounded(child, "value", item, value)
         return found
@@ -390,12 +415,7 @@ class Builder:
             held = child.all("grammar")
             grammars = self.grammars(held)
             if len(held) != 1:
-                self.problem(
-                    child,
-                    "missing-element",
-                    "<link> needs one <grammar>.",
-                    "Write what the user says into one.",
-                )
+                self.problem(NO_GRAMMAR, child)
             if grammars:
                 to = self.target(child, "next")
                 found.append(Link(to, child.get("event"), Answers(grammars=grammars[:1]), child))
@@ -486,29 +506,14 @@ class Builder:
         for child in parts.get("option", ()):
             said = child.text
             if not fold(said):
-                self.problem(
-                    child,
-                    "empty-answer",
-                    "This option has nothing to say.",
-                    "Write the words of the answer into it.",
-                )
+                self.problem(EMPTY_OPTION, child)
             elif fold(said) in answers.options:
-                self.problem(
-                    child,
-                    "duplicate-answer",
-                    f'"{said}" is an option of this field already.',
-                    "Remove one of them.",
-                )
+                self.problem(TWO_OPTIONS, child, answer=said)
             answers.options.setdefault(fold(said), child.get("value", said))
         answers.grammars = self.grammars(parts.get("grammar", []))
         strange = any(not child.key for child in node.nodes)  # told already
         if not (answers.options or "grammar" in parts or answers.type or strange):
-            self.problem(
-                node,
-                "no-answer",
-                f'The field "{node.get("name")}" takes no answer at all.',
-                "Give it options, a grammar or a type.",
-            )
+            self.problem(TAKES_NO_ANSWER, node, name=node.get("name"))
         return Field(
             *self.item(node, parts),
             prompts=prompts,
@@ -634,9 +639,7 @@ class Builder:
             problem = unit_problem(Reached(command, True), TABLE_4_2.get(command.type))
             self.problems += [problem] if problem is not None else []
         if not steps:
-            self.problem(
-                node, "empty", "This <iu> holds no Command.", "Write what must not be cut into it."
-            )
+            self.problem(EMPTY_UNIT, node)
         longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
         return GroupTemplate(tuple(steps), longest, node, node.get("restartable") == "true")
 
@@ -650,12 +653,7 @@ class Builder:
             self.check_complete(node, row, args, content)
         params = self.params(node)
         if params and self.root.get("kind") == "ea" and node.tag != "command":
-            self.problem(
-                node.all("param")[0],
-                "fa-only",
-                "Additional arguments are for an FA alone: an EA does not know the robot.",
-                "Remove the <param>.",
-            )
+            self.problem(FOR_FAS, node.all("param")[0])
         return CommandTemplate(
             type=name,
             args=args,
@@ -684,11 +682,11 @@ class Builder:
             try:
                 check_argument(bare, argument, text)
                 args[bare] = text  # the mediator reads it, as it reads what an expression gives
-            except ValueError as error:
-                if "out of range" in str(error):
-                    value = float(read_value(argument.kind, text))
-                    remedy = nearest(argument.kind, value, argument.low, argument.high)
-                    self.problem(node, "out-of-range", str(error), remedy, key)
+            except BadValue as error:
+                if error.beyond:
+                    value, spans = float(read_value(argument.kind, text)), value_span(node, key)
+                    hint = nearest(argument.kind, value, argument.low, argument.high, *spans)
+                    self.problem(BEYOND, node, key, hint, wrong=error.wrong)
         return args
 
     def check_complete(
@@ -699,25 +697,23 @@ class Builder:
         missing = missing_argument(row, args) if required <= args.keys() else ""
         if missing and not self.strange(node):
             choices = sorted(key for key, item in row.arguments.items() if item.choice)
-            remedy = f'Write {choices[0]}="...", for one.' if " one of " in missing else ""
-            self.problem(node, "missing-attribute", missing, remedy)
+            hint = Hint(f'Write {choices[0]}="...", for one.' if choices else "")
+            self.problem(NEEDS_ARGUMENT, node, hint=hint, wrong=missing)
         if excluding := excluding_arguments(row, args):
             given = [key for key in node.attributes if key.removesuffix("-expr") in args]
             choices = [key for key in given if row.arguments[key.removesuffix("-expr")].choice]
-            self.problem(node, "exclusive", excluding, "Keep one of them.", choices[-1])
+            self.problem(ONLY_ONE, node, choices[-1], wrong=excluding)
         self.check_length(node, text)
         wordless = text is not None and all(isinstance(part, Pause) for part in text)
         if wordless or (row.text == "required" and text is None):
-            remedy = "Write its text inside it."
-            if wordless and row.text == "required":
-                remedy += ' A pause between Commands is <pause time="1s"/>.'
-            self.problem(node, "nothing-to-say", f"<{node.tag}> has nothing to say.", remedy)
+            paused = wordless and row.text == "required"
+            self.problem(ONLY_A_PAUSE if paused else SAYS_NOTHING, node, tag=node.tag)
 
     def check_length(self, node: Node, text: Text | None) -> None:
         """Whether what is said takes longer than one utterance may (E3), as far as it is known."""
         letters = sum(len(part) for part in text or () if isinstance(part, str))
-        if problem := too_long(letters, pauses_in(text)):
-            self.problem(node, "too-long", problem, "Divide it: say it in several Commands.")
+        if wrong := too_long(letters, pauses_in(text)):
+            self.problem(SPEAKS_TOO_LONG, node, wrong=wrong)
 
     def act(self, node: Node) -> Act | None:
         """One element of executable content that is no Command."""
@@ -777,9 +773,7 @@ class Builder:
                 part.append(child)
                 continue
             if cond is None:
-                self.problem(
-                    child, "after-else", f"<{child.tag}> stands after <else>.", "<else> comes last."
-                )
+                self.problem(BEHIND_ELSE, child, tag=child.tag)
             branches.append((cond, self.acts(part)))
             part = []
             cond = self.code(child.get("cond"), child, "cond") if child.tag == "elseif" else None
@@ -802,12 +796,6 @@ class Builder:
         event = node.get("event")
         self.one_of_two(node, "to", "event")
         if to and ("delay" in node.attributes or "delay-expr" in node.attributes):
-            self.problem(
-                node,
-                "exclusive",
-                "Only an event to the application itself has a delay.",
-                "Remove it.",
-                "delay",
-            )
+            self.problem(NO_DELAY, node, "delay")
         delay = self.expression(node, "delay-expr") or self.value(node, "delay", "duration", 0)
         return SendOut(to, event, delay, self.params(node), node)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Place, Problem, guessable
+from prima.errors import Place, Problem, Span, guessable, meant
+from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
 from prima.interpreter.elements import (
     Acts,
     CommandTemplate,
@@ -22,7 +23,16 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.language.commands import DEVICES
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
+
+NEVER_RAISED = UNKNOWN_EVENT.says("{wrong}", "Remove the handler.")
+NOT_HANDLED = UNHEARD_EVENT.says(
+    'No handler takes the event "{name}".', 'Write <on event="{name}">.'
+)
+ENDS_APPLICATION = UNHEARD_EVENT.says(
+    f"{NOT_HANDLED.message} It ends the application.", NOT_HANDLED.remedy
+)
 
 STANDARD = frozenset(
     [
@@ -171,17 +181,17 @@ class Events:
     def problems(self) -> list[Problem]:
         """Handlers of events that nobody raises, and events that no handler takes."""
         found: list[Problem] = []
-        meant: set[str] = set()
+        wanted: set[str] = set()
         for handler in self.handlers:
             for name in handler.events:
                 told = self._unraised(name)
                 if told is not None:
                     message, nearest = told
-                    meant.add(nearest)
-                    remedy = f'Did you mean "{nearest}"?' if nearest else "Remove the handler."
+                    wanted.add(nearest)
                     place = event_place(handler.node, name)
-                    found.append(Problem(place, "warning", "unknown-event", message, remedy))
-        found += [problem for one in self.raised if (problem := self._unheard(one, meant))]
+                    hint = meant(nearest, Span.of(place, name))
+                    found.append(NEVER_RAISED.at(place, hint, wrong=message))
+        found += [problem for one in self.raised if (problem := self._unheard(one, wanted))]
         return found
 
     def _unraised(self, name: str) -> tuple[str, str] | None:
@@ -213,21 +223,20 @@ class Events:
         nearest = HABITS.get(name, "") or slip_of(name, {*STANDARD, *self._own})
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
-    def _unheard(self, one: Raised, meant: set[str]) -> Problem | None:
+    def _unheard(self, one: Raised, wanted: set[str]) -> Problem | None:
         heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
-        if one.name in meant or heard:
+        if one.name in wanted or heard:
             return None
-        ends = " It ends the application." if one.fatal else ""
-        message = f'No handler takes the event "{one.name}".{ends}'
         self._guesses += 1
         nearest = ""
         if self._guesses <= MOST_GUESSES:
             if one.name not in self._near:
                 self._near[one.name] = near(one.name, self.heard)
             nearest = self._near[one.name]
-        remedy = f'Did you mean "{nearest}"?' if nearest else f'Write <on event="{one.name}">.'
         place = one.node.attribute_place(one.attribute)
-        return Problem(place, "warning", "unheard-event", message, remedy)
+        spans = value_span(one.node, one.attribute, one.name) if nearest else ()
+        diagnosis = ENDS_APPLICATION if one.fatal else NOT_HANDLED
+        return diagnosis.at(place, meant(nearest, *spans), name=one.name)
 
 
 def event_place(node: Node, name: str) -> Place:

@@ -7,6 +7,7 @@ from posixpath import dirname, join
 from typing import TYPE_CHECKING
 
 from prima.errors import Problem
+from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.grammar import GrammarError, load
 from prima.grammar.dialogue import read_grammar
 from prima.markup.tree import Node
@@ -15,6 +16,17 @@ if TYPE_CHECKING:
     from prima.grammar import Grammar
     from prima.grammar.dialogue import Note
 
+FOR_KEYS = BAD_VALUE.says(
+    '"{name}" is a grammar of keys; a robot has none.', 'Name a grammar with mode="voice".'
+)
+NO_FILE = BAD_VALUE.says("src names no file.", 'Write one such as src="names.grxml".')
+A_TYPE = BAD_VALUE.says(
+    "src names a file, not a built-in type.", 'Write the type at the field: type="boolean".'
+)
+FILE_AND_CONTENT = EXCLUSIVE.says("<grammar> has both src and content.", "Keep one of them.")
+FILE_AND_ROOT = EXCLUSIVE.says(
+    "root is a rule of this document, and src names a file.", 'Write src="{file}#RULE".'
+)
 Fetch = Callable[[str], bytes]
 """Gives the bytes of a file that a document names, by its path from the document's folder."""
 
@@ -34,8 +46,7 @@ def grammar_of(
         return None
     found += [_placed(node, one) for one in grammar.warnings()]
     if grammar.mode == "dtmf":
-        message = f'"{node.get("src")}" is a grammar of keys; a robot has none.'
-        note(node, "bad-value", message, 'Name a grammar with mode="voice".', "src")
+        note(FOR_KEYS, node, "src", name=node.get("src"))
         return None
     return grammar
 
@@ -44,17 +55,13 @@ def _contradicts(note: Note, node: Node) -> bool:
     """Whether an element that names a file says more than the file's name."""
     src = node.get("src").strip()
     if not src or src.startswith("#"):
-        message = "src names no file."
-        note(node, "bad-value", message, 'Write one such as src="names.grxml".', "src")
+        note(NO_FILE, node, "src")
     elif src.startswith("builtin:"):
-        message = "src names a file, and no built-in type."
-        note(node, "bad-value", message, 'Write the type at the field: type="boolean".', "src")
+        note(A_TYPE, node, "src")
     elif node.nodes or node.text:
-        message = "<grammar> has both src and content."
-        note(node, "exclusive", message, "Keep one of them.", "src")
+        note(FILE_AND_CONTENT, node, "src")
     elif "root" in node.attributes:
-        message = "root is a rule of this document, and src names a file."
-        note(node, "exclusive", message, f'Write src="{src.partition("#")[0]}#RULE".', "root")
+        note(FILE_AND_ROOT, node, "root", file=src.partition("#")[0])
     else:
         return False
     return True

@@ -102,5 +102,5 @@ def _follows(problem: Problem, named: set[str]) -> bool:
     ``named`` are the forms that these name.
     """
     if problem.code == "unreachable":
-        return problem.message.partition('"')[2].partition('"')[0] in named
+        return problem.get("form") in named
     return problem.code in WHOLE

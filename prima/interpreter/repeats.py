@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from posixpath import basename
 
-from prima.errors import Problem
+from prima.errors import Hint, Problem
+from prima.errors.diagnoses.behaviour import TOLD_TWICE
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -34,6 +35,10 @@ from prima.interpreter.returning import callers_of, calls_again, returns_of, tol
 from prima.interpreter.ways import Ways
 from prima.markup.tree import Node
 from prima.script.choices import choices
+
+SAID_AGAIN = TOLD_TWICE.says(
+    'If "{event}" comes while the {form} {asks} this ({line}), it {told} told twice: {why}'
+)
 
 OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error", "emergency")
 """What begins an event that comes of what the application itself does, or ends everything."""
@@ -289,12 +294,17 @@ def _problem(back: _Back, remedy: str) -> Problem:
     tag = form.node.tag
     it = f"{tag} {form.id}" if form.id[:1] == "#" else f'{tag} "{form.id}"'
     line = f"line {place.line}" + ("" if place.file == way.file else f" of {basename(place.file)}")
-    message = (
-        f'If "{back.event}" comes while the {it} {"asks" if back.asks else "says"} this ({line}),'
-        f" it {'is' if back.certain else 'may be'} told twice: {_why(back)}"
-    )
     more = "" if back.certain else GUESSED.format("#" if back.way.item is None else "")
-    return Problem(way, "warning", "told-twice", message, remedy + more)
+    return SAID_AGAIN.at(
+        way,
+        Hint(remedy + more),
+        event=back.event,
+        form=it,
+        asks="asks" if back.asks else "says",
+        line=line,
+        told="is" if back.certain else "may be",
+        why=_why(back),
+    )
 
 
 def _why(back: _Back) -> str:

@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from prima.errors import Problem
+from prima.errors.diagnoses.behaviour import TOLD_TWICE
 from prima.interpreter.elements import Assign, Form, Handler, Return, Subdialog, all_acts, all_items
 from prima.interpreter.entering import Source, Target, is_left
 from prima.interpreter.events import beginnings
@@ -16,6 +17,12 @@ from prima.interpreter.events import beginnings
 REMEDY = "Handle the event here without <return>: what is said goes on then. Or give what is said a cond."
 
 Callers = dict[Target, list[tuple[Source, Form, Subdialog]]]
+
+CALLED_AGAIN = TOLD_TWICE.says(
+    'If "{event}" comes while this is {said} (line {line}), it is told twice: the form that called'
+    ' this one handles "{returned}" and calls it again.',
+    REMEDY,
+)
 
 
 def callers_of(sources: Sequence[Source]) -> Callers:
@@ -58,8 +65,5 @@ def _goes_on(handler: Handler, item: Subdialog) -> bool:
 
 def told_again(event: str, line: int, asks: bool, way: Return) -> Problem:
     """The warning of one way."""
-    message = (
-        f'If "{event}" comes while this is {"asked" if asks else "said"} (line {line}), it is told'
-        f' twice: the form that called this one handles "{way.event}" and calls it again.'
-    )
-    return Problem(way.node.place, "warning", "told-twice", message, REMEDY)
+    said = "asked" if asks else "said"
+    return CALLED_AGAIN.at(way.node.place, event=event, said=said, line=line, returned=way.event)

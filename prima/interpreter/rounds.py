@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from prima.errors import Problem
+from prima.errors.diagnoses.behaviour import ENDLESS
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -21,6 +22,11 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.events import takes
+
+AGAIN = ENDLESS.says(
+    "This reaction to {event} leads to itself again without a wait: no other application has a turn.",
+    'Leave out reactive="true", or put <pause time="..."/> first.',
+)
 
 PAUSE = "pause"
 
@@ -81,13 +87,7 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
 
 
 def _problem(handler: Handler) -> Problem:
-    message = (
-        f"This reaction to {handler.events[0]} leads to itself again without a wait:"
-        " no other application has a turn."
-    )
-    remedy = 'Leave out reactive="true", or put <pause time="..."/> first.'
-    place = handler.node.attribute_place("reactive")
-    return Problem(place, "warning", "endless", message, remedy)
+    return AGAIN.at(handler.node.attribute_place("reactive"), event=handler.events[0])
 
 
 def _reacting(document: Document, form: Form) -> list[Handler]:

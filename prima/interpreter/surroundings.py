@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Hint, Problem, Span, one_of, suggestion
+from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
 from prima.interpreter.elements import (
     CommandTemplate,
@@ -19,7 +20,12 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.events import event_place, handlers_of
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
+
+NO_SENSOR = NO_SUCH_NAME.says('The robot has no touch sensor "{name}".', severity="warning")
+NO_VOICE = NO_SUCH_NAME.says('The robot has no voice for "{name}".', severity="warning")
+NOT_THERE = NO_SUCH_NAME.says('{whose} no {what} "{name}".', severity="warning")
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
 """Arguments of Commands that name something of the surroundings."""
@@ -62,8 +68,10 @@ def check_sensor(node: Node, event: str, names: Surroundings) -> list[Problem]:
     first, _, sensor = event.partition(".")
     if first != "touch" or not sensor or sensor in names.sensors:
         return []
-    message, remedy = f'The robot has no touch sensor "{sensor}".', nearest(sensor, names.sensors)
-    return [Problem(event_place(node, event), "warning", "no-such-name", message, remedy)]
+    place = event_place(node, event)
+    last = place._replace(column=place.column + len("touch."))
+    hint = nearest(sensor, names.sensors, Span.of(last, sensor))
+    return [NO_SENSOR.at(place, hint, name=sensor)]
 
 
 def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
@@ -74,9 +82,7 @@ def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
         nodes += [child for child in node.nodes if child.tag != "grammar"]
         lang = node.get("xml:lang")
         if lang and lang.lower().partition("-")[0] not in spoken:
-            message = f'The robot has no voice for "{lang}".'
-            place = node.attribute_place("xml:lang")
-            yield Problem(place, "warning", "no-such-name", message, nearest("", voices))
+            yield NO_VOICE.at(node.attribute_place("xml:lang"), nearest("", voices), name=lang)
 
 
 def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:
@@ -88,16 +94,16 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
     if value.strip() in known:
         return []
     whose = "The robot knows" if what == "gesture" else "The world has"
-    message = f'{whose} no {what} "{value}".'
-    place = node.attribute_place(name)
-    return [Problem(place, "warning", "no-such-name", message, nearest(value, known))]
+    hint = nearest(value, known, *value_span(node, name))
+    return [NOT_THERE.at(node.attribute_place(name), hint, whose=whose, what=what, name=value)]
 
 
-def nearest(word: str, known: Collection[str]) -> str:
-    """What was probably meant, or what there is."""
-    if hint := did_you_mean(word, known):
+def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:
+    """What was probably meant, or what there is; a fix writes it into some spans."""
+    if hint := suggestion(word, known, *spans):
         return hint
-    return f"There is {one_of(known).replace(' or ', ' and ')}." if 0 < len(known) <= FEW else ""
+    few = 0 < len(known) <= FEW
+    return Hint(f"There is {one_of(known).replace(' or ', ' and ')}." if few else "")
 
 
 def commands_of(document: Document) -> list[CommandTemplate]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from prima.errors import Problem
+from prima.errors.diagnoses.behaviour import LONG_UNIT, NOT_IN_UNIT, NOW_INSIDE
 from prima.interpreter.elements import (
     Act,
     Block,
@@ -37,6 +38,15 @@ from prima.interpreter.naming import events_named
 from prima.interpreter.selection import taking
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
+
+SPEAKS_LONG = LONG_UNIT.says(
+    "This unit speaks for about {seconds} s: no reaction can break in.", "Divide it (thesis 4.5)."
+)
+NOW_BEHIND_OTHERS = NOW_INSIDE.says(
+    "<{p}{tag}> is wanted now; it cannot stand in a <{p}par>, <{p}seq> or <{p}iu> behind others.",
+    "Put it first.",
+)
+CANNOT_BE_IN_UNIT = NOT_IN_UNIT.says("{why}; it cannot stand in a unit.", "{remedy}")
 
 LONGEST_UNIT_MS = 60_000
 """The longest duration of a unit unless ``longest`` says otherwise."""
@@ -126,8 +136,7 @@ def unit_speaks(unit: Unit, lang: str) -> int:
 def long_unit(node: Node, ms: int) -> Iterator[Problem]:
     """Warn of a unit that speaks for so long that it cannot be reacted in."""
     if ms > LONG_UNIT_MS:
-        message = f"This unit speaks for about {ms // 1000} s: no reaction can break in."
-        yield Problem(node.place, "warning", "long-unit", message, "Divide it (thesis 4.5).")
+        yield SPEAKS_LONG.at(node.place, seconds=ms // 1000)
 
 
 def not_in_unit(row: CommandType) -> str:
@@ -163,17 +172,12 @@ def unit_problem(
         remedy = (
             f"Name the event as a text, x ? 'this' : 'that', or leave the {iu} with <goto> first."
         )
-    place = one.command.node.place
-    return Problem(place, "error", "not-in-unit", f"{message}; it cannot stand in a unit.", remedy)
+    return CANNOT_BE_IN_UNIT.at(one.command.node.place, why=message, remedy=remedy)
 
 
 def now_inside(node: Node, prefix: str = "") -> Problem:
     """A Command wanted now that stands behind others in a unit, or beside them (O2)."""
-    message = (
-        f"<{prefix}{node.tag}> is wanted now; it cannot stand in a <{prefix}par>, <{prefix}seq>"
-        f" or <{prefix}iu> behind others."
-    )
-    return Problem(node.place, "error", "now-inside", message, "Put it first.")
+    return NOW_BEHIND_OTHERS.at(node.place, p=prefix, tag=node.tag)
 
 
 def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:

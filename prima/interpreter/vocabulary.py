@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from prima.grammar.answers import TYPES
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.markup.vocabulary import Attribute, Element, Vocabulary, attribute
+from prima.markup.vocabulary import Attribute, Element, Instead, Vocabulary, attribute
 
 NAMESPACE = "urn:prima:dialogue:1"
 
@@ -516,13 +516,13 @@ ELEMENTS = (
     ),
 )
 
-HINTS = {
-    "catch": 'Write <on event="...">.',
+HINTS: dict[str, str | Instead] = {
+    "catch": Instead("on", 'event="..."'),
     "vxml": "Begin with <prima>.",
-    "say": "Write <speak>.",
+    "say": Instead("speak"),
     "ask": "Write <field> with a <prompt>.",
     "q-and-a": "Q&A is written as a <field> with a <prompt>.",
-    "audio": "Write <speak>.",
+    "audio": Instead("speak"),
     "choice": "Write <option> in a <field>.",
     "menu": "Write a <form> with a <field>.",
     **dict.fromkeys(
@@ -548,7 +548,7 @@ HINTS = {
         ("b", "emphasis", "em", "i", "p", "phoneme", "prosody", "s", "say-as", "sub"),
         "Speech is plain text: leave the mark out.",
     ),
-    "else-if": "Write <elseif>.",
+    "else-if": Instead("elseif"),
     "img": 'Point to a thing: <point-by-hand toward="..."/>.',
     "input": "Write a <field> with a <prompt>.",
     "select": "Write a <field> with an <option> for each answer.",
@@ -561,14 +561,14 @@ HINTS = {
         ("delay", "silence", "sleep", "wait"),
         'Write <pause time="1s"/>; or, for an event afterwards, <send event="..." delay="1s"/>.',
     ),
-    "submit": 'Write <send to="...">.',
-    "disconnect": "Write <exit/>.",
-    "transfer": 'Write <send to="...">.',
+    "submit": Instead("send", 'to="..."'),
+    "disconnect": Instead("exit", "/"),
+    "transfer": Instead("send", 'to="..."'),
     "record": 'Write a <field type="text">.',
     "initial": "Write a <field>, or a <block>.",
-    "object": 'Write <command type="...">.',
-    "stop": "Write <stop-moving>.",
-    "move": "Write <topological-move>.",
+    "object": Instead("command", 'type="..."'),
+    "stop": Instead("stop-moving"),
+    "move": Instead("topological-move"),
 }
 
 DIALOGUE = Vocabulary(NAMESPACE, "dialogue", "prima", ELEMENTS, HINTS)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from prima.errors import did_you_mean, one_of
-from prima.language.values import Value, outside, quoted, read_value, within
+from prima.language.values import BadValue, Value, outside, quoted, read_value, within
 
 DEVICES = (
     "human-detection",
@@ -320,19 +320,19 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
     seconds.
 
     Raises:
-        ValueError: with a sentence about the argument, for the author.
+        BadValue: with a sentence about the argument, for the author.
     """
     said = f"{name} {quoted(value)}"
     wrong = f"{said} is not {_A_KIND[argument.kind]}."
     if isinstance(value, str):
         try:
             result = read_value(argument.kind, value)
-        except ValueError as error:
-            raise ValueError(f"{said} {error}") from None
+        except BadValue as error:
+            raise BadValue(f"{said} {error.wrong}", error.remedy, right=error.right) from None
     elif argument.kind == "boolean" and isinstance(value, bool):
         result = value
     elif isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(wrong)
+        raise BadValue(wrong)
     elif argument.kind == "duration" and math.isfinite(value):
         result = round(value * 1000) if abs(value) < 1e9 else -1
     elif argument.kind == "number" and math.isfinite(value):
@@ -340,10 +340,11 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
     elif argument.kind == "id" and math.isfinite(value) and value == int(value):
         result = str(int(value))
     else:
-        raise ValueError(wrong)
+        raise BadValue(wrong)
     number = isinstance(result, int | float) and not isinstance(result, bool)
     if number and not within(float(result), argument.low, argument.high):
-        raise ValueError(f"{said} {outside(argument.kind, argument.low, argument.high)}")
+        wrong = f"{said} {outside(argument.kind, argument.low, argument.high)}"
+        raise BadValue(wrong, beyond=True)
     return result
 
 

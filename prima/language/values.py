@@ -13,7 +13,27 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
+from prima.errors import Hint, Span, replaced
+
 Value = str | int | float | bool
+
+
+class BadValue(ValueError):
+    """A text is not of a kind: what is wrong continues a sentence that begins with the text.
+
+    ``right`` is the text that was most likely meant, or nothing; ``beyond`` says that a number is
+    out of its bounds.
+    """
+
+    def __init__(
+        self, wrong: str, remedy: str = "", *, right: str = "", beyond: bool = False
+    ) -> None:
+        super().__init__(f"{wrong} {remedy}".rstrip())
+        self.wrong = wrong
+        self.remedy = remedy
+        self.right = right
+        self.beyond = beyond
+
 
 _START = (
     "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c\u200d"
@@ -33,6 +53,7 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 LONGEST_NAME = 500
 """Letters that a name may have."""
 XML_SPACE = " \t\r\n"
+VARIABLE_REMEDY = "Use letters, digits and _, not first a digit."
 
 _XSD_NAME = r"[\i-[:]][\c-[:]]*"
 _XSD_WORD = r"[\i$-[:]][\c$-[:.\-]]*"
@@ -75,35 +96,35 @@ def _alphabet(form: str, ascii_only: bool) -> re.Pattern[str]:
 def _duration(text: str) -> int:
     match = DURATION.fullmatch(text)
     if match is None:
-        raise ValueError('is not a time. Write a number with its unit: "500ms" or "2.5s".')
+        raise BadValue("is not a time.", 'Write a number with its unit: "500ms" or "2.5s".')
     value = float(match[1]) * (1000 if match[2] == "s" else 1)
     if value > LONGEST_MS:
-        raise ValueError('is longer than a day. Write at most "86400s".')
+        raise BadValue("is longer than a day.", 'Write at most "86400s".')
     return round(value)
 
 
 def _number(text: str) -> float:
     if NUMBER.fullmatch(text) is None or not math.isfinite(float(text)):
-        raise ValueError('is not a number. Write digits, as in "1.5".')
+        raise BadValue("is not a number.", 'Write digits, as in "1.5".')
     return float(text)
 
 
 def _integer(text: str) -> int:
     if re.fullmatch(r"[+-]?[0-9]{1,9}", text) is None:
-        raise ValueError('is not a whole number. Write digits alone, at most nine, as in "2".')
+        raise BadValue("is not a whole number.", 'Write digits alone, at most nine, as in "2".')
     return int(text)
 
 
 def _boolean(text: str) -> bool:
     if text not in ("true", "false"):
-        raise ValueError('is neither "true" nor "false". Write one of them.')
+        raise BadValue('is neither "true" nor "false".', "Write one of them.")
     return text == "true"
 
 
-def _pattern(pattern: str, what: str) -> Callable[[str], str]:
+def _pattern(pattern: str, what: str, remedy: str) -> Callable[[str], str]:
     def read(text: str) -> str:
         if not _fits(pattern, text):
-            raise ValueError(f"is not {what}")
+            raise BadValue(f"is not {what}.", remedy)
         return text
 
     return read
@@ -111,35 +132,33 @@ def _pattern(pattern: str, what: str) -> Callable[[str], str]:
 
 def _target(text: str) -> str:
     if not _fits(TARGET, text):
-        remedy = f'"#{text}"' if _fits(NAME, text) else '"#" and the id of a form'
-        raise ValueError(f"is not a place to go to. Write {remedy}.")
+        right = f"#{text}" if _fits(NAME, text) else ""
+        remedy = f'Write "{right}".' if right else 'Write "#" and the id of a form.'
+        raise BadValue("is not a place to go to.", remedy, right=right)
     return text
 
 
 def _event_list(text: str) -> str:
     if not text:
-        raise ValueError('names no event. Write one such as "touch.head".')
+        raise BadValue("names no event.", 'Write one such as "touch.head".')
     for name in re.split(f"[{XML_SPACE}]+", text):
         if "," in name:
-            raise ValueError("holds a comma. Separate the names by spaces.")
+            raise BadValue("holds a comma.", "Separate the names by spaces.")
         if not _fits(EVENT, name):
-            raise ValueError(
-                f'holds "{name}", which is not an event name. Write one such as "touch.head".'
+            raise BadValue(
+                f'holds "{name}", which is not an event name.', 'Write one such as "touch.head".'
             )
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
 def _name_list(text: str) -> str:
     if not text:
-        raise ValueError("names no variable. Write its name.")
+        raise BadValue("names no variable.", "Write its name.")
     for name in re.split(f"[{XML_SPACE}]+", text):
         if "," in name:
-            raise ValueError("holds a comma. Separate the names by spaces.")
+            raise BadValue("holds a comma.", "Separate the names by spaces.")
         if not _fits(VARIABLE, name):
-            raise ValueError(
-                f'holds "{name}", which is not a variable name.'
-                " Use letters, digits and _, not first a digit."
-            )
+            raise BadValue(f'holds "{name}", which is not a variable name.', VARIABLE_REMEDY)
     return re.sub(f"[{XML_SPACE}]+", " ", text)
 
 
@@ -147,11 +166,13 @@ def _date(text: str) -> str:
     from datetime import datetime  # costs a start some of its time, and is rarely needed
 
     if re.fullmatch(r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?", text) is None:
-        raise ValueError('is not a date. Write it as "2005-03-01T10:00:00".')
+        raise BadValue("is not a date.", 'Write it as "2005-03-01T10:00:00".')
     try:
         return datetime.fromisoformat(text).isoformat()
     except ValueError:
-        raise ValueError("is a date that no calendar has. Check its month, day and hour.") from None
+        raise BadValue(
+            "is a date that no calendar has.", "Check its month, day and hour."
+        ) from None
 
 
 @lru_cache(maxsize=100)
@@ -169,7 +190,7 @@ def moment(date: str) -> int:
 
 def _filled(text: str) -> str:
     if not text.strip(XML_SPACE):
-        raise ValueError("is empty. Write what it shall be.")
+        raise BadValue("is empty.", "Write what it shall be.")
     return text
 
 
@@ -199,13 +220,13 @@ KINDS: dict[str, Kind] = {
     "integer": Kind(_integer, "xs:string", r"[+\-]?[0-9]{1,9}", "a whole number"),
     "boolean": Kind(_boolean, "xs:string", "true|false", "true or false"),
     "id": Kind(
-        _pattern(NAME, 'a name. Begin with a letter; letters, digits, ".", "-", "_" follow.'),
+        _pattern(NAME, "a name", 'Begin with a letter; letters, digits, ".", "-", "_" follow.'),
         "xs:string",
         _XSD_NAME,
         "a name: a letter, then letters, digits, . - _",
     ),
     "variable": Kind(
-        _pattern(VARIABLE, "a variable name. Use letters, digits and _, not first a digit."),
+        _pattern(VARIABLE, "a variable name", VARIABLE_REMEDY),
         "xs:string",
         _XSD_VARIABLE,
         "the name of a variable",
@@ -217,7 +238,7 @@ KINDS: dict[str, Kind] = {
         "names of variables, separated by spaces",
     ),
     "event": Kind(
-        _pattern(EVENT, 'an event name. Write one such as "touch.head".'),
+        _pattern(EVENT, "an event name", 'Write one such as "touch.head".'),
         "xs:string",
         _XSD_EVENT,
         "an event name: words joined by dots",
@@ -238,7 +259,7 @@ KINDS: dict[str, Kind] = {
     ),
     "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
     "language": Kind(
-        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", 'a language tag. Write one such as "en".'),
+        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", "a language tag", 'Write one such as "en".'),
         "xs:string",
         r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
         "a language tag, as in en or ja",
@@ -256,8 +277,7 @@ def read_value(kind: str, text: str) -> Value:
     """Read ``text`` as a value of ``kind``.
 
     Raises:
-        ValueError: the text is not of that kind; the message continues a
-            sentence that begins with the quoted text.
+        BadValue: the text is not of that kind.
     """
     return KINDS[kind].read(text if kind == "text" else text.strip(XML_SPACE))
 
@@ -302,10 +322,13 @@ def outside(kind: str, low: float | None, high: float | None) -> str:
     )
 
 
-def nearest(kind: str, value: float, low: float | None, high: float | None) -> str:
-    """Tell the allowed number that is nearest to one beyond its bounds, as an author writes it."""
+def nearest(kind: str, value: float, low: float | None, high: float | None, *spans: Span) -> Hint:
+    """The allowed number nearest to one beyond its bounds; the fix writes it into some spans."""
     bound = low if low is not None and value < low else high
-    return "" if bound is None else f'The nearest is "{_written(kind, bound)}".'
+    if bound is None:
+        return Hint()
+    right = _written(kind, bound)
+    return replaced(f'The nearest is "{right}".', right, *spans)
 
 
 def _written(kind: str, value: float) -> str:

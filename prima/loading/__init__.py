@@ -17,26 +17,41 @@ from typing import TYPE_CHECKING, TypeVar
 from prima.checks.ignores import Ignores
 from prima.errors import (
     DocumentError,
+    Hint,
     Place,
     Problem,
+    Span,
     UsageError,
-    did_you_mean,
     few_guesses,
     in_order,
     listed,
+    meant,
     one_of,
-    parted,
+    replaced,
+    suggestion,
 )
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading.diagnoses import (
+    BAD_POLICY,
+    BAD_SITE,
+    NEEDS_URI,
+    NO_AREA,
+    NO_FAVOURITE,
+    NO_FILE_HERE,
+    NOT_SERVED,
+    RUNS_AS_OTHER,
+    UNREADABLE,
+)
 from prima.loading.files import Folder, path_of, read_file
 from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
 from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -323,9 +338,9 @@ def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[
                 continue
             if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
                 continue
-            message = f'There is no file "{file[:80]}" here: this will be error.badfetch.'
-            place = node.attribute_place(name)
-            yield Problem(place, "warning", "no-such-file", message, _nearby(folder / file))
+            spans = value_span(node, name, file.rpartition("/")[2])
+            hint = _nearby(folder / file, *spans)
+            yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
@@ -382,7 +397,7 @@ def _fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
 
 def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
     """What is wrong with the grammars in files that a VoiceXML document names."""
-    from prima.voicexml.check import grammar_problems
+    from prima.voicexml.checks import grammar_problems
 
     site = page.site
     fetch, base = _fetcher(folder, site), site.whole(page.base()) if site else page.base()
@@ -610,9 +625,10 @@ class _Reading:
             self.files[name] = _digest(content)
             return made_of(str(target), content)
         except UsageError as error:
-            message = str(error).removeprefix(f"{target}: ")
-            told = f'"{name}" {message}'
-            self.problems.append(Problem(place, "error", "no-such-file", told, _nearby(target)))
+            wrong = str(error).removeprefix(f"{target}: ")
+            at = place._replace(column=place.column + len(name) - len(target.name))
+            hint = _nearby(target, Span.of(at, target.name))
+            self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
@@ -642,10 +658,8 @@ class _Reading:
             remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
             self.problems += _other_kind(document, f'"{src}"', who, place, remedy)
         if site is not None and node is not None and isinstance(document, Document):
-            message = f'"{src}" is not VoiceXML, which alone is served at a URI.'
-            remedy = "Remove uri and folder."
             where = node.attribute_place("uri", value=False)
-            self.problems.append(Problem(where, "error", "unknown-attribute", message, remedy))
+            self.problems.append(NOT_SERVED.at(where, src=src))
         return document
 
     def site(self, src: str, node: Node) -> Site | None:
@@ -656,24 +670,22 @@ class _Reading:
         if not uri and not folder:
             return None
         if not uri:
-            message, remedy = 'A folder is served at a "uri".', "Add it."
-            place = node.attribute_place("folder")
-            self.problems.append(Problem(place, "error", "missing-attribute", message, remedy))
+            self.problems.append(NEEDS_URI.at(node.attribute_place("folder")))
             return None
         try:
             above = normpath(self.path.parent / folder) if folder else ""
             return site_of(normpath(self.path.parent / src), uri, above)
         except ValueError as error:
-            place = node.attribute_place("uri")
-            self.problems.append(Problem(place, "error", "bad-value", *error.args))
+            wrong, *remedies = error.args
+            hint = Hint("".join(remedies))
+            self.problems.append(BAD_SITE.at(node.attribute_place("uri"), hint, wrong=wrong))
             return None
 
     def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
         """The applications that a world's areas offer, but those that the scenario runs itself."""
         if not world.areas:
             place = scenario.node.attribute_place("entrances")
-            message = f'The world "{world.id}" has no <area> that offers an application.'
-            self.problems.append(Problem(place, "error", "no-such-name", message))
+            self.problems.append(NO_AREA.at(place, world=world.id))
         beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
         known: dict[str, AnyDocument | None] = {}
         made = []
@@ -712,23 +724,25 @@ class _Reading:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
             else:
-                from prima.voicexml import check, sketched
+                from prima.voicexml import checks, sketched
 
-                self.problems += check.check_commands(document.page.root, robot.commands)
+                self.problems += checks.check_commands(document.page.root, robot.commands)
                 self.problems += sketched.added_in_units(document.page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
         """A policy that is none, or prefers an application that is not there."""
-        from prima.scheduler.policy import policy_named
+        from prima.scheduler.policy import UnknownPolicy, policy_named
 
         place = scenario.node.attribute_place("policy")
         try:
             policy_named(scenario.policy)
-        except UsageError as error:
-            wrong, remedy = parted(f"{error} {FAVOURITE}")
-            self.problems.append(Problem(place, "error", "bad-value", wrong, remedy))
-        if problem := favourite_problem(scenario.policy, self.documents):
-            self.problems.append(Problem(place, "error", "no-such-name", *problem))
+        except UnknownPolicy as error:
+            spans = value_span(scenario.node, "policy", error.word) if error.meant else ()
+            hint = replaced(f"{error.remedy} {FAVOURITE}", error.meant, *spans)
+            self.problems.append(BAD_POLICY.at(place, hint, wrong=error.wrong))
+        if problem := favourite_problem(scenario.policy, self.documents, scenario.node):
+            wrong, hint = problem
+            self.problems.append(NO_FAVOURITE.at(place, hint, wrong=wrong))
 
 
 def _other_kind(
@@ -738,28 +752,26 @@ def _other_kind(
     own = document.node.get("kind")
     if not isinstance(document, Document) or own in ("", document.kind):
         return []
-    runs = f"it runs as an {document.kind.upper()}"
-    message = f"{name} says that it is an {own.upper()}, but {who}: {runs}."
-    return [Problem(place, "warning", "other-kind", message, remedy)]
+    kind = document.kind.upper()
+    return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
 
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
     """A document of another kind than the scenario needs is the mistake of who names it."""
     if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
-    return problem._replace(place=place, message=f'"{name}": {problem.message}')
+    return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())
 
 
-def _nearby(path: Path) -> str:
+def _nearby(path: Path, *spans: Span) -> Hint:
     """The file beside that a name which leads nowhere most likely means: its ending says little."""
     try:
         beside = sorted(islice(path.parent.iterdir(), MOST_BESIDE))
     except (OSError, ValueError):
-        return ""
+        return Hint()
     alike = sorted(beside, key=lambda one: one.suffix == path.suffix)  # the last one counts
     stems = {one.stem: one.name for one in alike if one.name != path.name}
-    meant = stems.get(near(path.stem, stems))
-    return f'Did you mean "{meant}"?' if meant else ""
+    return meant(stems.get(near(path.stem, stems), ""), *spans)
 
 
 MOST_BESIDE = 300
@@ -768,13 +780,16 @@ FAVOURITE = "fixed:APP prefers the application APP."
 """What to write for a policy that prefers one application."""
 
 
-def favourite_problem(policy: str, documents: list[AnyDocument]) -> tuple[str, str] | None:
+def favourite_problem(
+    policy: str, documents: list[AnyDocument], node: Node | None = None
+) -> tuple[str, Hint] | None:
     """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
     kind, _, first = policy.partition(":")
     names = [document.id for document in documents]
     if kind != "fixed" or not first or first in names:
         return None
-    hint = did_you_mean(first, names) or f"Write {one_of(names)}."
+    spans = value_span(node, "policy", first) if node is not None else ()
+    hint = suggestion(first, names, *spans) or Hint(f"Write {one_of(names)}.")
     return f'The policy "{policy}" names an application that is not in the scenario.', hint
 
 

@@ -11,7 +11,7 @@ from prima.language.values import KINDS
 from prima.lsp.desk import Desk, Found
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import Page, Tag
-from prima.lsp.tables import about, about_attribute, attributes
+from prima.lsp.tables import about_attribute, attributes
 from prima.lsp.words import EVENTS, RULES, SESSION, VOICEXML_EVENTS
 from prima.markup.vocabulary import Element
 
@@ -56,7 +56,7 @@ def _element(tag: Tag | None, start: int, end: int) -> Meaning | None:
 
 def element_text(element: Element) -> str:
     """What an element is, with its source, its rules and its attributes."""
-    lines = [f"**`<{element.tag}>`** {about(element)}"]
+    lines = [f"**`<{element.tag}>`** {element.doc}"]
     if element.source:
         lines.append(f"*{_source(element.source)}*")
     for rule in NAMED.findall(element.source):

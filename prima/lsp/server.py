@@ -519,18 +519,18 @@ def _actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeActio
         one = spot(page.lines, problem)
         if one.end < first or one.start > last:
             continue
-        for number, fix in enumerate(fixes(page, one)):
-            changes = [
+        for number, (title, changes) in enumerate(fixes(page.lines, problem)):
+            edits = [
                 lsp.TextEdit(server.range(page.lines, change.start, change.end), change.text)
-                for change in fix.changes
+                for change in changes
             ]
             made.append(
                 lsp.CodeAction(
-                    visible(fix.title),
+                    visible(title),
                     lsp.CodeActionKind.QuickFix,
                     [server.diagnostic(page.lines, one)],
                     is_preferred=number == 0,
-                    edit=lsp.WorkspaceEdit(changes={params.text_document.uri: changes}),
+                    edit=lsp.WorkspaceEdit(changes={params.text_document.uri: edits}),
                 )
             )
     return made

@@ -8,7 +8,7 @@ from prima.devices.vocabulary import ROBOT
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.scan import Page, Tag
-from prima.lsp.words import VOICEXML_ATTRIBUTES, VOICEXML_ELEMENTS
+from prima.lsp.words import VOICEXML_ATTRIBUTES
 from prima.markup.vocabulary import (
     Attribute,
     Element,
@@ -34,7 +34,7 @@ GRAMMAR = Vocabulary(
     (
         Element(
             "grammar",
-            "",
+            VOICEXML.elements["grammar"].doc,
             VOICEXML.elements["grammar"].attributes,
             ("rule", *_PARTS, "meta", "metadata", "lexicon"),
             True,
@@ -42,7 +42,7 @@ GRAMMAR = Vocabulary(
         ),
         Element(
             "rule",
-            "",
+            "A named part of a grammar.",
             (
                 attribute("id", "id", "its name", "required"),
                 attribute("scope", "text", "", choices=("private", "public")),
@@ -51,11 +51,18 @@ GRAMMAR = Vocabulary(
             True,
             source="SRGS 3.1",
         ),
-        Element("one-of", "", (), ("item",), source="SRGS 2.4"),
-        Element("item", "", _REPEAT, _PARTS, True, source="SRGS 2.5"),
+        Element("one-of", "Alternatives.", (), ("item",), source="SRGS 2.4"),
+        Element(
+            "item",
+            "A part of an expansion, or an alternative.",
+            _REPEAT,
+            _PARTS,
+            True,
+            source="SRGS 2.5",
+        ),
         Element(
             "ruleref",
-            "",
+            "Another rule: of this grammar, of a file, or a special one.",
             (
                 attribute("uri", "text", ""),
                 attribute("special", "text", "", choices=("NULL", "VOID", "GARBAGE")),
@@ -63,12 +70,21 @@ GRAMMAR = Vocabulary(
             ),
             source="SRGS 2.2",
         ),
-        Element("tag", "", (), (), True, source="SRGS 2.6, SISR 1.0"),
-        Element("token", "", (), (), True, source="SRGS 2.1"),
-        Element("example", "", (), (), True, source="SRGS 3.3"),
-        Element("meta", "", VOICEXML.elements["meta"].attributes),
-        Element("metadata", "", (), (), True),
-        Element("lexicon", "", VOICEXML.elements["lexicon"].attributes),
+        Element("tag", "The meaning of a match.", (), (), True, source="SRGS 2.6, SISR 1.0"),
+        Element("token", "Words that belong together.", (), (), True, source="SRGS 2.1"),
+        Element(
+            "example",
+            "A phrase that the rule takes, for the reader.",
+            (),
+            (),
+            True,
+            source="SRGS 3.3",
+        ),
+        Element("meta", VOICEXML.elements["meta"].doc, VOICEXML.elements["meta"].attributes),
+        Element("metadata", VOICEXML.elements["metadata"].doc, (), (), True),
+        Element(
+            "lexicon", VOICEXML.elements["lexicon"].doc, VOICEXML.elements["lexicon"].attributes
+        ),
     ),
 )
 """SRGS in XML, as it stands in VoiceXML documents."""
@@ -182,11 +198,6 @@ def roots() -> list[Choice]:
 def attributes(element: Element) -> dict[str, tuple[Attribute, bool]]:
     """An element's attributes as written, with whether each is an expression."""
     return attributes_by_name(element)
-
-
-def about(element: Element) -> str:
-    """What an element is, in a sentence."""
-    return element.doc or VOICEXML_ELEMENTS.get(element.tag, "")
 
 
 def about_attribute(item: Attribute) -> str:

@@ -5,11 +5,32 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from prima.errors import DocumentError, Place, Problem, did_you_mean, one_of, parted
-from prima.language.values import KINDS, XML_SPACE, read_value
-from prima.markup.slips import TEXTS, meant, misplaced_remedy, text_remedy
+from prima.errors import (
+    DocumentError,
+    Hint,
+    Place,
+    Problem,
+    meant,
+    nearest_word,
+    one_of,
+    replaced,
+    suggestion,
+)
+from prima.errors.diagnoses.structure import (
+    MISPLACED_ELEMENT,
+    MISSING_ATTRIBUTE,
+    STRAY_TEXT,
+    UNKNOWN_ATTRIBUTE,
+    UNKNOWN_ELEMENT,
+    WRONG_NAMESPACE,
+    WRONG_ROOT,
+)
+from prima.errors.diagnoses.values import BAD_VALUE
+from prima.language.values import KINDS, XML_SPACE, BadValue, read_value
+from prima.markup.slips import TEXTS, meant_value, misplaced_remedy, text_remedy
+from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.vocabulary import Attribute, Element, Instead, Vocabulary
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 
@@ -21,6 +42,21 @@ DOCUMENTS = {
 }
 """What documents are, by their namespaces."""
 VOICEXML = "a VoiceXML document"
+
+OTHER_ROOT = WRONG_ROOT.says(
+    "The root element is <{tag}>; it must be <{root}>.", "Begin with <{root}>."
+)
+OTHER_DOCUMENT = WRONG_NAMESPACE.says(
+    "This is {own}; {wanted} is needed here.", "Name the file of {wanted}."
+)
+ROOT_HAS = WRONG_NAMESPACE.says("The root element <{tag}> has {found}.", "Begin with {wanted}.")
+FOREIGN = WRONG_NAMESPACE.says('<{tag}> is of another namespace, "{namespace}".')
+UNKNOWN = UNKNOWN_ELEMENT.says("There is no <{tag}>.")
+NOT_HERE = MISPLACED_ELEMENT.says("<{tag}> cannot stand in <{parent}>.")
+HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
+NEEDS = MISSING_ATTRIBUTE.says('<{tag}> needs the attribute "{name}": {doc}.')
+NOT_OF_ITS_KIND = BAD_VALUE.says('{name} "{value}" {wrong}')
 
 
 def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
@@ -34,25 +70,20 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
         if root.namespace == namespace:
             if root.tag == tag:
                 return vocabulary
-            message = f"The root element is <{root.tag}>; it must be <{tag}>."
-            remedy = f"Begin with <{tag}>."
-            raise DocumentError([Problem(root.place, "error", "wrong-root", message, remedy)])
+            raise DocumentError([OTHER_ROOT.at(root.place, tag=root.tag, root=tag)])
     own = kind_of(root)
     if own:
         wanted = one_of(DOCUMENTS.get(name, VOICEXML) for _, name in expected)
-        message = f"This is {own}; {wanted} is needed here."
-        remedy = f"Name the file of {wanted}."
-        if own in ("an application", VOICEXML) and wanted == "a scenario":
-            remedy = _as_application(root)
-        raise DocumentError([Problem(root.place, "error", "wrong-namespace", message, remedy)])
+        runs = own in ("an application", VOICEXML) and wanted == "a scenario"
+        hint = Hint(_as_application(root) if runs else "")
+        raise DocumentError([OTHER_DOCUMENT.at(root.place, hint, own=own, wanted=wanted)])
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
     expected = [entry for entry in expected if entry[0] == root.tag] or expected
     wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
-    message = f"The root element <{root.tag}> has {found}."
-    near = did_you_mean(root.namespace, [namespace for _, namespace in expected])
-    remedy = near or f"Begin with {wanted}."
+    spaces = [namespace for _, namespace in expected]
+    near = suggestion(root.namespace, spaces, *value_span(root, "xmlns"))
     place = root.source.place(root.index, "xmlns", value=True)
-    raise DocumentError([Problem(place, "error", "wrong-namespace", message, remedy)])
+    raise DocumentError([ROOT_HAS.at(place, near, tag=root.tag, found=found, wanted=wanted)])
 
 
 def kind_of(root: Node) -> str:
@@ -143,22 +174,29 @@ class _Rules:
 def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
     tag = child.tag
     if child.namespace != vocabulary.namespace:
-        message = f'<{tag}> is of another namespace, "{child.namespace}".'
-        return Problem(child.place, "error", "wrong-namespace", message)
+        return FOREIGN.at(child.place, tag=tag, namespace=child.namespace)
     if tag not in vocabulary.tags:
-        remedy = vocabulary.hints.get(tag) or did_you_mean(tag, vocabulary.children(parent.key))
-        remedy = remedy or did_you_mean(tag, vocabulary.tags)
-        return Problem(child.place, "error", "unknown-element", f"There is no <{tag}>.", remedy)
-    message = f"<{tag}> cannot stand in <{parent.tag}>."
-    remedy = misplaced_remedy(tag, parent, vocabulary)
-    return Problem(child.place, "error", "misplaced-element", message, remedy)
+        return UNKNOWN.at(child.place, _known_instead(child, parent, vocabulary), tag=tag)
+    hint = Hint(misplaced_remedy(tag, parent, vocabulary))
+    return NOT_HERE.at(child.place, hint, tag=tag, parent=parent.tag)
+
+
+def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
+    """The element to write instead of one that the language lacks."""
+    hint = vocabulary.hints.get(child.tag)
+    if isinstance(hint, Instead):
+        return renamed(str(hint), child, hint.tag)
+    if hint:
+        return Hint(hint)
+    inside = vocabulary.children(parent.key)
+    tag = nearest_word(child.tag, inside) or nearest_word(child.tag, vocabulary.tags)
+    return meant(tag, *(name_spans(child) if tag else ()))
 
 
 def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
     shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
-    message = f'<{node.tag}> holds text: "{shown}".'
-    remedy = text_remedy(node, "speak" in vocabulary.tags)
-    return Problem(_text_place(node), "error", "stray-text", message, remedy)
+    hint = Hint(text_remedy(node, "speak" in vocabulary.tags))
+    return HOLDS_TEXT.at(_text_place(node), hint, tag=node.tag, text=shown)
 
 
 def _text_place(node: Node) -> Place:
@@ -190,12 +228,9 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
         if entry is None:
             unknown.append(name)
             continue
-        message = _value_problem(*entry, text)
-        if message:
-            place = node.attribute_place(name)
-            wrong, remedy = parted(message)
-            wrong = f'{name} "{text}" {wrong}'
-            problems.append(Problem(place, "error", "bad-value", wrong, remedy))
+        bad = _value_problem(*entry, text)
+        if bad is not None:
+            problems.append(_bad_value(node, name, bad))
     missing: list[Attribute] = []
     for item in element.attributes:
         if not item.required or item.name in node.attributes:
@@ -205,63 +240,74 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
     for name in unknown:
         problems.append(_unknown_attribute(node, name, element, list(known), missing))
     for item in missing:
-        message = f'<{node.tag}> needs the attribute "{item.name}": {item.doc}.'
         value = item.choices[0] if len(item.choices) == 1 else "..."
-        remedy = f'Write {item.name}="{value}".'
-        problems.append(Problem(node.place, "error", "missing-attribute", message, remedy))
+        hint = added(f'Write {item.name}="{value}".', node, item)
+        problems.append(NEEDS.at(node.place, hint, tag=node.tag, name=item.name, doc=item.doc))
+
+
+def _bad_value(node: Node, name: str, bad: BadValue) -> Problem:
+    spans = value_span(node, name) if bad.right else ()
+    title = f"Change to {bad.right}" if bad.right.startswith("#") else ""
+    hint = replaced(bad.remedy, bad.right, *spans, title=title)
+    place, value = node.attribute_place(name), node.get(name)
+    return NOT_OF_ITS_KIND.at(place, hint, name=name, value=value, wrong=bad.wrong)
 
 
 def _language_problem(node: Node, text: str) -> list[Problem]:
     try:
         read_value("language", text)
-    except ValueError as error:
-        wrong, remedy = parted(f'xml:lang "{text}" {error}')
-        place = node.attribute_place("xml:lang")
-        return [Problem(place, "error", "bad-value", wrong, remedy)]
+    except BadValue as error:
+        return [_bad_value(node, "xml:lang", error)]
     return []
 
 
 def _unknown_attribute(
     node: Node, name: str, element: Element, known: list[str], missing: list[Attribute]
 ) -> Problem:
-    """An attribute that is not known; what is missing and meant by it is told with it."""
-    wanted = [item.name for item in missing]
-    if name == "xml:lang":
-        remedy = "It stands on the root element alone."
-    elif name == "lang" and node.index == 0:
-        remedy = "Write xml:lang."
-    elif name.endswith("expr") and f"{name[:-4]}-expr" in known:
-        remedy = f"Write {name[:-4]}-expr."
-        missing[:] = [item for item in missing if item.name != name[:-4]]
-    elif name == "next" and "goto" in element.children:
-        remedy = f'Put a goto inside: <goto next="{node.get(name)}"/>.'
-    elif near := did_you_mean(name, wanted):
-        remedy = near
-        missing[:] = [item for item in missing if f'"{item.name}"' not in near]
-    elif missing:
-        item = missing.pop(0)
-        remedy = f'Write {item.name}="...": {item.doc}.'
-    elif element.text and name in TEXTS:
-        remedy = f"Write the text inside: <{node.tag}>...</{node.tag}>."
-    else:
-        remedy = did_you_mean(name, known)
-    if not remedy:
-        remedy = f"It may have {one_of(known)}." if known else "It has no attributes."
-    message = f'<{node.tag}> has no attribute "{name}".'
+    """An attribute that is not known, with what is missing and meant by it."""
+    hint = _attribute_instead(node, name, element, known, missing)
+    if not hint:
+        hint = Hint(f"It may have {one_of(known)}." if known else "It has no attributes.")
     place = node.attribute_place(name, value=False)
-    return Problem(place, "error", "unknown-attribute", message, remedy)
+    return NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
 
-def _value_problem(item: Attribute, is_expression: bool, text: str) -> str:
+def _attribute_instead(
+    node: Node, name: str, element: Element, known: list[str], missing: list[Attribute]
+) -> Hint:
+    """What to write instead of an unknown attribute; what it means is no longer missing."""
+    span = attribute_span(node, name)
+    if name == "xml:lang":
+        return Hint("Only the root element may have it.")
+    if name == "lang" and node.index == 0:
+        return replaced("Write xml:lang.", "xml:lang", span)
+    if name.endswith("expr") and (right := f"{name[:-4]}-expr") in known:
+        missing[:] = [item for item in missing if item.name != name[:-4]]
+        return replaced(f"Write {right}.", right, span)
+    if name == "next" and "goto" in element.children:
+        return Hint(f'Put a goto inside: <goto next="{node.get(name)}"/>.')
+    if near := nearest_word(name, [item.name for item in missing]):
+        missing[:] = [item for item in missing if item.name != near]
+        return meant(near, span)
+    if missing:
+        item = missing.pop(0)
+        return Hint(f'Write {item.name}="...": {item.doc}.')
+    if element.text and name in TEXTS:
+        return Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
+    return suggestion(name, known, span)
+
+
+def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue | None:
     if item.choices and not is_expression:
         if text in item.choices:
-            return ""
-        hint = did_you_mean(text, item.choices) or f"Write {one_of(item.choices)}."
-        return f"is not allowed here. {hint}"
+            return None
+        near = nearest_word(text, item.choices)
+        remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
+        only = item.choices[0] if len(item.choices) == 1 else ""
+        return BadValue("is not allowed here.", remedy, right=near or only)
     try:
         read_value("expression" if is_expression else item.kind, text)
-    except ValueError as error:
-        right = "" if is_expression else meant(item.kind, text)
-        wrong = str(error).partition(". ")[0].rstrip(".")
-        return f'{wrong}. Write "{right}".' if right else str(error)
-    return ""
+    except BadValue as error:
+        right = "" if is_expression else meant_value(item.kind, text)
+        return BadValue(error.wrong, f'Write "{right}".', right=right) if right else error
+    return None

@@ -13,7 +13,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from prima.errors import DocumentError, Place, Problem, did_you_mean
+from prima.errors import (
+    DocumentError,
+    Edit,
+    Fix,
+    Hint,
+    Place,
+    Problem,
+    Span,
+    nearest_word,
+    replaced,
+)
 from prima.markup.build import (
     MAX_NAME,
     TooMuch,
@@ -73,7 +83,7 @@ LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
 TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
 
-def _error(place: Place, code: str, message: str, remedy: str = "") -> DocumentError:
+def _error(place: Place, code: str, message: str, remedy: str | Hint = "") -> DocumentError:
     return DocumentError([Problem(place, "error", code, message, remedy)])
 
 
@@ -261,13 +271,14 @@ def _misspelt(
         return None
     opened, closed = match[1], match[3]
     tags = {tag for one in vocabularies for tag in one.tags}
-    if opened in tags or closed not in tags or not did_you_mean(opened, [closed]):
+    if opened in tags or closed not in tags or not nearest_word(opened, [closed]):
         return None
     lines = source.text.split("\n")
     line = int(match[2])
     column = lines[line - 1].rfind(f"<{opened}") + 1 if line <= len(lines) else 1
     place = Place(source.file, line, max(column, 1))
-    remedy = f'Did you mean "{closed}"? The closing tag is right.'
+    name = Span.of(place._replace(column=place.column + 1), opened)
+    remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, name)
     return _error(place, "unknown-element", f"There is no <{opened}>.", remedy)
 
 
@@ -296,12 +307,27 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
             f"The entity &{name}; is not known: documents declare none.",
             "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed.",
         )
-    remedy = _remedy(message)
-    place, message, remedy = _clearer(source, place, message, remedy)
+    first = _remedy(message)
+    unclosed = re.search(UNCLOSED, message)
+    place, message, remedy = _clearer(source, place, message, first)
     if TEMPLATE.search(source.text):
         remedy = "A server makes the document from this: run what it makes."
     message = f"This is not well-formed XML: {message.rstrip('.')}."
-    return _error(place, "not-xml", message, remedy)
+    fixes = _closed(source, place, unclosed[1]) if unclosed and remedy == first else ()
+    return _error(place, "not-xml", message, Hint(remedy, fixes))
+
+
+UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line"
+"""The parser's words for an element that is not closed."""
+
+
+def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:
+    """An end tag before the one that ends something else, or at the end of the text."""
+    line = source.text.split("\n")[place.line - 1]
+    at = len(source.text.rstrip())
+    here = line.startswith("</", place.column - 1)
+    span = Span.of(place, "") if here else source.span(at, at)
+    return (Fix(f"Write </{name}>", (Edit(span, f"</{name}>"),)),)
 
 
 WIDE = {

@@ -50,7 +50,7 @@ def half(text: str) -> str:
     return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
 
 
-def meant(kind: str, text: str) -> str:
+def meant_value(kind: str, text: str) -> str:
     """A value of a kind that a wrong text most likely means, or nothing."""
     if len(text) > LONG:
         return ""

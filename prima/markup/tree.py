@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Place
+from prima.errors import Place, Span
 
 MARKUP = re.compile(
     r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']|"[^"]*"|'[^']*')*+>"""
@@ -39,6 +39,7 @@ class Source:
     """Where every line begins."""
     _attributes: tuple[int, dict[str, tuple[int, int]]] = (-1, {})
     """The element whose attributes were looked for last: where each begins, and its value."""
+    _closes: dict[int, int] | None = None
     _written: _Written | None = None
     """The text or value in which a character was looked for last: often there are more to tell of."""
 
@@ -49,11 +50,33 @@ class Source:
             self.tags = [match.start() for match in found if match["start"]]
         return self.tags[index]
 
+    @property
+    def closes(self) -> dict[int, int]:
+        """Where the name in each element's end tag begins; elements without one are not there."""
+        if self._closes is None:
+            self._closes = {}
+            opened: list[int] = []
+            count = 0
+            for match in MARKUP.finditer(self.text):
+                if match["start"]:
+                    if not match[0].endswith("/>"):
+                        opened.append(count)
+                    count += 1
+                elif match[0].startswith("</") and opened:
+                    self._closes[opened.pop()] = match.start() + 2
+        return self._closes
+
+    def span(self, start: int, end: int) -> Span:
+        """The places of two characters of the text, the second one behind what is meant."""
+        first, last = self.at(start), self.at(end)
+        return Span(first.line, first.column, last.line, last.column)
+
     def place(self, index: int, attribute: str = "", value: bool = False) -> Place:
         """Where element number ``index`` stands, or its attribute, or the attribute's value."""
-        return self.at(self._find(index, attribute, value))
+        return self.at(self.offset(index, attribute, value))
 
-    def _find(self, index: int, attribute: str, value: bool) -> int:
+    def offset(self, index: int, attribute: str = "", value: bool = False) -> int:
+        """Where in the text that is; where the element begins, if it has no such attribute."""
         start = self.tag(index)
         if not attribute:
             return start
@@ -71,7 +94,7 @@ class Source:
     def inside(self, index: int, attribute: str, characters: int) -> Place:
         """Where a character of an attribute's value was written; without one, of the text."""
         if self._written is None or self._written.of != (index, attribute):
-            offset = self._find(index, attribute, value=True)
+            offset = self.offset(index, attribute, value=True)
             if not attribute:
                 match = MARKUP.match(self.text, offset)
                 offset = match.end() if match else offset
@@ -182,6 +205,10 @@ class Node:
     def attribute_place(self, name: str, value: bool = True) -> Place:
         """Where an attribute stands, or its value does."""
         return self.source.place(self.index, name, value)
+
+    def place_of(self, attribute: str) -> Place:
+        """Where an attribute's value begins; where the element does, if it lacks the attribute."""
+        return self.attribute_place(attribute) if attribute in self.attributes else self.place
 
     def code_place(self, attribute: str, line: int, column: int) -> Place:
         """The place of a line and column of the code in an attribute, or in the text if ``""``.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,17 @@ class Attribute:
     dynamic: bool = False
     low: float | None = None
     high: float | None = None
+
+
+class Instead(NamedTuple):
+    """The element to write instead of one that authors expect; ``rest`` follows its name."""
+
+    tag: str
+    rest: str = ""
+
+    def __str__(self) -> str:
+        space = "" if self.rest in ("", "/") else " "
+        return f"Write <{self.tag}{space}{self.rest}>."
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +86,7 @@ class Vocabulary:
         name: str,
         root: str,
         elements: Iterable[Element],
-        hints: Mapping[str, str] | None = None,
+        hints: Mapping[str, str | Instead] | None = None,
         free: Iterable[str] = (),
         guests: Guests | None = None,
     ) -> None:

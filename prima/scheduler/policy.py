@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from prima.errors import UsageError, did_you_mean, one_of
+from prima.errors import UsageError, nearest_word, one_of
 from prima.scheduler import rules
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.memory import Memory
@@ -156,13 +156,24 @@ EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
 """The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
 
 
+class UnknownPolicy(UsageError):
+    """No policy or extension has a name; ``meant`` is the one most likely meant for ``word``."""
+
+    def __init__(self, wrong: str, meant: str, otherwise: str, word: str = "") -> None:
+        self.wrong = wrong
+        self.remedy = f'Did you mean "{meant}"?' if meant else otherwise
+        self.meant = meant
+        self.word = word
+        super().__init__(f"{wrong} {self.remedy}")
+
+
 def policy_named(text: str) -> Policy:
     """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.
 
     ``prima`` may have extensions: ``prima+x1``, ``prima+x2+x4``, ``prima+all``.
 
     Raises:
-        UsageError: no policy or extension has that name.
+        UnknownPolicy: no policy or extension has that name.
     """
     base, *extensions = text.split("+")
     if base == "prima" and extensions:
@@ -171,14 +182,15 @@ def policy_named(text: str) -> Policy:
     if name == "fixed" and first:
         return Fixed(first=first)
     if name not in POLICIES or colon:
-        hint = did_you_mean(name, POLICIES) or f"Write {one_of(POLICIES)}."
-        raise UsageError(f'There is no policy "{text}". {hint}')
+        wrong = f'There is no policy "{text}".'
+        raise UnknownPolicy(wrong, nearest_word(name, POLICIES), f"Write {one_of(POLICIES)}.")
     return POLICIES[name]()
 
 
 def _extensions(names: list[str]) -> frozenset[str]:
     for name in names:
         if name != "all" and name not in EXTENSIONS:
-            hint = did_you_mean(name, EXTENSIONS) or f"Write {one_of(EXTENSIONS)}, or all."
-            raise UsageError(f'There is no extension "{name}". {hint}')
+            wrong = f'There is no extension "{name}".'
+            other = nearest_word(name, EXTENSIONS)
+            raise UnknownPolicy(wrong, other, f"Write {one_of(EXTENSIONS)}, or all.", name)
     return frozenset(EXTENSIONS if "all" in names else names)

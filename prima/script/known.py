@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from itertools import islice
 
-from prima.errors import MANY_WORDS
+from prima.errors.guesses import MANY_WORDS
 from prima.script.globals import IDENTIFIER
 
 

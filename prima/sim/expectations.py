@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from prima.devices.reading import RENAME, Reader
-from prima.errors import did_you_mean, parted
-from prima.language.values import read_value
+from prima.errors import Hint, suggestion
+from prima.language.values import BadValue, read_value
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.sim.happenings import TRIGGERS
 
@@ -153,7 +154,7 @@ def _check_other(reader: Reader, node: Node, name: str, ids: set[str]) -> None:
     other = node.get(name)
     if not other or other in ids:
         return
-    remedy = did_you_mean(other, ids)
+    remedy: str | Hint = suggestion(other, ids, *value_span(node, name))
     if not remedy and name == "after" and other[:1].isdigit():
         remedy = f'For a time write within="{other}".'
     message = f'No expectation above has the id "{other}".'
@@ -170,8 +171,7 @@ def _opening(reader: Reader, node: Node, given: list[str]) -> Any:
         return "end"
     try:
         return read_value("duration", text)
-    except ValueError as error:
-        wrong, remedy = parted(str(error))
-        remedy = f'{remedy} Or write "end".'.lstrip()
-        reader.problem(node, "bad-value", f'at "{text}" {wrong}', "at", remedy)
+    except BadValue as error:
+        remedy = f'{error.remedy} Or write "end".'.lstrip()
+        reader.problem(node, "bad-value", f'at "{text}" {error.wrong}', "at", remedy)
         return 0

@@ -8,6 +8,7 @@ from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
+from prima.markup.spans import value_span
 from prima.session import AnyDocument
 from prima.sim.expectations import Expectation
 from prima.sim.scenario import Scenario
@@ -48,7 +49,7 @@ def _known(
     if word is None or word in words:
         return
     place = one.node.attribute_place(name)
-    remedy = nearest(word, words)
+    remedy = nearest(word, words, *value_span(one.node, name))
     problems.append(Problem(place, "error", "no-such-name", f'{wrong} "{word}".', remedy))
 
 

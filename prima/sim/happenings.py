@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from prima.devices.reading import Reader
-from prima.errors import did_you_mean
+from prima.errors import suggestion
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.sim.vocabulary import SCENARIO
@@ -219,8 +220,9 @@ def read_transfer(reader: Reader, node: Node) -> Transfer:
     outcome = reader.get(node, "outcome") or ENDINGS[0]
     if outcome not in (*UNANSWERED, *ENDINGS) and not outcome.startswith("error."):
         message = f'A call does not end with "{outcome}".'
-        remedy = did_you_mean(outcome, {*UNANSWERED, *ENDINGS})
-        remedy = remedy or f"Write {', '.join((*UNANSWERED, *ENDINGS))}, or an error's event."
+        spans = value_span(node, "outcome")
+        hint = suggestion(outcome, {*UNANSWERED, *ENDINGS}, *spans)
+        remedy = hint or f"Write {', '.join((*UNANSWERED, *ENDINGS))}, or an error's event."
         reader.problem(node, "bad-value", message, "outcome", remedy)
     lasts = reader.get(node, "lasts")
     return Transfer(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from prima.errors import Problem, did_you_mean, one_of
+from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -20,6 +20,7 @@ from prima.interpreter.surroundings import (
 )
 from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.sim.devices import Cast
 from prima.sim.map import Map
@@ -84,11 +85,12 @@ def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Pr
         if name not in begins
     ]
     for place, name in waiting:
-        meant = "" if name.startswith(OPEN) else near(name, corners)
-        if meant or name.startswith("corner."):
+        other = "" if name.startswith(OPEN) else near(name, corners)
+        if other or name.startswith("corner."):
             message = f'No corner of the world raises the event "{name}".'
-            remedy = f'Did you mean "{meant}"?' if meant else nearest(name, corners)
-            remedy = remedy or "Write corner, or name the corner's event in the world."
+            span = Span.of(place, name)
+            hint = meant(other, span) or nearest(name, corners, span)
+            remedy = hint or "Write corner, or name the corner's event in the world."
             yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
@@ -151,7 +153,7 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
             if words.strip() and not said.may_hold(words):
                 what = "asks" if asked else "says"
                 message = f'No application {what} anything with "{words}".'
-                remedy = did_you_mean(words, said.lines)
+                remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
                 if asked and not remedy and sayings.may_hold(words):
                     remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
                 if not remedy and (tag == "never" or not said.certain):
@@ -168,8 +170,8 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
         name = node.get("name")
         if heard.isdisjoint(beginnings(name)):
             message = f'No application handles the event "{name}".'
-            meant = near(name, heard)
-            remedy = f'Did you mean "{meant}"?' if meant else "Remove it, or handle it."
+            near_one = meant(near(name, heard), *value_span(node, "name"))
+            remedy = near_one or "Remove it, or handle it."
             yield Problem(node.attribute_place("name"), "warning", "unheard-event", message, remedy)
 
 
@@ -184,11 +186,11 @@ def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[P
         ending = ENDINGS if attribute == "reason" else frozenset()
         if name in begins or name in ending or name.startswith(OPEN):
             continue
-        if meant := near(name, chain(ending, known)):
+        if other := near(name, chain(ending, known)):
             message = f'Nothing raises an event "{name}".'
-            if meant in ending:
+            if other in ending:
                 message = f'No application ends with "{name}".'
-            remedy = f'Did you mean "{meant}"?'
+            remedy = meant(other, *value_span(node, attribute))
             place = node.attribute_place(attribute)
             yield Problem(place, "warning", "unknown-event", message, remedy)
 
@@ -243,13 +245,15 @@ def _services(events: list[Events], cast: Cast) -> Iterator[Problem]:
         owners.setdefault(service.name, set()).add(service.application)
     for document, one in zip(cast.documents, events, strict=True):
         for node, name in one.asked:
-            message = remedy = ""
+            message, remedy = "", Hint()
             if name in owners and owners[name].isdisjoint(("", document.id)):
                 message = f'The scenario has the service "{name}" for {one_of(sorted(owners[name]))} alone.'
-                remedy = f'In the scenario, write a <service name="{name}"> for this application.'
-            elif name not in owners and (meant := near(name, owners)):
+                remedy = Hint(
+                    f'In the scenario, write a <service name="{name}"> for this application.'
+                )
+            elif name not in owners and (other := near(name, owners)):
                 message = f'The scenario has no service "{name}".'
-                remedy = f'Did you mean "{meant}"?'
+                remedy = meant(other, *value_span(node, "to"))
             if message:
                 place = node.attribute_place("to")
                 yield Problem(place, "warning", "no-such-name", message, remedy)

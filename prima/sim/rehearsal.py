@@ -7,6 +7,7 @@ from prima.devices.profile import Profile
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
+from prima.markup.spans import value_span
 from prima.scheduler.policy import Policy
 from prima.session import AnyDocument, Session
 from prima.sim.devices import Cast, SimulatedDevices
@@ -54,7 +55,7 @@ def check_names(
             if words is not None and word not in words:
                 place = node.attribute_place(name)
                 message = f'There is no {what} "{word}".'
-                remedy = nearest(word, words)
+                remedy = nearest(word, words, *value_span(node, name))
                 problems.append(Problem(place, "error", "no-such-name", message, remedy))
     return problems
 

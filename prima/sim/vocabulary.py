@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from prima.devices.vocabulary import ID, TITLE, VERSION
-from prima.markup.vocabulary import Element, Vocabulary, attribute
+from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 from prima.script.prelude import START
 
 _X = attribute("x", "number", "metres east", "required", low=-1000, high=1000)
@@ -91,9 +91,9 @@ WORLD = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("room", "location", "position", "node", "waypoint"), "Write <place>."),
-        **dict.fromkeys(("path", "road", "route", "edge", "link"), "Write <way>."),
-        **dict.fromkeys(("object", "item", "landmark"), "Write <thing>."),
+        **dict.fromkeys(("room", "location", "position", "node", "waypoint"), Instead("place")),
+        **dict.fromkeys(("path", "road", "route", "edge", "link"), Instead("way")),
+        **dict.fromkeys(("object", "item", "landmark"), Instead("thing")),
         **dict.fromkeys(("robot", "person"), "It is the scenario that says who is where."),
     },
 )
@@ -452,15 +452,15 @@ SCENARIO = Vocabulary(
         ),
     ),
     hints={
-        **dict.fromkeys(("user", "human", "visitor"), "Write <person>."),
-        **dict.fromkeys(("app", "fa", "ea", "prima", "vxml"), 'Write <application src="..."/>.'),
+        **dict.fromkeys(("user", "human", "visitor"), Instead("person")),
+        **dict.fromkeys(("app", "fa", "ea", "prima", "vxml"), Instead("application", 'src="..."/')),
         **dict.fromkeys(("speak", "prompt", "says"), "Write <say>: what the user says."),
-        **dict.fromkeys(("tap", "press", "stroke"), 'Write <touch sensor="..."/>.'),
-        **dict.fromkeys(("go", "goto", "move", "topological-move"), 'Write <walk to="..."/>.'),
+        **dict.fromkeys(("tap", "press", "stroke"), Instead("touch", 'sensor="..."/')),
+        **dict.fromkeys(("go", "goto", "move", "topological-move"), Instead("walk", 'to="..."/')),
         **dict.fromkeys(("sleep", "pause", "delay", "after"), 'Write <wait for="3s"/>.'),
         **dict.fromkeys(("on", "at", "if", "then", "catch"), "Write <when>, with its trigger."),
-        **dict.fromkeys(("assert", "expected", "must"), "Write <expect>."),
-        **dict.fromkeys(("forbid", "must-not", "not"), "Write <never>."),
+        **dict.fromkeys(("assert", "expected", "must"), Instead("expect")),
+        **dict.fromkeys(("forbid", "must-not", "not"), Instead("never")),
         "world": 'Name it in the root element: <scenario world="..." robot="...">.',
         "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
         "comment": "Write <note>, or a comment of XML: <!-- ... -->.",

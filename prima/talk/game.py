@@ -89,7 +89,7 @@ class Game:
         self.policy = policy or cast.scenario.policy
         self._chosen = policy_named(self.policy)
         if problem := favourite_problem(self.policy, cast.documents):
-            raise UsageError(" ".join(problem))
+            raise UsageError(f"{problem[0]} {problem[1].text}")
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
         scenario = self._read([])
         scenario.services = cast.scenario.services  # with what they answer fetches with

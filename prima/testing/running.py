@@ -78,7 +78,10 @@ def run_one(path: str, choice: Choice) -> Result:
     except DocumentError as error:
         made.status = "invalid"
         made.failures = [
-            Failure(problem.place, " ".join(filter(None, (*problem[3:], f"[{problem.code}]"))))
+            Failure(
+                problem.place,
+                " ".join(filter(None, (problem.message, problem.remedy, f"[{problem.code}]"))),
+            )
             for problem in error.problems
             if problem.severity == "error"
         ]

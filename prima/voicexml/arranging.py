@@ -7,12 +7,17 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TypeVar
 
-from prima.errors import Problem, did_you_mean, one_of, parted
+from prima.errors import Hint, Problem, one_of, suggestion
+from prima.errors.diagnoses.behaviour import SHARED_DEVICE
+from prima.errors.diagnoses.reading import TOO_DEEP
+from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
+from prima.errors.diagnoses.values import BAD_VALUE
 from prima.interpreter.elements import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import TABLE_4_2
-from prima.language.values import milliseconds, read_value
+from prima.language.values import BadValue, milliseconds, read_value
+from prima.markup.spans import attribute_span
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
@@ -148,13 +153,29 @@ def _last(steps: list[Step]) -> list[int]:
 
 # Checks --------------------------------------------------------------------------------------
 
+NESTED_TOO_DEEP = TOO_DEEP.says(
+    "There are more than {most} such elements inside each other.", "Divide them."
+)
+NO_COMMAND = EMPTY.says("This <p:{tag}> holds no Command.", "Write Commands into it.")
+NO_ITEM = EMPTY.says("This <p:iu> holds no form item.", "Write {items} into it, or remove it.")
+NO_TEXT_HERE = STRAY_TEXT.says(
+    'Text cannot stand in <p:{tag}>: "{text}".', "Write it into a <{inside}>."
+)
+NOT_AMONG_ITEMS = MISPLACED_ELEMENT.says("<{name}> cannot stand in a <p:iu> around form items.")
+NOT_HERE = MISPLACED_ELEMENT.says("<{name}> cannot stand in <p:{parent}>.")
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<p:{tag}> has no attribute "{name}".')
+NOT_OF_ITS_KIND = BAD_VALUE.says('{name} "{value}" {wrong}')
+ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
+    "This branch shares {devices} with another: they run one after the other.",
+    "Write them one after the other, in a <p:seq>.",
+)
+
 
 def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[Node]:
     """What is wrong with such an element; gives the Commands in it, in document order."""
     check_own(node, node.tag, problems)
     if depth == DEEPEST:
-        message = f"There are more than {DEEPEST} such elements inside each other."
-        problems.append(Problem(node.place, "error", "too-deep", message, "Divide them."))
+        problems.append(NESTED_TOO_DEEP.at(node.place, most=DEEPEST))
         return []
     found: list[list[Node]] = []
     for child in node.content:
@@ -165,8 +186,7 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
             found.append(check_arranged(child, problems, depth + 1) if inner else [child])
     commands = [command for branch in found for command in branch]
     if not node.nodes:
-        message = f"This <p:{node.tag}> holds no Command."
-        problems.append(Problem(node.place, "error", "empty", message, "Write Commands into it."))
+        problems.append(NO_COMMAND.at(node.place, tag=node.tag))
     if not depth or node.tag == "iu":
         _check_now(node, problems)
     if node.tag == "iu":
@@ -178,9 +198,9 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
 
 def _check_text(node: Node, text: str, problems: list[Problem]) -> None:
     if text.strip():
-        message = f'Text cannot stand in <p:{node.tag}>: "{text.strip()[:40]}".'
-        remedy = "Write it into a <p:speak>." if node.key != UNIT else "Write it into a <block>."
-        problems.append(Problem(node.place, "error", "stray-text", message, remedy))
+        inside = "p:speak" if node.key != UNIT else "block"
+        shown = text.strip()[:40]
+        problems.append(NO_TEXT_HERE.at(node.place, tag=node.tag, text=shown, inside=inside))
 
 
 def check_items(unit: Node, problems: list[Problem]) -> Iterator[Node]:
@@ -196,14 +216,12 @@ def check_items(unit: Node, problems: list[Problem]) -> Iterator[Node]:
         else:
             problems.append(_not_among_items(child))
     if not any(one.tag in UNIT_ITEMS for one in unit.nodes):
-        message = "This <p:iu> holds no form item."
-        remedy = f"Write {one_of(f'<{one}>' for one in UNIT_ITEMS)} into it, or remove it."
-        problems.append(Problem(unit.place, "error", "empty", message, remedy))
+        items = one_of(f"<{one}>" for one in UNIT_ITEMS)
+        problems.append(NO_ITEM.at(unit.place, items=items))
 
 
 def _not_among_items(child: Node) -> Problem:
     name = f"p:{child.tag}" if child.namespace == PRIMA_NAMESPACE else child.tag
-    message = f"<{name}> cannot stand in a <p:iu> around form items."
     remedy = f"It holds {one_of(f'<{one}>' for one in UNIT_ITEMS)}, and handlers of events."
     own = child.namespace == PRIMA_NAMESPACE and child.tag in (*COMMANDS, "par", "seq")
     if own or (child.namespace == NAMESPACE and VOICEXML.child("block", child.tag)):
@@ -212,7 +230,7 @@ def _not_among_items(child: Node) -> Problem:
         remedy = 'Write <catch event="...">.'
     elif child.tag in BESIDE and not own:
         remedy = f"Write it into the form, beside the <p:iu>{BESIDE[child.tag]}."
-    return Problem(child.place, "error", "misplaced-element", message, remedy)
+    return NOT_AMONG_ITEMS.at(child.place, Hint(remedy), name=name)
 
 
 def check_own(node: Node, key: str, problems: list[Problem]) -> None:
@@ -223,16 +241,17 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
             continue
         if name not in known:
             place = node.attribute_place(name, value=False)
-            message = f'<p:{node.tag}> has no attribute "{name}".'
-            hint = did_you_mean(name, known)
-            problems.append(Problem(place, "error", "unknown-attribute", message, hint))
+            hint = suggestion(name, known, attribute_span(node, name))
+            problems.append(NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name))
             continue
         try:
             read_value(known[name].kind, text)
-        except ValueError as error:
-            place, (wrong, remedy) = node.attribute_place(name), parted(str(error))
-            message = f'{name} "{text}" {wrong}'
-            problems.append(Problem(place, "error", "bad-value", message, remedy))
+        except BadValue as error:
+            place = node.attribute_place(name)
+            hint = Hint(error.remedy)
+            problems.append(
+                NOT_OF_ITS_KIND.at(place, hint, name=name, value=text, wrong=error.wrong)
+            )
 
 
 def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
@@ -241,11 +260,10 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
     if own and child.tag in (*COMMANDS, *(one for one in ARRANGING if one != node.tag)):
         return True
     name = child.tag if not own else f"p:{child.tag}"
-    message = f"<{name}> cannot stand in <p:{node.tag}>."
     remedy = "Write what is said as <p:speak>." if child.tag in ("prompt", "audio") else ""
     others = [f"<p:{one}>" for one in ARRANGING if one != node.tag]
     remedy = remedy or f"It holds Commands of the robot, {one_of(others)}."
-    problems.append(Problem(child.place, "error", "misplaced-element", message, remedy))
+    problems.append(NOT_HERE.at(child.place, Hint(remedy), name=name, parent=node.tag))
     return False
 
 
@@ -271,13 +289,8 @@ def _check_branches(branches: list[list[Node]], problems: list[Problem]) -> None
     for one, other in combinations(branches, 2):
         both = _devices(one) & _devices(other)
         if both:
-            message = (
-                f"This branch shares {', '.join(sorted(both))} with another:"
-                " they run one after the other."
-            )
-            remedy = "Write them one after the other, in a <p:seq>."
-            place = other[0].place
-            problems.append(Problem(place, "warning", "shared-device", message, remedy))
+            devices = ", ".join(sorted(both))
+            problems.append(ONE_AFTER_THE_OTHER.at(other[0].place, devices=devices))
             return
 
 

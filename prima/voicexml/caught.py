@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from prima.errors import Problem
+from prima.errors import Problem, Span, meant
+from prima.errors.diagnoses.names import UNKNOWN_EVENT
 from prima.interpreter.events import MOST_GUESSES, STANDARD, beginnings, event_place, slip_of
 from prima.markup.tree import Node
 
@@ -36,13 +37,16 @@ def caught_in(root: Node) -> Iterator[tuple[Node, str]]:
             yield from ((node, name) for name in node.get("event").split())
 
 
+NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
+
+
 def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
     """Warnings of handlers whose event is most likely a slip: others may be thrown by anybody."""
     known = {*EVENTS, *thrown}
     begins = {name for one in known for name in beginnings(one)}
     strange = [(node, name) for node, name in caught_in(root) if name not in begins]
     for node, name in strange[:MOST_GUESSES]:
-        meant = "" if name.startswith(OPEN) else slip_of(name, known)
-        if meant:
-            message, remedy = f'Nothing raises an event "{name}".', f'Did you mean "{meant}"?'
-            yield Problem(event_place(node, name), "warning", "unknown-event", message, remedy)
+        other = "" if name.startswith(OPEN) else slip_of(name, known)
+        if other:
+            place = event_place(node, name)
+            yield NEVER_RAISED.at(place, meant(other, Span.of(place, name)), name=name)

@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError, Problem
+from prima.errors.diagnoses.structure import DUPLICATE_ID, NO_NAMESPACE
 from prima.markup.check import check_root
 from prima.markup.reader import parse
+from prima.markup.spans import with_namespace
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
 from prima.voicexml.arranging import is_unit
-from prima.voicexml.check import check_code, check_tree
+from prima.voicexml.checks import check_code, check_tree
 from prima.voicexml.site import Site
 from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
@@ -30,6 +32,11 @@ __all__ = [
     "of_web",
     "read_page",
 ]
+TWO_DIALOGS = DUPLICATE_ID.says('There are two dialogs "{name}".')
+READ_AS_VOICEXML = NO_NAMESPACE.says(
+    "The root element <vxml> has no namespace: it is read as VoiceXML."
+)
+
 REMOTE = frozenset(["http", "https", "service"])
 """Schemes of URIs that are asked for outside the application."""
 Fetch = Callable[[str], bytes]
@@ -116,9 +123,7 @@ def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Pag
     for node in root.all("form", "menu"):
         name = node.get("id") or f"#{len(page.dialogs) + 1}"
         if name in page.dialogs:
-            message = f'There are two dialogs "{name}".'
-            problem = Problem(node.attribute_place("id"), "error", "duplicate-id", message)
-            page.problems.append(problem)
+            page.problems.append(TWO_DIALOGS.at(node.attribute_place("id"), name=name))
         page.dialogs.setdefault(name, node)
     units = any(is_unit(one) for form in root.all("form") for one in form.nodes)
     if units and broken(page) is None:
@@ -142,9 +147,8 @@ def _without_namespace(root: Node) -> list[Problem]:
         stack.extend(node.nodes)
     if root.get("version", VERSIONS[0]).strip() not in VERSIONS:
         return []  # VoiceXML 1.0 has no namespace
-    message = "The root element <vxml> has no namespace: it is read as VoiceXML."
-    remedy = f'Write <vxml xmlns="{NAMESPACE}">.'
-    return [Problem(root.place, "warning", "no-namespace", message, remedy)]
+    hint = with_namespace(f'Write <vxml xmlns="{NAMESPACE}">.', root, NAMESPACE)
+    return [READ_AS_VOICEXML.at(root.place, hint)]
 
 
 @dataclass(slots=True)

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from prima.errors import Problem
+from prima.errors.diagnoses.grammars import NO_ANSWER
 from prima.markup.tree import Node
 from prima.voicexml.arranging import parts_of
 from prima.voicexml.document import Page, broken
 
 ASKING = ("field", "initial")
 REMEDY = "Give it a <grammar>, <option>s or a type. At run time it is error.semantic."
+NO_GRAMMAR = NO_ANSWER.says(
+    "No grammar listens at the <{tag}>{name}: it takes no answer at all.", REMEDY, "warning"
+)
 
 
 def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
@@ -28,10 +32,7 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
             heard = _listens(item) or (shared and item.get("modal") != "true")
             if item.tag in ASKING and surely and not heard:
                 name = f" {item.get('name')}".rstrip()
-                message = (
-                    f"No grammar listens at the <{item.tag}>{name}: it takes no answer at all."
-                )
-                yield Problem(item.place, "warning", "no-answer", message, REMEDY)
+                yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
 
 
 def _listens(node: Node) -> bool:

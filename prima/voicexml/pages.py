@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from urllib.parse import unquote, urldefrag, urlsplit
 
-from prima.errors import DocumentError, Problem, did_you_mean
+from prima.errors import DocumentError, Problem, suggestion
+from prima.errors.diagnoses.names import NO_SUCH_FORM, UNDECLARED_VARIABLE
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page, read_page
@@ -90,10 +92,20 @@ class Pages:
         return self._pages.get(urlsplit(base).path), name
 
 
+NO_DIALOG = NO_SUCH_FORM.says(
+    'There is no dialog "{name}" in {page}: this will be error.badfetch.', severity="warning"
+)
+NOT_TAKEN = UNDECLARED_VARIABLE.says(
+    '{form} has no <var name="{name}"/>: this will be error.semantic.',
+    "Declare it in the form.",
+    "warning",
+)
+
+
 def _not_there(node: Node, name: str, page: Page) -> Problem:
-    message = f'There is no dialog "{name}" in {page.uri}: this will be error.badfetch.'
     place = node.attribute_place(LEADING[node.key])
-    return Problem(place, "warning", "no-such-form", message, did_you_mean(name, page.dialogs))
+    hint = suggestion(name, page.dialogs, *value_span(node, LEADING[node.key], name))
+    return NO_DIALOG.at(place, hint, name=name, page=page.uri)
 
 
 def _named(page: Page) -> Iterator[str]:
@@ -116,10 +128,8 @@ def _untaken(node: Node, form: Node) -> Iterator[Problem]:
         name = param.get("name")
         if name and name not in names:
             which = f'The form "{form.get("id")}"' if form.get("id") else "The form that is called"
-            message = f'{which} has no <var name="{name}"/>: this will be error.semantic.'
-            remedy = did_you_mean(name, names) or "Declare it in the form."
-            place = param.attribute_place("name")
-            yield Problem(place, "warning", "undeclared-variable", message, remedy)
+            hint = suggestion(name, names, *value_span(param, "name"))
+            yield NOT_TAKEN.at(param.attribute_place("name"), hint, form=which, name=name)
 
 
 SPEAKING = frozenset(["prompt", "block", "filled", "catch", "noinput", "nomatch", "help", "error",

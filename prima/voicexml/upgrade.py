@@ -6,8 +6,12 @@ import re
 from collections.abc import Callable
 
 from prima.errors import Problem
+from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
+from prima.errors.diagnoses.values import BAD_VALUE
 from prima.grammar.media import UNTYPED
+from prima.markup.spans import added
 from prima.markup.tree import Node
+from prima.markup.vocabulary import Attribute
 
 VERSIONS = ("2.0", "2.1")
 OLD = "1.0"
@@ -21,6 +25,20 @@ DROPPED = {"subdialog": ("modal",)}
 EVENTS = re.compile(r"(?<!\S)(error\.)?telephone(?=[.\s]|$)")
 """Events of the telephone, which are those of a connection now (2.0, 5.2.6)."""
 
+NO_VERSION = MISSING_ATTRIBUTE.says(
+    '<vxml> needs the attribute "version": the document is read as VoiceXML 2.1.',
+    'Write version="2.0" or "2.1".',
+    "warning",
+)
+OLD_VERSION = BAD_VALUE.says(
+    "The document is of VoiceXML 1.0: it is read as 2.0, its older elements as newer.",
+    "Rewrite it in 2.0 or 2.1.",
+    "warning",
+)
+OTHER_VERSION = BAD_VALUE.says(
+    'version "{version}" is not a version of VoiceXML that is run here.', "Write 2.0 or 2.1."
+)
+
 
 def old(root: Node) -> bool:
     """Whether a document is of VoiceXML 1.0, which has no namespace and other elements in part."""
@@ -33,15 +51,12 @@ def version_problem(root: Node) -> Problem | None:
     if version in VERSIONS:
         return None
     if "version" not in root.attributes:
-        message = '<vxml> needs the attribute "version": the document is read as VoiceXML 2.1.'
-        remedy = 'Write version="2.0" or "2.1".'
-        return Problem(root.place, "warning", "missing-attribute", message, remedy)
+        item = Attribute("version", "text", "the version", default="2.1")
+        return NO_VERSION.at(root.place, added("", root, item))
     place = root.attribute_place("version")
     if version == OLD:
-        message = "The document is of VoiceXML 1.0: it is read as 2.0, its older elements as newer."
-        return Problem(place, "warning", "bad-value", message, "Rewrite it in 2.0 or 2.1.")
-    message = f'version "{version}" is not a version of VoiceXML that is run here.'
-    return Problem(place, "error", "bad-value", message, "Write 2.0 or 2.1.")
+        return OLD_VERSION.at(place)
+    return OTHER_VERSION.at(place, version=version)
 
 
 def upgrade(root: Node) -> None:

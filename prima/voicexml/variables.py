@@ -10,14 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
-from prima.errors import Place, Problem, did_you_mean
+from prima.errors import Place, Problem, Span, suggestion
+from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
+from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, Scope
 from prima.script.names import SCOPES, Names, Use, expression_names, script_names
-from prima.voicexml.check import FORM_ITEMS, NAMING, is_code
+from prima.voicexml.checks import FORM_ITEMS, NAMING, is_code
 from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
 from prima.voicexml.events import HANDLERS
@@ -207,6 +210,16 @@ class _Look:
             inner = self.level(self.page, node.nodes, ordered=True)
             yield from self.check(inner.nodes, inner, outer, members)
 
+    @cached_property
+    def _declarations(self) -> Declarations:
+        return Declarations(self.page.root)
+
+    def _undeclared(self, read: Read, known: Known) -> Problem:
+        hint = suggestion(read.name, known.written(), Span.of(read.place, read.name))
+        declare = f'Declare it: <var name="{read.name}"/>.'
+        hint = hint or self._declarations.hint(declare, read.name, read.node)
+        return NOT_DECLARED.at(read.place, hint, name=read.name)
+
     def check(
         self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
     ) -> Iterator[Problem]:
@@ -218,7 +231,7 @@ class _Look:
                 if read.name in ALWAYS or read.name in outer or read.name in seen:
                     continue
                 if read.name not in level.names:
-                    yield _undeclared(read, Known(level.names, *outer.scopes))
+                    yield self._undeclared(read, Known(level.names, *outer.scopes))
                 elif read.at_once and (level.ordered or _in_order(read)):
                     yield _early(read)
             yield from self.members(node, members)
@@ -307,23 +320,26 @@ def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
             yield Read(f"{use.holder}.{use.name}", node, attribute, start)
 
 
-WILL = "this will be error.semantic."
-
-
-def _undeclared(read: Read, known: Known) -> Problem:
-    message = f'The variable "{read.name}" is not declared: {WILL}'
-    remedy = did_you_mean(read.name, known.written()) or f'Declare it: <var name="{read.name}"/>.'
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+NOT_DECLARED = UNDECLARED_VARIABLE.says(
+    'The variable "{name}" is not declared: this will be error.semantic.', severity="warning"
+)
+DECLARED_AFTER = UNDECLARED_VARIABLE.says(
+    'The variable "{name}" is declared after this: this will be error.semantic.',
+    "Declare it before.",
+    "warning",
+)
+NO_MEMBER = UNDECLARED_VARIABLE.says(
+    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
+    'Declare it there: <var name="{name}"/>.',
+    "warning",
+)
 
 
 def _early(read: Read) -> Problem:
-    message = f'The variable "{read.name}" is declared after this: {WILL}'
-    remedy = "Declare it before."
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+    return DECLARED_AFTER.at(read.place, name=read.name)
 
 
 def _no_member(read: Read, holder: str, name: str, scope: Scope) -> Problem:
-    message = f'The scope "{holder}" declares no variable "{name}": {WILL}'
-    near = did_you_mean(name, scope.written)
-    remedy = near or f'Declare it there: <var name="{name}"/>.'
-    return Problem(read.place, "warning", "undeclared-variable", message, remedy)
+    at = read.place._replace(column=read.place.column + len(holder) + 1)
+    hint = suggestion(name, scope.written, Span.of(at, name))
+    return NO_MEMBER.at(read.place, hint, scope=holder, name=name)

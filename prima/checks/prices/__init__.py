@@ -9,6 +9,7 @@ from __future__ import annotations
 from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
 from prima.devices.profile import Profile
 from prima.errors import Problem
+from prima.errors.diagnoses.behaviour import UNIT_PRICE
 from prima.interpreter.elements import Document
 from prima.voicexml.document import VoiceDocument
 
@@ -26,6 +27,11 @@ def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
     return voice.outline(document, profile)
 
 
+UNIT_WAITS = UNIT_PRICE.says(
+    "While this unit runs, a reaction that needs its devices waits up to {seconds}."
+)
+
+
 def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
     """All parts of an application that nothing breaks, in document order."""
     return outline(document, profile).parts
@@ -34,12 +40,7 @@ def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
 def notes(document: Document, profile: Profile) -> list[Problem]:
     """What units cost, as notes for ``prima validate --notes``."""
     return [
-        Problem(
-            price.place,
-            "note",
-            "unit-price",
-            f"While this unit runs, a reaction that needs its devices waits up to {price.seconds}.",
-        )
+        UNIT_WAITS.at(price.place, seconds=price.seconds)
         for price in prices(document, profile)
         if price.what == "unit"
     ]

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from prima.checks.codes import diagnoses
 from prima.errors import DocumentError, Problem, UsageError, did_you_mean
-from prima.errors.codes import CODES
 from prima.markup.limits import LIMITS
 
 FOLDER = Path(__file__).parent
@@ -43,8 +43,8 @@ def examples(code: str) -> tuple[Example, Example]:
     Raises:
         UsageError: there is no such code.
     """
-    if code not in CODES:
-        hint = did_you_mean(code, CODES) or "prima explain lists them."
+    if code not in diagnoses():
+        hint = did_you_mean(code, diagnoses()) or "prima explain lists them."
         raise UsageError(f'There is no code "{code}". {hint}')
     return _example(code, "wrong"), _example(code, "right")
 
@@ -97,11 +97,19 @@ def shown(code: str) -> str:
         UsageError: there is no such code.
     """
     wrong, right = examples(code)
-    parts = [CODES[code]]
+    parts = [meaning(code)]
     for name, text in beside(code).items():
         parts += [f"{name}:", _indented(text)]
     parts += [headline(code, "Wrong"), _indented(wrong.text), told(wrong)]
     return "\n\n".join([*parts, headline(code, "Right"), _indented(right.text)])
+
+
+def meaning(code: str) -> str:
+    """What a code means, with the rule or section that it comes from."""
+    one = diagnoses()[code]
+    return (
+        f"{one.meaning} ({one.rule})" if one.rule and one.rule not in one.meaning else one.meaning
+    )
 
 
 def data(code: str) -> dict[str, Any]:
@@ -115,7 +123,9 @@ def data(code: str) -> dict[str, Any]:
     wrong, right = examples(code)
     return {
         "code": code,
-        "explanation": CODES[code],
+        "title": diagnoses()[code].title,
+        "explanation": diagnoses()[code].meaning,
+        "rule": diagnoses()[code].rule,
         "wrong": {"name": wrong.name, "text": wrong.text},
         "problems": [problem_data(problem) for problem in wrong.problems],
         "right": {"name": right.name, "text": right.text},

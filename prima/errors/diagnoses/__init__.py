@@ -1,0 +1,1 @@
+"""Diagnoses that several modules make, by subject; others are declared beside their check."""

@@ -1,0 +1,111 @@
+"""Names of forms, variables, events, Commands and files that nothing has."""
+
+from __future__ import annotations
+
+from prima.errors.diagnosis import Diagnosis
+
+NO_SUCH_FORM = Diagnosis(
+    "no-such-form",
+    "Unknown form",
+    "A goto, subdialog or link names a form that does not exist.",
+    rule="VoiceXML 2.0, 5.3.7",
+)
+
+NO_SUCH_ITEM = Diagnosis(
+    "no-such-item",
+    "Unknown form item",
+    "A name is used that no item of the form has.",
+    rule="VoiceXML 2.0, 5.3.7",
+)
+
+NO_SUCH_NAME = Diagnosis(
+    "no-such-name",
+    "Unknown name",
+    (
+        "A scenario, world or application names a place, thing, gesture, sensor, device or "
+        "application that the world, robot or scenario does not have."
+    ),
+)
+
+NO_SUCH_ARGUMENT = Diagnosis(
+    "no-such-argument",
+    "Unknown argument",
+    "A Command is given an argument that the robot's profile does not name.",
+    rule="thesis, Table 4.1",
+)
+
+NO_SUCH_FILE = Diagnosis(
+    "no-such-file",
+    "Unreadable file",
+    (
+        "A scenario or a grammar names a file that cannot be read. Paths are relative to the "
+        "folder of the document that names them."
+    ),
+)
+
+UNDECLARED_VARIABLE = Diagnosis(
+    "undeclared-variable",
+    "Undeclared variable",
+    (
+        "An expression uses, or an assign changes, a variable that no <var>, form item, "
+        "<foreach> or <script> declares. At run time that is error.semantic. So is, in "
+        "VoiceXML, a param of a subdialog that no <var> of the called form takes, a variable "
+        "of one <block> in another, one that is declared only afterwards, and a member of "
+        "document or another scope that is given a value, or asked for a member of its own, "
+        "and that nothing declares there. A grammar's tag uses a name that no tag of the "
+        "grammar declares: at run time such an answer is no match."
+    ),
+    rule="VoiceXML 2.0, 5.1",
+)
+
+BAD_EXPRESSION = Diagnosis(
+    "bad-expression",
+    "Not ECMAScript",
+    ("An expression or a script is not ECMAScript. The place is where the compiler stopped."),
+    rule="ECMAScript",
+)
+
+FA_ONLY = Diagnosis(
+    "fa-only",
+    "Argument for FAs only",
+    (
+        "Additional arguments (thesis Table 4.1) are for an FA, whose developer knows the "
+        "robot. An EA runs on any robot."
+    ),
+    rule="thesis, Table 4.1",
+)
+
+UNSUPPORTED_COMMAND = Diagnosis(
+    "unsupported-command",
+    "Unsupported Command",
+    (
+        "The robot's profile lacks the Command or one of its devices. At run time the "
+        "application gets error.unsupported.COMMAND, which it may handle. Each Command of a "
+        "document is reported once, with the number of places."
+    ),
+    rule="V2",
+    severity="warning",
+)
+
+UNKNOWN_EVENT = Diagnosis(
+    "unknown-event",
+    "Unknown event",
+    (
+        "A handler names an event that nothing raises, most likely a typo; given a scenario, "
+        "also an event of a corner that its world does not have. An application's own events "
+        "come from throw, send, link, watch, a return, or a scenario."
+    ),
+    rule="VoiceXML 2.0, 5.2",
+    severity="warning",
+)
+
+UNHEARD_EVENT = Diagnosis(
+    "unheard-event",
+    "Event without a handler",
+    (
+        "An event is raised, and no handler takes it. It is lost; one that is thrown ends the "
+        "application."
+    ),
+    rule="VoiceXML 2.0, 5.2",
+    severity="warning",
+)

@@ -1,0 +1,47 @@
+"""Values and texts that an element cannot have."""
+
+from __future__ import annotations
+
+from prima.errors.diagnosis import Diagnosis
+
+BAD_VALUE = Diagnosis(
+    "bad-value",
+    "Bad value",
+    (
+        "An attribute's text is not of the attribute's kind: a time has its unit (2s, 500ms), "
+        "a number is written in digits, and so on."
+    ),
+)
+
+OUT_OF_RANGE = Diagnosis(
+    "out-of-range",
+    "Number out of range",
+    "A number is greater or smaller than the attribute or argument allows.",
+)
+
+EXCLUSIVE = Diagnosis(
+    "exclusive",
+    "Attributes that exclude each other",
+    (
+        "Two attributes exclude each other: they say the same thing in different ways, or ask "
+        "for two things of which the element does one. Keep one."
+    ),
+)
+
+TOO_LONG = Diagnosis(
+    "too-long",
+    "Speech too long",
+    (
+        "An utterance or a question keeps the speaker for ten minutes at most, counted at 50 "
+        "ms a letter: meanwhile nobody can answer the user, as no unit is cut. A run refuses "
+        "it as error.semantic (rule E3)."
+    ),
+    rule="E3",
+)
+
+NOTHING_TO_SAY = Diagnosis(
+    "nothing-to-say",
+    "Nothing to say",
+    "A Command that speaks has no text.",
+    rule="E3",
+)

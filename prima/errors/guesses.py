@@ -1,0 +1,83 @@
+"""Guesses at what was meant: the known word nearest to an unknown one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from itertools import islice
+
+from prima.errors.problems import Edit, Fix, Hint, Span
+
+MANY_LETTERS, MANY_WORDS = 60, 300
+"""Beyond these no guess is made at what was meant: it would take too long."""
+MOST_COMPARED = 30_000
+"""Pairs of words that are compared for the guesses at one document."""
+
+
+@contextmanager
+def few_guesses() -> Iterator[None]:
+    """Let only so many guesses be made meanwhile, however much is wrong with a document."""
+    token = _guesses.set(_Guesses())
+    try:
+        yield
+    finally:
+        _guesses.reset(token)
+
+
+class _Guesses:
+    """How many comparisons are left for the guesses at one document."""
+
+    def __init__(self) -> None:
+        self.left = MOST_COMPARED
+
+
+_guesses: ContextVar[_Guesses | None] = ContextVar("guesses", default=None)
+
+
+def guessable(word: str, known: Iterable[str]) -> list[str]:
+    """The words among which it may be looked for what was meant by another, in order.
+
+    None if there are too many, or if too much has been guessed at a document (:func:`few_guesses`).
+    """
+    guesses = _guesses.get()
+    if len(word) > MANY_LETTERS or (guesses is not None and guesses.left < 0):
+        return []
+    words = list(islice(known, MANY_WORDS + 1))
+    if guesses is not None:
+        guesses.left -= len(words)
+    return sorted(words) if len(words) <= MANY_WORDS else []
+
+
+def nearest_word(word: str, known: Iterable[str]) -> str:
+    """The known word that is most like another one, or nothing."""
+    words = guessable(word, known)
+    alike = [one for one in words if one.casefold() == word.casefold()]
+    if words and not alike:
+        from difflib import get_close_matches  # costs a third of a start, and is rarely needed
+
+        alike = get_close_matches(word, words, n=1, cutoff=0.6)
+    return alike[0] if alike else ""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
+    return meant(nearest_word(word, known)).text
+
+
+def suggestion(word: str, known: Iterable[str], *spans: Span) -> Hint:
+    """The same as a hint; its fix writes the known word into some spans."""
+    return meant(nearest_word(word, known), *spans)
+
+
+def meant(word: str, *spans: Span) -> Hint:
+    """Ask whether a word was meant, and write it into some spans; nothing without a word."""
+    return replaced(f'Did you mean "{word}"?', word, *spans) if word else Hint()
+
+
+def replaced(text: str, word: str, *spans: Span, title: str = "") -> Hint:
+    """A sentence, with a fix that writes a word into some spans."""
+    if not spans:
+        return Hint(text)
+    edits = tuple(Edit(span, word) for span in spans)
+    return Hint(text, (Fix(title or f'Change to "{word}"', edits),))

@@ -1,0 +1,16 @@
+"""Numbers and lists in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: ``1 reaction``, ``2 reactions``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def one_of(words: Iterable[str]) -> str:
+    """Join words for a message: ``a, b or c``."""
+    *head, last = sorted(words) or [""]
+    return f"{', '.join(head)} or {last}" if head else last

@@ -1,0 +1,61 @@
+"""Motion arguments and texts of Commands, against what a row of the table or a profile says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from prima.errors import Problem
+from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, STRAY_TEXT
+from prima.errors.diagnoses.values import BAD_VALUE, OUT_OF_RANGE
+from prima.language.commands import Argument, CommandType, check_argument, missing_argument
+from prima.language.values import BadValue, nearest, read_value
+from prima.markup.spans import value_span
+from prima.markup.tree import Node
+
+MISSING_ARGUMENT = MISSING_ATTRIBUTE.says("{wrong}", 'Write {name}="...".')
+MISSING_PARAM = MISSING_ATTRIBUTE.says(
+    "{wrong}", 'Write <param name="{name}" value="..."/> into it.'
+)
+CANNOT_SAY = STRAY_TEXT.says("{command} cannot say anything.", "Say it with <{prefix}speak>.")
+BAD_ARGUMENT = BAD_VALUE.says("{wrong}", "{remedy}")
+ARGUMENT_BEYOND = OUT_OF_RANGE.says("{wrong}")
+
+
+def given_to(
+    node: Node, row: CommandType, given: Mapping[str, object], says: bool, prefix: str = ""
+) -> Iterator[Problem]:
+    """What is wrong with the motion arguments and the text of a Command's element.
+
+    Args:
+        node: the element.
+        row: what the robot's profile says of the Command.
+        given: its arguments, by name; only those are looked at whose values are texts.
+        says: whether it has a text.
+        prefix: what Commands' names have before them in the document, with its colon.
+    """
+    for name, value in given.items():
+        if name in row.arguments and isinstance(value, str):
+            yield from _argument(node, name, row.arguments[name], value)
+    if missing := missing_argument(row, given):
+        needed = [name for name, one in row.arguments.items() if one.required or one.choice]
+        lacking = next(name for name in needed if name not in given)
+        diagnosis = MISSING_PARAM if node.tag == "command" else MISSING_ARGUMENT
+        yield diagnosis.at(node.place, wrong=missing, name=lacking)
+    if row.text == "none" and says:
+        yield CANNOT_SAY.at(node.place, command=row.name, prefix=prefix)
+
+
+def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[Problem]:
+    """What is wrong with a motion argument's value: of a param, or of the element's own attribute."""
+    param = next((one for one in node.all("param") if one.get("name") == name), None)
+    holder, attribute = (node, name) if param is None else (param, "value")
+    place = holder.place_of(attribute)
+    try:
+        check_argument(name, argument, text)
+    except BadValue as error:
+        if not error.beyond:
+            yield BAD_ARGUMENT.at(place, wrong=error.wrong, remedy=error.remedy)
+            return
+        value, spans = float(read_value(argument.kind, text)), value_span(holder, attribute)
+        hint = nearest(argument.kind, value, argument.low, argument.high, *spans)
+        yield ARGUMENT_BEYOND.at(place, hint, wrong=error.wrong)

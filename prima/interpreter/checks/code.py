@@ -1,0 +1,216 @@
+"""Expressions and scripts that are not ECMAScript, and conditions that assign."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from prima.errors import Diagnosis, Problem
+from prima.errors.diagnoses.names import BAD_EXPRESSION
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.checks.variables import Variables, place_in
+from prima.interpreter.elements import (
+    Act,
+    Assign,
+    Declare,
+    Document,
+    Expression,
+    Field,
+    Foreach,
+    Form,
+    Goto,
+    Handler,
+    If,
+    Item,
+    Log,
+    Prompt,
+    Run,
+    Script,
+    SendOut,
+    Subdialog,
+    Throw,
+    run_commands,
+)
+from prima.script.compile import compiled
+from prima.script.evaluation import EngineLost, ScriptError
+from prima.script.known import Known
+from prima.script.parse import parse_expression
+
+STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+WIDEST = 60
+"""Characters of code that a message quotes."""
+
+NOT_ECMASCRIPT = BAD_EXPRESSION.says('"{code}" is not ECMAScript: {error}.')
+NOT_CHECKED = BAD_EXPRESSION.says('"{code}" cannot be checked: {error}.', severity="warning")
+ASSIGNING_CONDITION = Diagnosis(
+    "assigning-condition",
+    "Condition that assigns",
+    "A condition has = where a comparison, ==, was most likely meant: it changes the variable, and"
+    " holds whenever the new value does.",
+    severity="warning",
+    message="This condition gives a variable a value; it does not compare.",
+    remedy="Write ==.",
+)
+
+
+def _of_run(run: Run) -> Iterator[object]:
+    for command in run_commands(run.steps):
+        yield from command.args.values()
+        yield from command.text or ()
+        yield from (value for _, value in command.extra)
+        yield from (handler.cond for handler in command.handlers)
+
+
+HELD: Mapping[type[Act], Callable[[Any], Iterable[object]]] = {
+    Declare: lambda act: (act.expr,),
+    Assign: lambda act: (act.expr,),
+    If: lambda act: [cond for cond, _ in act.branches],
+    Foreach: lambda act: (act.array,),
+    Log: lambda act: act.text,
+    Throw: lambda act: (act.event, act.message),
+    Goto: lambda act: (act.form, act.item),
+    SendOut: lambda act: (act.service, act.delay, *(value for _, value in act.params)),
+    Run: _of_run,
+}
+"""What acts hold that may be expressions, by kinds; scripts are looked at by themselves."""
+
+
+def check_code(facts: Facts) -> Iterator[Problem]:
+    """All code of a document, and the variables that it uses."""
+    variables = Variables(facts)
+    waiting: list[tuple[Expression, Known, bool]] = []
+    for expr, known, script in _all_code(facts):
+        if script or compiled(expr.code) is None:
+            waiting.append((expr, known, script))  # only an engine understands it
+        else:
+            yield from _used(variables, expr, known)
+    _look_ahead([(expr.code, script) for expr, _, script in waiting])
+    for expr, known, script in waiting:
+        if expr.attribute and expr.attribute not in expr.node.attributes:
+            continue  # it is missing, which is a problem of its schema
+        problem = _compiled(expr, script)
+        if problem is not None:
+            yield problem
+        elif script:
+            yield from variables.of_script(expr, known)
+        else:
+            yield from _used(variables, expr, known)
+    yield from variables.given()
+
+
+def _used(variables: Variables, expr: Expression, known: Known) -> Iterator[Problem]:
+    yield from variables.of_expression(expr, known)
+    yield from _assigns(expr)
+
+
+# All code, with the names that it may use and whether it is a script
+
+
+Code = tuple[Expression, Known, bool]
+
+
+def _all_code(facts: Facts) -> Iterator[Code]:
+    yield from _outside(facts.document, Known(facts.shared), facts.known_in(None))
+    for form, items in facts.forms:
+        known = facts.known_in(form)
+        yield from _outside(form, known, known)
+        for item in items:
+            yield from ((one, known, False) for one in _of_item(item))
+    for kind, held in HELD.items():
+        for holder, act in facts.acts.of(kind):
+            known = facts.known_in(holder)
+            for one in held(act):
+                if isinstance(one, Expression):
+                    yield one, known, False
+    for holder, script in facts.acts.of(Script):
+        yield script.code, facts.known_in(holder), True
+
+
+def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Code]:
+    """Code of a document or form that is in no content; ``later`` is seen by its handlers."""
+    for act in holder.setup:
+        if isinstance(act, Script):
+            yield act.code, known, True
+        elif act.expr is not None:
+            yield act.expr, known, False
+    yield from ((watch.when, known, False) for watch in holder.watches)
+    yield from ((cond, later, False) for cond in _conditions(holder.handlers))
+
+
+def _conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]:
+    return (one.cond for one in conditional if one.cond is not None)
+
+
+def _of_item(item: Item) -> Iterator[Expression]:
+    """Code of a form item that is in no content."""
+    yield from _conditions(item.handlers)
+    held: list[object] = [item.expr, item.cond]
+    if isinstance(item, Field):
+        yield from _conditions(item.prompts)
+        held += [part for prompt in item.prompts for part in prompt.text]
+    elif isinstance(item, Subdialog):
+        held += [value for _, value in item.params]
+    yield from (one for one in held if isinstance(one, Expression))
+
+
+# What an engine says of it
+
+
+def _look_ahead(codes: list[tuple[str, bool]]) -> None:
+    """Let the engine look at all code at once that needs it: each call takes time."""
+    if len(codes) > 1:
+        from prima.script.isolated import syntax
+
+        with suppress(ScriptError):  # the check of each piece reports that there is no engine
+            syntax().look_ahead(codes)
+
+
+def _compiled(expr: Expression, script: bool) -> Problem | None:
+    from prima.script.isolated import syntax
+
+    try:
+        (syntax().script if script else syntax().expression)(expr.code)
+    except ScriptError as error:
+        shown = " ".join(expr.code.split())
+        shown = shown if len(shown) <= WIDEST else shown[: WIDEST - 3] + "..."
+        place = expr.node.code_place(expr.attribute, error.line, error.column)
+        if isinstance(error, EngineLost):  # perhaps from outside: a run may still go well
+            return NOT_CHECKED.at(place, code=shown, error=error)
+        found = NOT_ECMASCRIPT.at(place, code=shown, error=error)
+        return found._replace(remedy=_remedy(expr.code))
+    return None
+
+
+def _remedy(code: str) -> str:
+    """What to write for a wrong expression, where that is a common slip."""
+    from prima.markup.slips import half
+
+    bare = STRINGS.sub("", code)
+    wide = [
+        one
+        for one in ("" if bare.isascii() else bare)
+        if not one.isascii() and half(one).isascii() and half(one).strip()
+    ]
+    if wide:
+        return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
+    if "${" in bare:
+        return "Write the expression alone, without ${ and }."
+    if re.search(r"=\s+=", bare):
+        return "Write == without a space."
+    for word, right in (("and", "&amp;&amp;"), ("or", "||"), ("not", "!")):
+        if word in bare and re.search(rf"\b{word}\b", bare):
+            return f"Write {right} for {word}."
+    return ""
+
+
+def _assigns(expr: Expression) -> Iterator[Problem]:
+    """A condition that gives a variable a value, where a comparison was meant."""
+    if "=" not in expr.code or expr.attribute not in ("cond", "when"):
+        return
+    parsed = parse_expression(expr.code)
+    for node in parsed.walk() if parsed is not None else ():
+        if parsed is not None and node.type == "assignment_expression":
+            yield ASSIGNING_CONDITION.at(place_in(expr, parsed.start(node.children[1])))
+            return

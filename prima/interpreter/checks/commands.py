@@ -1,0 +1,116 @@
+"""What Commands say, and what runs of Commands share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from prima.errors import Diagnosis, Problem
+from prima.errors.diagnoses.behaviour import SHARED_DEVICE
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import (
+    Field,
+    Form,
+    GroupTemplate,
+    Run,
+    StepTemplate,
+    Text,
+    Unit,
+    run_commands,
+)
+from prima.interpreter.units import long_unit, speak, unit_speaks
+from prima.language.commands import TABLE_4_2
+from prima.markup.tree import Node
+
+MANY_STEPS = 200
+"""Steps of one run beyond which its branches are not compared."""
+BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+
+LITERAL_VALUE = Diagnosis(
+    "literal-value",
+    "Variable's name said as text",
+    "A text holds a variable's name in braces, as other languages write a value. The robot says it"
+    ' as it is written; a value is written <value expr="..."/>.',
+    severity="warning",
+    message='"{text}" is said as it is written.',
+    remedy='Write <value expr="{name}"/>.',
+)
+ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
+    "This branch shares {devices} with another: they run one after the other.",
+    "Write them one after the other, in a <seq>.",
+)
+
+
+def check_texts(facts: Facts) -> Iterator[Problem]:
+    """Text with a variable in braces, as other languages write a value."""
+    for form, run in facts.acts.of(Run):
+        for command in run_commands(run.steps):
+            yield from _literal(facts, command.node, command.text, form)
+    for form, items in facts.forms:
+        for item in items:
+            for prompt in item.prompts if isinstance(item, Field) else ():
+                yield from _literal(facts, prompt.node, prompt.text, form)
+
+
+def _literal(facts: Facts, node: Node, text: Text | None, form: Form | None) -> Iterator[Problem]:
+    for part in text or ():
+        found = BRACES.search(part) if isinstance(part, str) and "{" in part else None
+        if found and found[1] in (facts.known_in(form) if form else facts.shared):
+            yield LITERAL_VALUE.at(node.place, text=found[0], name=found[1])
+
+
+def check_units(facts: Facts) -> Iterator[Problem]:
+    """Units that speak for long (4.5)."""
+    lang = facts.document.lang
+    for _, items in facts.forms:
+        for item in items:
+            if isinstance(item, Unit):
+                yield from long_unit(item.node, unit_speaks(item, lang))
+    for _, run in facts.acts.of(Run):
+        for step in run.steps:
+            if isinstance(step.what, GroupTemplate):
+                commands = run_commands(step.what.steps)
+                yield from long_unit(step.what.node, speak(commands, lang))
+
+
+def check_branches(facts: Facts) -> Iterator[Problem]:
+    """U3: branches of a par that share a device run one after the other."""
+    for _, run in facts.acts.of(Run):
+        steps = run.steps
+        chained = all(step.after == ((n - 1,) if n else ()) for n, step in enumerate(steps))
+        if not chained and len(steps) <= MANY_STEPS:
+            yield from _shared(steps)
+
+
+def _shared(steps: Sequence[StepTemplate]) -> Iterator[Problem]:
+    for index, step in enumerate(steps):
+        for second, other in enumerate(steps[index + 1 :], index + 1):
+            both = _devices(step) & _devices(other) if _parallel(steps, index, second) else ()
+            if both:
+                yield ONE_AFTER_THE_OTHER.at(other.what.node.place, devices=", ".join(sorted(both)))
+                return
+
+
+def _parallel(steps: Sequence[StepTemplate], first: int, second: int) -> bool:
+    """Whether neither of two steps waits for the other."""
+    waiting, seen = [second], set()
+    while waiting:
+        index = waiting.pop()
+        if index == first:
+            return False
+        if index not in seen:
+            seen.add(index)
+            waiting += steps[index].after
+    return True
+
+
+def _devices(step: StepTemplate) -> frozenset[str]:
+    commands = (
+        run_commands(step.what.steps) if isinstance(step.what, GroupTemplate) else [step.what]
+    )
+    devices: frozenset[str] = frozenset()
+    for command in commands:
+        row = TABLE_4_2.get(command.type)
+        if row is not None:
+            devices |= row.occupied("x" if command.text else None)
+    return devices

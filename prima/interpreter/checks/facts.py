@@ -1,0 +1,147 @@
+"""What the checks of a document share: its acts, the names that it declares, where its forms lead."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+
+from prima.interpreter.elements import (
+    Acts,
+    Declare,
+    Document,
+    Exit,
+    Foreach,
+    Form,
+    Goto,
+    Item,
+    Run,
+    Script,
+    Subdialog,
+    all_acts,
+    all_items,
+    run_commands,
+)
+from prima.interpreter.elements import CommandTemplate as Command
+from prima.script.known import Known, Scope
+from prima.script.names import script_names
+
+NONE: frozenset[str] = frozenset()
+
+
+class Leads:
+    """Where forms lead, by their names, and the document's own content (None)."""
+
+    __slots__ = ("anywhere", "calls", "exits", "targets")
+
+    def __init__(self) -> None:
+        self.targets: defaultdict[str | None, list[str]] = defaultdict(list)
+        """Forms they go to."""
+        self.anywhere: set[str | None] = set()
+        """Those whose target is an expression."""
+        self.calls: defaultdict[str | None, list[str]] = defaultdict(list)
+        """Forms they call as subdialogs."""
+        self.exits: set[str | None] = set()
+        """Those that an exit may end."""
+
+    def of(self, form: str) -> list[str]:
+        """All that a form goes to or calls."""
+        return [*self.targets.get(form, ()), *self.calls.get(form, ())]
+
+
+class Facts:
+    """A document with all that several checks look up in it, each found once."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.acts = Acts(document)
+        self.shared = Scope(setup_names(document.setup))
+        """Names that all forms see."""
+        self._declared: dict[str | None, Scope] = {}
+        """Names by the form whose content declares them; None for the document."""
+        self._given: dict[str, Scope] = {}
+        """Names that subdialogs give as params, by the form they call."""
+        self._gather()
+        self._common = Scope(self.shared | self._declared.get(None, NONE))
+
+    @property
+    def forms(self) -> Iterator[tuple[Form, Sequence[Item]]]:
+        """Forms with all their items."""
+        return ((form, all_items(form.items)) for form in self.document.forms.values())
+
+    # Names
+
+    def _gather(self) -> None:
+        """Names by the form that declares them, found in one go."""
+        for form, declare in self.acts.of(Declare):
+            self._own(form).add(declare.name)
+        for form, script in self.acts.of(Script):
+            self._own(form).update(script_names(script.code.code).declared)
+        for form, loop in self.acts.of(Foreach):
+            self._own(form).add(loop.item)
+        for form, items in self.forms:
+            if form.setup:
+                self._own(form).update(setup_names(form.setup))
+            for item in items:
+                self._gather_item(form, item)
+
+    def _gather_item(self, form: Form, item: Item) -> None:
+        if item.node.get("name"):
+            self._own(form).update((item.name, f"{item.name}$"))
+        if isinstance(item, Subdialog):
+            given = self._given.setdefault(item.form, Scope())
+            given |= {name for name, _ in item.params}
+
+    def _own(self, form: Form | None) -> Scope:
+        return self._declared.setdefault(form.id if form else None, Scope())
+
+    @cached_property
+    def _every(self) -> Known:
+        """All variables that there are."""
+        return Known(Scope(self.shared.union(*self._declared.values(), *self._given.values())))
+
+    def known_in(self, form: Form | None) -> Known:
+        """All variables that content of a form may see, or the document's own content (None)."""
+        if form is None:
+            return self._every
+        own, given = self._declared.get(form.id), self._given.get(form.id)
+        return Known(self._common, *filter(None, (own, given)))
+
+    # Ways
+
+    @cached_property
+    def leads(self) -> Leads:
+        """Where each form leads, and the document's own content."""
+        found = Leads()
+        for form, goto in self.acts.of(Goto):
+            name = form.id if form else None
+            if isinstance(goto.form, str):
+                found.targets[name].append(goto.form)
+            elif goto.form is not None:
+                found.anywhere.add(name)
+        found.exits = {form.id if form else None for form, _ in self.acts.of(Exit)}
+        holders = [(None, self.document.links), *((form.id, form.links) for form, _ in self.forms)]
+        for name, links in holders:
+            for link in links:
+                if link.form:
+                    found.targets[name].append(link.form)
+        for form, items in self.forms:
+            calls = [item.form for item in items if isinstance(item, Subdialog)]
+            found.calls[form.id] += calls
+        return found
+
+
+def setup_names(setup: Iterable[Declare | Script]) -> set[str]:
+    """The names that a document or form declares before its content."""
+    names: set[str] = set()
+    for act in setup:
+        names |= {act.name} if isinstance(act, Declare) else script_names(act.code.code).declared
+    return names
+
+
+def document_commands(document: Document) -> Iterator[Command]:
+    """Every Command of a document."""
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            if isinstance(act, Run):
+                yield from run_commands(act.steps)

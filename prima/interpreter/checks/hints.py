@@ -1,0 +1,87 @@
+"""Hints that can have no effect, and what a held stream costs others (X3, X4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from prima.errors import Diagnosis, Problem
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import Field, Form, Item, Run, Subdialog, run_commands
+from prima.language.commands import TABLE_4_2
+from prima.language.values import read_value
+from prima.markup.tree import Node
+
+IDLE_HINT = Diagnosis(
+    "idle-hint",
+    "Hint without effect",
+    "A hint that can never have an effect: hold-for without stream, or a stream held in a state"
+    " that handles no event to wait for, or that asks for no Command.",
+    rule="X3, X4",
+    severity="warning",
+)
+NOTHING_HELD = IDLE_HINT.says("hold-for says how long, but nothing is held.", 'Add stream="hold".')
+NO_EVENT = IDLE_HINT.says(
+    "The stream is held, but there is no event to wait for here.",
+    'Handle the event with <on event="...">.',
+)
+NO_WORD = IDLE_HINT.says(
+    "The robot is to turn to the user before its first word, but says none here.",
+    "Remove the hint.",
+)
+HOLD_PRICE = Diagnosis(
+    "hold-price",
+    "What a held stream costs others",
+    "A stream hint (rule X3) keeps other applications out while this one waits for an event: all"
+    " but their reactions wait for as long as hold-for says, after each last Command of the"
+    " state. The note says for how long; it applies only to a run with the extension x3.",
+    rule="X3",
+    severity="note",
+    message="With the extension x3 another application waits up to {seconds} s for each event"
+    " awaited here, unless it reacts to one itself.",
+)
+
+
+def check_hints(facts: Facts) -> Iterator[Problem]:
+    """X3, X4: hints of forms and items."""
+    speaking = _speaking(facts)
+    for form, items in facts.forms:
+        yield from _stream(facts, form, form)
+        for item in items:
+            yield from _stream(facts, form, item)
+        silent = not facts.document.handlers and form.id not in speaking
+        if form.connect and silent and not _asks(items):
+            yield NO_WORD.at(form.node.place_of("channel"))
+
+
+def _stream(facts: Facts, form: Form, one: Form | Item) -> Iterator[Problem]:
+    node, document = one.node, facts.document
+    if "hold-for" in node.attributes and "stream" not in node.attributes:
+        yield NOTHING_HELD.at(node.place_of("hold-for"))
+    if not one.hold or "stream" not in node.attributes or _bad_hold(node):
+        return
+    handlers = (*form.handlers, *document.handlers)
+    if handlers or form.watches or form.links or document.links:
+        yield HOLD_PRICE.at(node.place_of("stream"), seconds=f"{one.hold / 1000:g}")
+    else:
+        yield NO_EVENT.at(node.place_of("stream"))
+
+
+def _asks(items: Sequence[Item]) -> bool:
+    return any(isinstance(item, Field | Subdialog) for item in items)
+
+
+def _speaking(facts: Facts) -> set[str]:
+    """The forms whose content makes the robot say something, as far as can be seen."""
+    return {
+        form.id
+        for form, run in facts.acts.of(Run)
+        if form and any(one.text or one.type not in TABLE_4_2 for one in run_commands(run.steps))
+    }
+
+
+def _bad_hold(node: Node) -> bool:
+    """Whether an element's hold-for is not a time, which is a problem of its schema."""
+    try:
+        return int(read_value("duration", node.get("hold-for", "1s"))) <= 0
+    except ValueError:
+        return True

@@ -1,0 +1,77 @@
+"""Questions that the user cannot answer, and questions that are asked for ever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.errors import Diagnosis, Problem
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import (
+    Exit,
+    Field,
+    Goto,
+    Handler,
+    Return,
+    Run,
+    Throw,
+    all_acts,
+    run_commands,
+)
+from prima.interpreter.events import DEFAULTS, silent_fields
+from prima.language.commands import TABLE_4_2
+
+LEAVES_QUESTION = Diagnosis(
+    "leaves-question",
+    "Robot leaves a question",
+    "The robot drives away from the user in the middle of a question, and then asks it again"
+    " where the user is not (thesis 3.3, the Communication Channel).",
+    rule="thesis, 3.3",
+    severity="warning",
+    message="<{tag}> leaves the user, and then the question is asked again.",
+    remedy="Leave the question with <goto>, or look for the user first:"
+    " <active-sensing-human/> behind it.",
+)
+NO_NOINPUT = Diagnosis(
+    "no-noinput",
+    "Question without noinput",
+    "A question that nobody answers is asked again and again if nothing handles noinput. The"
+    " conversation stays open meanwhile, so that no other application can drive the robot"
+    " anywhere (rule K1).",
+    rule="K1",
+    severity="warning",
+    message='If nobody answers "{field}", it is asked for ever, and other applications cannot drive'
+    " anywhere.",
+    remedy='Write <noinput count="3"><exit/></noinput>, or where else to go.',
+)
+
+
+def check_leaving(facts: Facts) -> Iterator[Problem]:
+    """3.3: a Command that leaves the user while a question is to be asked again."""
+    every = list(facts.document.handlers)
+    for form, items in facts.forms:
+        fields = [item for item in items if isinstance(item, Field)]
+        every += form.handlers if fields else []
+        for field in fields:
+            for handler in field.handlers:
+                yield from _leaves(handler)
+    for handler in every:
+        if not DEFAULTS.isdisjoint(handler.events):
+            yield from _leaves(handler)
+
+
+def _leaves(handler: Handler) -> Iterator[Problem]:
+    """Whether a handler drives away from a question and comes back to it."""
+    acts = all_acts(handler.content)
+    if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
+        return
+    commands = [one for act in acts if isinstance(act, Run) for one in run_commands(act.steps)]
+    leaving = [one for one in commands if one.type in TABLE_4_2 and TABLE_4_2[one.type].leaves]
+    if leaving and not any(one.type == "active-sensing-human" for one in commands):
+        node = leaving[0].node
+        yield LEAVES_QUESTION.at(node.place, tag=node.tag)
+
+
+def check_silence(facts: Facts) -> Iterator[Problem]:
+    """K1: questions that are asked for ever while nobody answers."""
+    for field in silent_fields(facts.document):
+        yield NO_NOINPUT.at(field.node.place, field=field.name)

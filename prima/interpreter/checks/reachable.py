@@ -1,0 +1,166 @@
+"""Forms that nothing leads to, that nothing leaves, and content that is never reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from prima.errors import Diagnosis, Problem
+from prima.errors.diagnoses.behaviour import UNREACHABLE
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import (
+    Act,
+    Exit,
+    Field,
+    Foreach,
+    Form,
+    Goto,
+    If,
+    Return,
+    Throw,
+    all_acts,
+    all_items,
+)
+from prima.interpreter.events import DEFAULTS, handlers_of
+
+LEAVING = (Goto, Return, Exit)
+"""Acts behind which nothing is reached."""
+
+UNREACHABLE_FORM = UNREACHABLE.says(
+    'Nothing leads to the form "{form}".', "Go to it from somewhere, or remove it."
+)
+DEAD_END = Diagnosis(
+    "dead-end",
+    "Form that cannot be left",
+    "Nothing in the form or its handlers, but for those of errors, is a goto, exit, return, throw"
+    " or link, and no subdialog that it calls can exit: once in it, the application waits for"
+    " ever. That may be intended; if the application is over there, say so with <exit/>, or in a"
+    " subdialog with <return/>.",
+    severity="warning",
+    message='The form "{form}" can never be left.',
+    remedy="If the application is over here, write <exit/>.",
+)
+DEAD_END_INSIDE = DEAD_END.says(
+    DEAD_END.message, "To come back from the subdialog, write <return/>."
+)
+DEAD_CONTENT = Diagnosis(
+    "dead-content",
+    "Content that is never reached",
+    "Nothing after a goto, return or exit is ever reached.",
+    rule="VoiceXML 2.0, 5.3",
+    severity="warning",
+    message="<{tag}> comes after <{leaving}> and is never reached.",
+    remedy="Put it before <{leaving}>, or remove it.",
+)
+
+
+def check_reachable(facts: Facts) -> Iterator[Problem]:
+    """Forms that nothing leads to, or that are never left."""
+    forms, leads = facts.document.forms, facts.leads
+    if not forms:
+        return
+    starts = [next(iter(forms)), *leads.targets.get(None, ())]
+    starts = [*forms] if None in leads.anywhere else starts
+    reached = _reached(facts, starts, calls=True)
+    called = {name for calls in leads.calls.values() for name in calls}
+    inside = _reached(facts, called, calls=False)
+    left = _left(facts)
+    for name, form in forms.items():
+        if not name:
+            continue  # nothing can name it, which is a problem of its schema
+        if name not in reached:
+            yield UNREACHABLE_FORM.at(form.node.place_of("id"), form=name)
+        elif name not in left:
+            diagnosis = DEAD_END_INSIDE if name in inside else DEAD_END
+            yield diagnosis.at(form.node.place_of("id"), form=name)
+
+
+def _reached(facts: Facts, names: Iterable[str], calls: bool) -> set[str]:
+    """The forms that some forms lead to, themselves included; with subdialogs or without."""
+    forms, leads = facts.document.forms, facts.leads
+    reached: set[str] = set()
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop()
+        if name in reached or name not in forms:
+            continue
+        reached.add(name)
+        if name in leads.anywhere:
+            return set(forms)
+        waiting += leads.of(name) if calls else leads.targets.get(name, ())
+    return reached
+
+
+def _left(facts: Facts) -> set[str]:
+    """The forms that can be left."""
+    exiting, ways = _exiting(facts), _ways(facts)
+
+    def may_leave(form: Form) -> bool:
+        asks = any(isinstance(item, Field) for item in all_items(form.items))
+        way = form.id in ways or None in ways or (asks and "" in ways)
+        return way or not exiting.isdisjoint(facts.leads.calls.get(form.id, ()))
+
+    return {name for name, form in facts.document.forms.items() if may_leave(form)}
+
+
+def _ways(facts: Facts) -> set[str | None]:
+    """The forms that can be left but by an error; None if every form can, "" if all that ask can.
+
+    A handler of errors does not count: nobody writes a state that is left only when it fails.
+    """
+    document = facts.document
+    failing: set[int] = set()
+    asking: set[int] = set()
+    for handler in handlers_of(document, facts.acts):
+        if all(event.partition(".")[0] == "error" for event in handler.events):
+            failing |= set(map(id, all_acts(handler.content)))
+    for handler in document.handlers:
+        if DEFAULTS.issuperset(handler.events):
+            asking |= set(map(id, all_acts(handler.content)))
+    found: set[str | None] = {None} if any(link.form for link in document.links) else set()
+    found |= {form.id for form, _ in facts.forms if any(link.form for link in form.links)}
+    for kind in (Goto, Exit, Return, Throw):
+        for holder, act in facts.acts.of(kind):
+            stays = isinstance(act, Goto) and act.form is None
+            if not stays and id(act) not in failing:
+                found.add("" if id(act) in asking else holder.id if holder else None)
+    return found
+
+
+def _exiting(facts: Facts) -> set[str]:
+    """The forms from which an exit can be reached, through gotos and subdialogs."""
+    forms, leads = facts.document.forms, facts.leads
+    waiting = [name for name in forms if name in leads.exits]
+    if not waiting:
+        return set()
+    waiting += [name for name in forms if name in leads.anywhere]
+    leading: dict[str, list[str]] = {}
+    for name in forms:
+        for target in leads.of(name):
+            leading.setdefault(target, []).append(name)
+    found: set[str] = set()
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += leading.get(name, [])
+    return found
+
+
+def check_content(facts: Facts) -> Iterator[Problem]:
+    """Content behind a goto, return or exit."""
+    for _, content, _ in facts.document.contents():
+        yield from _dead(content)
+
+
+def _dead(content: Sequence[Act]) -> Iterator[Problem]:
+    for index, act in enumerate(content, 1):
+        if isinstance(act, LEAVING):
+            for behind in content[index : index + 1]:
+                place = behind.node.place
+                yield DEAD_CONTENT.at(place, tag=behind.node.tag, leaving=act.node.tag)
+            return
+        if isinstance(act, If):
+            for _, branch in act.branches:
+                yield from _dead(branch)
+        elif isinstance(act, Foreach):
+            yield from _dead(act.content)

@@ -1,0 +1,121 @@
+"""Commands of a document that a robot does not have, or not in the way in which they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from prima.errors import Problem, few, suggestion
+from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
+from prima.interpreter.checks.arguments import given_to
+from prima.interpreter.checks.facts import document_commands
+from prima.interpreter.elements import (
+    CommandTemplate,
+    Document,
+    GroupTemplate,
+    Run,
+    all_acts,
+    run_commands,
+)
+from prima.interpreter.elements import Unit as ItemUnit
+from prima.interpreter.events import handlers_of, takes
+from prima.interpreter.units import Finder, Reached, unit_problem, units_of
+from prima.language.commands import TABLE_4_2, CommandType
+from prima.markup.spans import value_span
+
+NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".', severity="error")
+CANNOT = UNSUPPORTED_COMMAND.says(
+    "This robot cannot do {command}{lacks}. At run time it is {event}.{substitute}",
+    'Handle it: <on event="{event}">.',
+)
+CANNOT_HANDLED = UNSUPPORTED_COMMAND.says(CANNOT.message)
+NO_ARGUMENT = NO_SUCH_ARGUMENT.says('This robot\'s {command} has no additional argument "{name}".')
+
+
+def check_commands(
+    document: Document, commands: Mapping[str, CommandType], devices: frozenset[str] = frozenset()
+) -> list[Problem]:
+    """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
+    problems = _outside_units(document, commands)
+    heard = {name for handler in handlers_of(document) for name in handler.events}
+    cannot: list[Problem] = []
+    for command in document_commands(document):
+        row = commands.get(command.type)
+        if row is None or row.substitute:
+            cannot.append(_cannot(command, row, commands, devices, heard))
+        else:
+            problems += _arguments(command, row)
+    return problems + few(cannot, 1)
+
+
+def _cannot(
+    command: CommandTemplate,
+    row: CommandType | None,
+    commands: Mapping[str, CommandType],
+    devices: frozenset[str],
+    heard: set[str],
+) -> Problem:
+    """A Command that a robot lacks; ``heard`` are the events that the document handles."""
+    place, name = command.node.place, command.type
+    if name not in TABLE_4_2:
+        hint = suggestion(name, commands, *value_span(command.node, "type"))
+        return NO_COMMAND.at(place, hint, command=name)
+    lacking = sorted(TABLE_4_2[name].devices - devices) if devices else []
+    event = f"error.unsupported.{name}"
+    takes_place = f" With the extension x6 {row.substitute} takes its place." if row else ""
+    handled = any(takes(one, event) for one in heard)
+    return (CANNOT_HANDLED if handled else CANNOT).at(
+        place,
+        command=name,
+        lacks=f": it lacks {', '.join(lacking)}" if lacking else "",
+        event=event,
+        substitute=takes_place,
+    )
+
+
+def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
+    """What is wrong with the arguments of a Command that only a robot's profile knows."""
+    for name, _ in command.extra:
+        if name not in row.extra and name not in row.arguments:
+            yield _no_argument(command, row, name)
+    if command.node.tag == "command":  # arguments of others are attributes, looked at already
+        given = dict(command.extra)
+        yield from given_to(command.node, row, given, bool(command.text))
+
+
+def _no_argument(command: CommandTemplate, row: CommandType, name: str) -> Problem:
+    params = [one for one in command.node.all("param") if one.get("name") == name]
+    spans = [span for one in params[:1] for span in value_span(one, "name")]
+    hint = suggestion(name, row.extra | set(row.arguments), *spans)
+    return NO_ARGUMENT.at(command.node.place, hint, command=command.type, name=name)
+
+
+def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """U4, U5: Commands of the profile's own that cannot be part of a unit."""
+    problems: dict[int, Problem] = {}
+
+    def look(one: Reached, unit: ItemUnit | None = None) -> None:
+        problem = unit_problem(one, _own_row(one.command, commands), unit)
+        if problem is not None:
+            problems.setdefault(id(one.command), problem)
+
+    finder = Finder(document)
+    for form, unit in units_of(document):
+        for one in finder.reach(form, unit).commands:
+            look(one, unit)
+    for command in _grouped(document):
+        look(Reached(command, True))
+    return [*problems.values()]
+
+
+def _own_row(command: CommandTemplate, commands: Mapping[str, CommandType]) -> CommandType | None:
+    """The row of a Command that a robot's profile adds."""
+    return None if command.type in TABLE_4_2 else commands.get(command.type)
+
+
+def _grouped(document: Document) -> Iterator[CommandTemplate]:
+    """The Commands in units around Commands (U4)."""
+    for _, content, _ in document.contents():
+        for act in all_acts(content):
+            for step in act.steps if isinstance(act, Run) else ():
+                if isinstance(step.what, GroupTemplate):
+                    yield from run_commands([step])

@@ -1,0 +1,86 @@
+"""Behaviour that goes on for ever while other applications wait (E4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.errors import Problem
+from prima.errors.diagnoses.behaviour import ENDLESS
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import (
+    Block,
+    Exit,
+    Foreach,
+    Form,
+    Goto,
+    If,
+    Return,
+    Run,
+    Throw,
+    run_commands,
+)
+
+MANY_FORMS = 8
+"""Of forms that go round, so many are named."""
+
+NEVER_ENDS = ENDLESS.says(
+    "tracking-human never ends by itself, and this state handles no event.",
+    'Handle an event: <on event="touch"><goto .../></on>.',
+)
+GOES_ROUND = ENDLESS.says(
+    "The forms {forms} go round without asking or waiting: no other application has a turn.",
+    'Wait for an event: <send event="..." delay="10s"/> and <on event="...">.',
+)
+GOES_TO_ITSELF = ENDLESS.says(
+    'The form "{forms}" goes to itself without asking or waiting: no other application has a turn.',
+    GOES_ROUND.remedy,
+)
+
+
+def check_endless(facts: Facts) -> Iterator[Problem]:
+    """A feedback Command without an end of its own, in a state without handlers."""
+    for form, run in facts.acts.of(Run):
+        for command in run_commands(run.steps):
+            if command.type != "tracking-human" or form is None:
+                continue
+            document = facts.document
+            if not (form.handlers or document.handlers or form.links or document.links):
+                yield NEVER_ENDS.at(command.node.place)
+
+
+def check_rounds(facts: Facts) -> Iterator[Problem]:
+    """Forms that go to each other for ever without asking or waiting for anything."""
+    gotos = {form.id: _always(form) for form, items in facts.forms if items}
+    told: set[str] = set()
+    for start in gotos:
+        way: list[str] = []
+        passed: set[str] = set()
+        name = start
+        while name not in passed and name not in told and (act := gotos.get(name)):
+            way.append(name)
+            passed.add(name)
+            name = act.form if isinstance(act.form, str) else ""
+        told |= passed
+        last = gotos[way[-1]] if way else None
+        if last is not None and name in passed:
+            yield _round(last, way[way.index(name) :])
+
+
+def _round(last: Goto, ring: list[str]) -> Problem:
+    diagnosis = GOES_TO_ITSELF if len(ring) == 1 else GOES_ROUND
+    more = ", ..." if len(ring) > MANY_FORMS else ""
+    forms = ", ".join(ring[:MANY_FORMS]) + more
+    return diagnosis.at(last.node.place_of("next"), forms=forms)
+
+
+def _always(form: Form) -> Goto | None:
+    """The goto to a form by which a form is left for certain, without a question or a wait."""
+    for item in form.items:
+        if not isinstance(item, Block) or item.cond is not None or item.expr is not None:
+            return None
+        for act in item.content:
+            if isinstance(act, If | Foreach | Throw | Exit | Return):
+                return None
+            if isinstance(act, Goto):
+                return act if isinstance(act.form, str) else None
+    return None

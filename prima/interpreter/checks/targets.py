@@ -1,0 +1,88 @@
+"""Forms and form items that a document names and does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from prima.errors import Problem, suggestion
+from prima.errors.diagnoses.names import NO_SUCH_FORM, NO_SUCH_ITEM
+from prima.errors.diagnoses.structure import DUPLICATE_NAME
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import Clear, Field, Filled, Form, Goto, Item, Subdialog
+from prima.markup.spans import instead, value_span
+from prima.markup.tree import Node
+from prima.script.known import Scope
+
+UNKNOWN_FORM = NO_SUCH_FORM.says('There is no form "{name}" to go to.')
+UNKNOWN_ITEM = NO_SUCH_ITEM.says('There is no form item "{name}" to go to.')
+UNKNOWN_FIELD = NO_SUCH_ITEM.says('There is no field "{name}".')
+TWO_ITEMS = DUPLICATE_NAME.says('The form "{form}" has two items named "{name}".', "Rename one.")
+
+
+def check_targets(facts: Facts) -> Iterator[Problem]:
+    """Gotos, subdialogs and links to forms and items that are not there."""
+    names = _item_names(facts)
+    for form, act in facts.acts.of(Goto):
+        if isinstance(act.form, str):
+            yield from _form(facts, act.form, act.node, "next")
+        if isinstance(act.item, str) and act.item not in names[form.id if form else None]:
+            yield _item(facts, act, act.item, names[form.id if form else None])
+    for _, items in facts.forms:
+        for item in items:
+            if isinstance(item, Subdialog):
+                yield from _form(facts, item.form, item.node, "src")
+    document = facts.document
+    links = [*document.links, *(link for form in document.forms.values() for link in form.links)]
+    for link in links:
+        if link.form:
+            yield from _form(facts, link.form, link.node, "next")
+
+
+def _item_names(facts: Facts) -> dict[str | None, set[str]]:
+    """The names of the items of each form, and of all (None)."""
+    found: dict[str | None, set[str]] = {
+        form.id: {item.name for item in items} for form, items in facts.forms
+    }
+    return {**found, None: set().union(*found.values())}
+
+
+def _form(facts: Facts, name: str, node: Node, attribute: str) -> Iterator[Problem]:
+    forms = facts.document.forms
+    if name not in forms and "#" in node.get(attribute):  # else its schema has a problem
+        hint = suggestion(name, forms, *value_span(node, attribute, name))
+        yield UNKNOWN_FORM.at(node.place_of(attribute), hint, name=name)
+
+
+def _item(facts: Facts, act: Goto, name: str, names: set[str]) -> Problem:
+    hint = suggestion(name, names, *value_span(act.node, "nextitem"))
+    if name in facts.document.forms:
+        remedy = f'It is a form: write next="#{name}".'
+        hint = instead(remedy, act.node, "nextitem", "next", f"#{name}")
+    return UNKNOWN_ITEM.at(act.node.place_of("nextitem"), hint, name=name)
+
+
+def check_items(facts: Facts) -> Iterator[Problem]:
+    """Items of one name, and namelists with fields that are not there."""
+    for form, items in facts.forms:
+        if items or form.filled:
+            yield from _two_items(form, items)
+            asking = [item for item in items if isinstance(item, Field | Subdialog)]
+            inputs = Scope(item.name for item in asking)
+            for filled in (*form.filled, *(one for item in asking for one in item.filled)):
+                yield from _namelist(filled, filled.names, inputs)
+
+
+def _two_items(form: Form, items: Sequence[Item]) -> Iterator[Problem]:
+    seen: set[str] = set()
+    for item in items:
+        if item.name in seen:
+            yield TWO_ITEMS.at(item.node.place_of("name"), form=form.id, name=item.name)
+        seen.add(item.name)
+
+
+def _namelist(holder: Filled | Clear, names: Sequence[str], known: Scope) -> Iterator[Problem]:
+    for name in names:
+        if name not in known:
+            spans = value_span(holder.node, "namelist", name)
+            hint = suggestion(name, known.written, *spans)
+            yield UNKNOWN_FIELD.at(holder.node.place_of("namelist"), hint, name=name)

@@ -1,0 +1,147 @@
+"""Variables and functions that code uses and nothing declares."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import chain
+
+from prima.errors import Hint, Place, Problem, Span, suggestion
+from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import Assign, Clear, Expression, Form, Return
+from prima.interpreter.events import handlers_of
+from prima.markup.spans import Declarations, value_span
+from prima.markup.tree import Node
+from prima.script.globals import HANDLED
+from prima.script.known import Known, Scope
+from prima.script.names import expression_names, script_names
+
+CALL = re.compile(r"\s*\(")
+SCOPED = ("document", "dialog", "application")
+"""Scopes that the name of a variable may begin with."""
+VARIABLES = Scope(HANDLED | {"session", "sensor"})
+"""What the language itself declares."""
+ABSENT = {
+    "console": 'Write <log expr="..."/>.',
+    "alert": 'Write <log expr="..."/>.',
+    "setTimeout": 'Write <send event="..." delay="..."/> and handle the event.',
+    "fetch": 'Write <send to="..."/>, which asks a service.',
+    "require": "Write the functions into a <script>.",
+}
+"""What to write instead of what ECMAScript has elsewhere."""
+
+NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
+NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
+NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
+    'No event is handled here: "{name}" is there in a handler only.',
+    "Keep what you need of it in a variable: the handler can <assign> it.",
+)
+IN_SCRIPT = UNDECLARED_VARIABLE.says(
+    'The script uses "{name}", which nothing declares.', severity="warning"
+)
+
+
+def place_in(expr: Expression, characters: int) -> Place:
+    """The place of a character of an expression or script."""
+    return expr.node.source.inside(expr.node.index, expr.attribute, characters)
+
+
+class Variables:
+    """The variables of a document: what code uses, and what acts give a value."""
+
+    def __init__(self, facts: Facts) -> None:
+        self.facts = facts
+
+    def of_expression(self, expr: Expression, known: Known) -> Iterator[Problem]:
+        """The names that an expression uses and nothing declares."""
+        names = expression_names(expr.code)
+        for name, start in names.free.items():
+            if name in known:
+                continue
+            place = place_in(expr, start)
+            if CALL.match(expr.code, start + len(name)):
+                yield self._no_function(expr, place, name, known)
+            else:
+                bare = _is_bare(expr, name)
+                yield self._undeclared(expr.node, place, name, known, bare=bare)
+        for name, start in names.handled.items():
+            if not (name in known or id(expr.node) in self._handling):
+                yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
+
+    @cached_property
+    def _handling(self) -> set[int]:
+        """The elements of all handlers: what is in them knows the event."""
+        handlers = handlers_of(self.facts.document, self.facts.acts)
+        return {id(node) for handler in handlers for node in handler.node.walk()}
+
+    def of_script(self, expr: Expression, known: Known) -> Iterator[Problem]:
+        """The names that a script uses and nothing declares."""
+        for name, start in script_names(expr.code).free.items():
+            if name not in known:
+                place = place_in(expr, start)
+                yield IN_SCRIPT.at(place, _meant(place, name, known), name=name)
+
+    def given(self) -> Iterator[Problem]:
+        """Variables that acts give a value, clear or return."""
+        for form, assign in self.facts.acts.of(Assign):
+            names = self.facts.known_in(form)
+            head, dot, rest = assign.name.partition(".")
+            name = rest.partition(".")[0] if dot and head in SCOPED else head
+            if name not in names:
+                at = assign.node.attribute_place("name")
+                at = at._replace(column=at.column + len(head) + 1) if name != head else at
+                yield self._undeclared(assign.node, at, name, names)
+        listed: list[tuple[Form | None, Clear | Return]] = [
+            *self.facts.acts.of(Clear),
+            *self.facts.acts.of(Return),
+        ]
+        for form, listing in listed:
+            yield from self._listed(listing, self.facts.known_in(form))
+
+    def _listed(self, listing: Clear | Return, known: Known) -> Iterator[Problem]:
+        for name in listing.names:
+            if name not in known:
+                place = listing.node.attribute_place("namelist")
+                spans = value_span(listing.node, "namelist", name)
+                yield self._undeclared(listing.node, place, name, known, spans)
+
+    @cached_property
+    def _declarations(self) -> Declarations:
+        return Declarations(self.facts.document.node)
+
+    def _undeclared(
+        self,
+        node: Node,
+        place: Place,
+        name: str,
+        known: Known,
+        spans: Sequence[Span] = (),
+        *,
+        bare: bool = False,
+    ) -> Problem:
+        declare = f'Declare it: <var name="{name}"/>.'
+        hint = _meant(place, name, known, spans)
+        hint = hint or self._declarations.hint(declare, name, node)
+        return NOT_DECLARED.at(place, _quoted(hint, name) if bare else hint, name=name)
+
+    def _no_function(self, expr: Expression, place: Place, name: str, known: Known) -> Problem:
+        return NO_FUNCTION.at(place, _meant(place, name, known), name=name)
+
+
+def _is_bare(expr: Expression, name: str) -> bool:
+    """Whether a name is all of an expression that may have been meant as a text."""
+    return expr.code.strip() == name and expr.node.tag != "value" and name not in ABSENT
+
+
+def _quoted(hint: Hint, name: str) -> Hint:
+    return hint._replace(text=f"{hint.text} For the text itself write '{name}'.")
+
+
+def _meant(place: Place, name: str, known: Known, spans: Sequence[Span] = ()) -> Hint:
+    """What was most likely meant by a name that nothing declares."""
+    if name in ABSENT:
+        return Hint(ABSENT[name])
+    every = chain(VARIABLES, known.written())
+    return suggestion(name, every, *(spans or [Span.of(place, name)]))

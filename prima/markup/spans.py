@@ -1,0 +1,129 @@
+"""Pieces of a document's text that fixes change: values, names, places for what is missing."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+
+from prima.errors import Edit, Fix, Hint, Span, replaced
+from prima.markup.tree import MARKUP, NAME, Node
+from prima.markup.vocabulary import Attribute
+
+
+def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
+    """The value of an attribute as written, or a word in it where it has that; none without it."""
+    source = node.source
+    first = source.offset(node.index, attribute, value=True)
+    if first <= source.tag(node.index):
+        return ()
+    last = source.text.find(source.text[first - 1], first)
+    found = _word(word).search(source.text, first, last) if word else None
+    return (source.span(*(found.span() if found else (first, last))),)
+
+
+def _word(word: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<![\w.\-]){re.escape(word)}(?![\w\-])")
+
+
+def attribute_span(node: Node, attribute: str) -> Span:
+    """An attribute's name."""
+    first = node.source.offset(node.index, attribute)
+    return node.source.span(first, first + len(attribute))
+
+
+def name_spans(node: Node) -> tuple[Span, ...]:
+    """The names in an element's tags, without their prefixes."""
+    source = node.source
+    start = source.tag(node.index)
+    names = [start + 1, *([source.closes[node.index]] if node.index in source.closes else [])]
+    begin = NAME.match(source.text, start)
+    written = begin[0][1:] if begin else node.tag
+    prefix = written.find(":") + 1
+    return tuple(source.span(at + prefix, at + len(written)) for at in names)
+
+
+def behind_name(node: Node) -> Span:
+    """Where one more attribute goes: behind the name in an element's start tag."""
+    start = node.source.tag(node.index)
+    begin = NAME.match(node.source.text, start)
+    at = begin.end() if begin else start + 1
+    return node.source.span(at, at)
+
+
+def renamed(text: str, node: Node, tag: str) -> Hint:
+    """A sentence, with a fix that gives an element another name."""
+    return replaced(text, tag, *name_spans(node), title=f"Change to <{tag}>")
+
+
+def added(text: str, node: Node, *attributes: Attribute) -> Hint:
+    """A sentence, with fixes that add an attribute to an element, one fix for each."""
+    return Hint(text, tuple(_addition(node, one.name, _likely(one)) for one in attributes))
+
+
+def _addition(node: Node, name: str, value: str) -> Fix:
+    edit = Edit(behind_name(node), f' {name}="{value}"')
+    return Fix(f'Add {name}="{value}"', (edit,))
+
+
+def _likely(item: Attribute) -> str:
+    """A value to begin with."""
+    if item.default or item.choices:
+        return item.default or item.choices[0]
+    return "2.1" if item.name == "version" else ""
+
+
+def with_namespace(text: str, node: Node, namespace: str) -> Hint:
+    """A sentence, with a fix that puts an element and what is in it into a namespace."""
+    edit = Edit(behind_name(node), f' xmlns="{namespace}"')
+    return Hint(text, (Fix("Add the namespace", (edit,)),))
+
+
+def instead(text: str, node: Node, attribute: str, name: str, value: str) -> Hint:
+    """A sentence, with a fix that writes another attribute in an attribute's place."""
+    spans = value_span(node, attribute)
+    if not spans:
+        return Hint(text)
+    name_at, value_at = attribute_span(node, attribute), spans[0]
+    whole = Span(name_at.line, name_at.column, value_at.end_line, value_at.end_column)
+    return replaced(text, f'{name}="{value}', whole, title=f'Change to {name}="{value}"')
+
+
+class Declarations:
+    """Where variables of a document may be declared: at the beginning of a form, or of all."""
+
+    def __init__(self, root: Node) -> None:
+        self.root = root
+        self.nodes = root.nodes
+        self.starts = [one.index for one in self.nodes]
+
+    def hint(self, text: str, name: str, node: Node) -> Hint:
+        """A sentence, with fixes that declare a variable which an element uses."""
+        at = bisect_right(self.starts, node.index) - 1
+        holders = [("document", self.root)]
+        if at >= 0 and self.nodes[at].tag == "form":
+            holders.insert(0, ("form", self.nodes[at]))
+        fixes = []
+        for where, holder in holders:
+            span = first_inside(holder)
+            if span is not None:
+                line = f'\n{indent(holder)}<var name="{name}"/>'
+                fixes.append(Fix(f"Declare it in the {where}", (Edit(span, line),)))
+        return Hint(text, tuple(fixes))
+
+
+def first_inside(node: Node) -> Span | None:
+    """Where an element's content begins; nothing where its tag ends at once."""
+    found = MARKUP.match(node.source.text, node.source.tag(node.index))
+    if found is None or found[0].endswith("/>"):
+        return None
+    return node.source.span(found.end(), found.end())
+
+
+def indent(node: Node) -> str:
+    """The space before an element's first child on its line, or two spaces."""
+    child = next((one for one in node.content if isinstance(one, Node)), None)
+    if child is None:
+        return "  "
+    text, first = node.source.text, node.source.tag(child.index)
+    space = text[text.rfind("\n", 0, first) + 1 : first]
+    return space if not space.strip() else "  "

@@ -1,0 +1,17 @@
+"""Everything wrong with a VoiceXML document, with its place: the Recommendation's schema and rules."""
+
+from prima.voicexml.checks.elements import FORM_ITEMS
+from prima.voicexml.checks.guests import check_commands
+from prima.voicexml.checks.later import check_code, grammar_problems, is_code
+from prima.voicexml.checks.names import NAMING
+from prima.voicexml.checks.tree import check_tree
+
+__all__ = [
+    "FORM_ITEMS",
+    "NAMING",
+    "check_code",
+    "check_commands",
+    "check_tree",
+    "grammar_problems",
+    "is_code",
+]

@@ -1,0 +1,169 @@
+"""Attributes of VoiceXML's elements, and what they may hold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from prima.errors import Hint, Problem, one_of, replaced, suggestion
+from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
+from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
+from prima.language.values import NUMBER, read_value
+from prima.markup.slips import meant_value
+from prima.markup.spans import added, attribute_span, value_span
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Element
+from prima.voicexml.cues import is_rate
+from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
+
+KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
+
+READ_AS = BAD_VALUE.says(
+    '{name} "{value}" is read as "{right}".', 'Write "{right}".', severity="warning"
+)
+NOT_ALLOWED = BAD_VALUE.says('{name} "{value}" is not allowed here.')
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
+NEEDS = MISSING_ATTRIBUTE.says('<{tag}> needs the attribute "{name}".')
+NEEDS_ONE = MISSING_ATTRIBUTE.says("<{tag}> needs {names}.")
+HAS_BOTH = EXCLUSIVE.says('<{tag}> has both "{name}" and {other}.', "Keep one of them.")
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What the tables say of an element, ready for use."""
+
+    known: frozenset[str]
+    required: tuple[str, ...]
+    kinds: dict[str, str]
+    alternatives: tuple[tuple[str, ...], ...]
+    text: bool
+
+
+def _entry(element: Element) -> Entry:
+    names = [item.name for item in element.attributes]
+    kinds = {name: VALUES.get(f"{element.key} {name}") or VALUES.get(name, "") for name in names}
+    kinds["xml:lang"] = "" if element.key == "grammar" else "language"  # a grammar checks its own
+    return Entry(
+        frozenset(names),
+        tuple(item.name for item in element.attributes if item.required),
+        {name: kind for name, kind in kinds.items() if kind},
+        tuple(tuple(line.split()) for line in ALTERNATIVES.get(element.key, ())),
+        element.text,
+    )
+
+
+ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
+
+
+def check_attributes(node: Node, entry: Entry) -> Iterator[Problem]:
+    """Attributes that are unknown, wrong or missing."""
+    for name, text in node.attributes.items():
+        if name == "method" and text != text.lower():
+            yield _capitals(node, name)
+        elif name in entry.kinds:
+            if not fits(entry.kinds[name], text):
+                yield bad_value(node, name, text, entry.kinds[name])
+        elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
+            hint = suggestion(name, entry.known, attribute_span(node, name))
+            place = node.attribute_place(name, value=False)
+            yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
+    for name in entry.required:
+        if name not in node.attributes and node.key != "vxml":  # whose version has its own check
+            yield missing(node, name)
+    for names in entry.alternatives:
+        yield from _check_alternatives(node, names)
+
+
+def missing(node: Node, name: str) -> Problem:
+    """An attribute that an element needs and lacks."""
+    hint = added("", node, VOICEXML.attributes[node.key][name][0])
+    return NEEDS.at(node.place, hint, tag=node.tag, name=name)
+
+
+def _capitals(node: Node, name: str) -> Problem:
+    """Words of HTTP in capitals, which other platforms take: they are read as if in small letters."""
+    text = node.attributes[name]
+    node.attributes[name] = small = text.lower()
+    kind = ENTRIES[node.key].kinds[name]
+    if not fits(kind, small):
+        return bad_value(node, name, text, kind)
+    hint = replaced(f'Write "{small}".', small, *value_span(node, name))
+    return READ_AS.at(node.attribute_place(name), hint, name=name, value=text, right=small)
+
+
+REMEDIES = {
+    "rate": 'Write slow, fast or another name of a rate, a number, or a change such as "+10%".',
+    "time": 'Write a number with its unit: "500ms" or "2.5s".',
+    "integer": "Write a whole number from 1.",
+    "share": "Write a number from 0 to 1.",
+    "keys": "Write keys, 0 to 9, *, # and A to D, with spaces between or without.",
+    "event": 'Write a name such as "order.cancelled".',
+    "events": 'Write names such as "order.cancelled", with spaces between.',
+    "language": 'Write a language tag such as "en".',
+}
+
+
+def fits(kind: str, text: str) -> bool:
+    """Whether a text is a value of a kind, or one of the words that the kind lists."""
+    match kind:
+        case "integer":
+            return text.isascii() and text.isdigit() and int(text) > 0
+        case "time":
+            return _reads("duration", text.strip())
+        case "language":
+            return not text.strip() or _reads("language", text)
+        case "event":
+            return _reads("event", text)
+        case "events":  # a dot alone, as no name at all, is for all events
+            return all(name == "." or _reads("event", name) for name in text.split())
+        case "keys":
+            return KEYS.fullmatch(text) is not None
+        case "share":
+            return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
+        case "rate":
+            return is_rate(text)
+        case _:
+            return text in kind.split()
+
+
+def _reads(kind: str, text: str) -> bool:
+    try:
+        read_value(kind, text)
+    except ValueError:
+        return False
+    return True
+
+
+def bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
+    """A value that is not of its kind."""
+    return NOT_ALLOWED.at(
+        node.attribute_place(name), instead_of(node, name, text, kind), name=name, value=text
+    )
+
+
+def instead_of(node: Node, name: str, text: str, kind: str) -> Hint:
+    """What to write in place of a value that is not of its kind."""
+    if kind == "time" and (right := meant_value("duration", text)):
+        return replaced(f'Write "{right}".', right, *value_span(node, name))
+    return Hint(REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
+
+
+def _check_alternatives(node: Node, names: tuple[str, ...]) -> Iterator[Problem]:
+    """Attributes of an element that exclude each other, or none where one is needed."""
+    needed = names[-1] == "!"
+    names = names[:-1] if needed else names
+    given = [name for name in names if name in node.attributes]
+    if "content" in names and (node.nodes or node.text):
+        given.append("content")
+    if len(given) > 1:
+        inside = given[1] == "content"
+        other = "content of its own" if inside else f'"{given[1]}"'
+        place = node.place if inside else node.attribute_place(given[1])
+        yield HAS_BOTH.at(place, tag=node.tag, name=given[0], other=other)
+    elif needed and not given:
+        words = [f'"{name}"' for name in names if name != "content"]
+        words += ["content of its own"] if "content" in names else []
+        yield NEEDS_ONE.at(
+            node.place, tag=node.tag, names=f"{', '.join(words[:-1])} or {words[-1]}"
+        )

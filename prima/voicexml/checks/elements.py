@@ -1,0 +1,78 @@
+"""What holds between single elements of VoiceXML and their children."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+from prima.errors import Problem, suggestion
+from prima.errors.diagnoses.names import NO_SUCH_ITEM
+from prima.errors.diagnoses.structure import AFTER_ELSE, DUPLICATE_NAME, UNKNOWN_ATTRIBUTE
+from prima.errors.diagnoses.values import EXCLUSIVE
+from prima.markup.spans import value_span
+from prima.markup.tree import Node
+from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.checks.attributes import missing
+
+INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
+FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
+
+NUMBERED = EXCLUSIVE.says("This menu numbers its choices itself: a choice may add *, # or 0 alone.")
+OF_ITEM = UNKNOWN_ATTRIBUTE.says('<{tag}> in <{item}> has no "{name}": it is of this item.')
+TWO_ITEMS = DUPLICATE_NAME.says('Two items of the form have the name "{name}".')
+NO_INPUT_ITEM = NO_SUCH_ITEM.says('The form has no input item "{name}".')
+BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.")
+
+
+def _check_menu(menu: Node) -> Iterator[Problem]:
+    for choice in menu.all("choice") if menu.get("dtmf") == "true" else ():
+        if choice.get("dtmf") and choice.get("dtmf") not in ("*", "#", "0"):
+            yield NUMBERED.at(choice.attribute_place("dtmf"))
+
+
+def _check_item(item: Node) -> Iterator[Problem]:
+    for child in item.all("filled", "grammar"):
+        for name in ("mode", "namelist") if child.tag == "filled" else ("scope",):
+            if name in child.attributes:
+                place = child.attribute_place(name, value=False)
+                yield OF_ITEM.at(place, tag=child.tag, item=item.tag, name=name)
+
+
+def _check_form(form: Node) -> Iterator[Problem]:
+    items = [one for one in parts_of(form) if one.tag in FORM_ITEMS or is_unit(one)]
+    items = [node for node in items if node.get("name")]
+    counts = Counter(node.get("name") for node in items)
+    for node in items:
+        name = node.get("name")
+        if counts[name] > 1:
+            counts[name] = 0
+            yield TWO_ITEMS.at(node.attribute_place("name"), name=name)
+    inputs = {node.get("name") for node in items if node.tag in INPUT_ITEMS}
+    for filled in form.all("filled"):
+        for name in filled.get("namelist").split():
+            if name not in inputs:
+                hint = suggestion(name, inputs, *value_span(filled, "namelist", name))
+                yield NO_INPUT_ITEM.at(filled.attribute_place("namelist"), hint, name=name)
+
+
+def _check_if(node: Node) -> Iterator[Problem]:
+    for before, branch in pairwise(node.all("else", "elseif")):
+        if before.tag == "else":
+            yield BEHIND_ELSE.at(branch.place, tag=branch.tag)
+
+
+def _check_say_as(node: Node) -> Iterator[Problem]:
+    """How to say it: older documents write ``type`` (4.1.1)."""
+    if not {"interpret-as", "type"} & node.attributes.keys():
+        yield missing(node, "interpret-as")
+
+
+RULES: dict[str, Callable[[Node], Iterator[Problem]]] = {
+    "form": _check_form,
+    "menu": _check_menu,
+    "if": _check_if,
+    "say-as": _check_say_as,
+    **dict.fromkeys(INPUT_ITEMS, _check_item),
+}
+"""What checks an element, by its key."""

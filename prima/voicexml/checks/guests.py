@@ -1,0 +1,102 @@
+"""Commands and other elements of PRIMA's language in a VoiceXML document."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from prima.errors import Problem, suggestion
+from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
+from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
+from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
+from prima.interpreter.checks import given_to
+from prima.language.commands import TABLE_4_2, CommandType, excluding_arguments
+from prima.markup.spans import attribute_span, name_spans, value_span
+from prima.markup.tree import Node
+from prima.voicexml.arranging import ARRANGING, check_arranged
+from prima.voicexml.vocabulary import COMMANDS, HOLDING, PRIMA_NAMESPACE, VOICEXML
+
+UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
+NOT_HERE = MISPLACED_ELEMENT.says(
+    "A Command cannot stand in <{parent}>.",
+    "It may stand in a prompt or among executable content.",
+)
+ARRANGING_NOT_HERE = MISPLACED_ELEMENT.says(
+    "<p:{tag}> cannot stand in <{parent}>: it is around Commands.", NOT_HERE.remedy
+)
+UNIT_NOT_HERE = MISPLACED_ELEMENT.says(
+    "<p:iu> cannot stand in <{parent}>.",
+    "It stands around Commands in content, or around the items of a <form>.",
+)
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
+NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".')
+ONLY_ONE = EXCLUSIVE.says("{wrong}", "Keep one of them.", "warning")
+HAS_BOTH = EXCLUSIVE.says(
+    '<p:{tag}> has both "{name}" and "{name}-expr".', "Keep one of them.", "warning"
+)
+SAYS_NOTHING = NOTHING_TO_SAY.says(
+    "<p:{tag}> has nothing to say.", "Write its text inside it.", "warning"
+)
+
+
+def check_guest(node: Node, parent: Node) -> list[Problem]:
+    """An element of PRIMA's language among VoiceXML's own."""
+    if node.tag not in (*COMMANDS, *ARRANGING):
+        hint = suggestion(node.tag, [*COMMANDS, *ARRANGING], *name_spans(node))
+        return [UNKNOWN_COMMAND.at(node.place, hint, tag=node.tag)]
+    problems: list[Problem] = []
+    if parent.key not in HOLDING and VOICEXML.child(parent.key, "assign") is None:
+        diagnosis = ARRANGING_NOT_HERE if node.tag in ARRANGING else NOT_HERE
+        diagnosis = UNIT_NOT_HERE if node.tag == "iu" else diagnosis
+        problems.append(diagnosis.at(node.place, tag=node.tag, parent=parent.tag))
+    commands = check_arranged(node, problems) if node.tag in ARRANGING else [node]
+    for command in commands:
+        problems += _check_arguments(command)
+    return problems
+
+
+def _check_arguments(node: Node) -> Iterator[Problem]:
+    row = TABLE_4_2.get(node.tag)
+    known = set(row.arguments) if row is not None else {"type"}
+    for name in node.attributes:
+        if name.removesuffix("-expr") not in known and not name.startswith(("xml:", "{")):
+            hint = suggestion(name, known, attribute_span(node, name))
+            place = node.attribute_place(name, value=False)
+            yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
+
+
+def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """Warnings for Commands that a robot adds or lacks: at run time they are events."""
+    problems: list[Problem] = []
+    for node in root.walk():
+        name = node.get("type")
+        if node.namespace != PRIMA_NAMESPACE or node.tag != "command" or not name:
+            continue
+        row = commands.get(name)
+        if row is None:
+            hint = suggestion(name, commands, *value_span(node, "type"))
+            problems.append(NO_COMMAND.at(node.attribute_place("type"), hint, command=name))
+        else:
+            problems += command_problems(node, row)
+    return problems
+
+
+def command_problems(node: Node, row: CommandType) -> list[Problem]:
+    """Arguments and texts for which a Command is an event when it is asked for."""
+    given: dict[str, str | None] = {}
+    for name, text in node.attributes.items():
+        bare = name.removesuffix("-expr")
+        if bare in row.arguments and node.tag != "command":
+            given[bare] = text if bare == name else None
+    given |= {one.get("name"): one.attributes.get("value") for one in node.all("param")}
+    says = bool(node.own_text.strip() or node.all("value"))
+    found = [
+        one._replace(severity="warning") for one in given_to(node, row, given, says, prefix="p:")
+    ]
+    if excluding := excluding_arguments(row, given):
+        found.append(ONLY_ONE.at(node.place, wrong=excluding))
+    for name in row.arguments:
+        if {name, f"{name}-expr"} <= node.attributes.keys():
+            found.append(HAS_BOTH.at(node.place, tag=node.tag, name=name))
+    if row.text == "required" and not says and not node.nodes:
+        found.append(SAYS_NOTHING.at(node.place, tag=node.tag))
+    return found

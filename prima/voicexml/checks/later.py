@@ -1,0 +1,206 @@
+"""Errors only if executed: what a run reports as an event when it is reached."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from typing import Literal
+
+from prima.errors import Hint, Problem, one_of, suggestion
+from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_NAME
+from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
+from prima.language.commands import TABLE_4_2
+from prima.markup.spans import value_span
+from prima.markup.tree import Node
+from prima.script.compile import compiled
+from prima.script.evaluation import EngineLost, ScriptError
+from prima.script.isolated import IsolatedSyntax, syntax
+from prima.voicexml.arranging import UNIT
+from prima.voicexml.checks.attributes import bad_value, fits, instead_of
+from prima.voicexml.checks.guests import command_problems
+from prima.voicexml.checks.names import check_name, check_script_names
+from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE
+
+LATER = "When it is to listen, this will be error.badfetch or error.unsupported."
+LONGEST_CODE, LONGEST_VALUE = 60, 40
+"""Characters of code and of a property's value that a message quotes."""
+LATER_VALUES = {
+    "choice": {"dtmf": "keys", "event": "event"},
+    "link": {"dtmf": "keys", "event": "event"},
+    "option": {"dtmf": "keys"},
+    "throw": {"event": "event"},
+    "return": {"event": "event"},
+    "catch": {"event": "events"},
+}
+"""Keys that nobody can press, and events that nothing throws or takes."""
+PROPERTIES = {
+    **dict.fromkeys(
+        [
+            *("timeout", "interdigittimeout", "termtimeout", "completetimeout", "fetchtimeout"),
+            *("incompletetimeout", "maxspeechtimeout", "fetchaudiodelay", "fetchaudiominimum"),
+        ],
+        "time",
+    ),
+    **dict.fromkeys(["confidencelevel", "sensitivity", "speedvsaccuracy"], "share"),
+    "bargein": "true false",
+    "bargeintype": "speech hotword",
+    "maxnbest": "integer",
+}
+"""What properties of the Recommendation hold (6.3)."""
+
+NO_DIALOG = NO_SUCH_FORM.says(
+    'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
+)
+BAD_PROPERTY = BAD_VALUE.says('{name} "{value}" is not allowed.', severity="warning")
+TWO_MEANINGS = EXCLUSIVE.says("{wrong}", "At run time it is error.badfetch.", "warning")
+UNKNOWN_TYPE = NO_SUCH_NAME.says("{wrong}", severity="warning")
+STATEMENTS = BAD_EXPRESSION.says(
+    "{name} holds several statements: the value of the last counts.",
+    "Write one expression.",
+    "warning",
+)
+EMPTY = BAD_EXPRESSION.says(
+    "{name} is empty: its value is undefined.", "Write an expression.", "warning"
+)
+NOT_ECMASCRIPT = BAD_EXPRESSION.says(
+    '"{code}" is not ECMAScript: {error}. This will be error.semantic.', severity="warning"
+)
+NOT_CHECKED = BAD_EXPRESSION.says('"{code}" cannot be checked: {error}.', severity="warning")
+
+
+def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
+    """Warnings for expressions that do not compile, for dialogs that are not there, and the like.
+
+    Only validation asks for them: a run reports what it reaches, as an event.
+    """
+    problems = list(_all_compiled(root))
+    lang = root.get("xml:lang", "en")
+    for node in root.walk():
+        problems += _check_node(node, lang)
+        problems += _targets(node, dialogs)
+    return problems
+
+
+def _check_node(node: Node, lang: str) -> Iterator[Problem]:
+    if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
+        yield from grammar_problems(node, lang)
+    if node.key == "field" and node.get("type"):
+        yield from _type_problems(node)
+    yield from check_name(node)
+    yield from _value_problems(node)
+    if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
+        yield from command_problems(node, TABLE_4_2[node.tag])
+    if node.key == "property":
+        yield from _property_problems(node)
+    if node.key == "script" and node.own_text.strip():
+        yield from check_script_names(node)
+
+
+def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
+    for attribute in ("next", "src"):
+        target = node.get(attribute)
+        name = target[1:]
+        if target.startswith("#") and node.key != "grammar" and name not in dialogs:
+            hint = suggestion(name, dialogs, *value_span(node, attribute, name))
+            yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)
+
+
+def is_code(node: Node, attribute: str) -> bool:
+    """Whether an attribute holds ECMAScript: VoiceXML's own, or one of PRIMA's elements."""
+    if node.namespace == NAMESPACE:
+        return attribute in EXPRESSIONS
+    own = attribute.endswith("-expr") or (node.key == UNIT and attribute == "cond")
+    return node.namespace == PRIMA_NAMESPACE and own
+
+
+def _value_problems(node: Node) -> list[Problem]:
+    """Values that do nothing, though they are no error when they are reached."""
+    return [
+        bad_value(node, name, node.get(name), kind)._replace(severity="warning")
+        for name, kind in LATER_VALUES.get(node.key, {}).items()
+        if name in node.attributes and not fits(kind, node.get(name))
+    ]
+
+
+def _property_problems(node: Node) -> Iterator[Problem]:
+    """A property without a value of its kind: the default counts (6.3)."""
+    name, value = node.get("name"), node.get("value")
+    kind = PROPERTIES.get(name)
+    if kind is not None and not fits(kind, value):
+        hint = instead_of(node, "value", value, kind)
+        place = node.attribute_place("value")
+        yield BAD_PROPERTY.at(place, hint, name=name, value=value[:LONGEST_VALUE])
+
+
+def _type_problems(field: Node) -> Iterator[Problem]:
+    """An unknown built-in type: the field throws error.unsupported.builtin (2.3.1)."""
+    from prima.grammar.builtin import TYPES, Conflict, built_in
+
+    kind, place = field.get("type"), field.attribute_place("type")
+    try:
+        built_in(kind, "voice", "en")
+    except Conflict as error:
+        yield TWO_MEANINGS.at(place, wrong=error)
+    except ValueError as error:
+        hint = suggestion(kind, TYPES, *value_span(field, "type"))
+        hint = hint or Hint(f"Write {one_of(TYPES)}, or a <grammar>.")
+        text = f"{hint.text} At run time it is error.unsupported.builtin."
+        yield UNKNOWN_TYPE.at(place, hint._replace(text=text), wrong=error)
+
+
+def grammar_problems(
+    node: Node, lang: str, base: str = "", fetch: Callable[[str], bytes] | None = None
+) -> list[Problem]:
+    """What is wrong with a ``<grammar>``; without ``fetch``, files that it names are not read."""
+    from prima.grammar import GrammarError, load
+
+    mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"
+    lang = node.get("xml:lang", lang)
+    try:
+        return load(node, base=base, lang=lang, mode=mode, fetch=fetch, lenient=True).warnings()
+    except GrammarError as error:
+        return [
+            problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())
+            for problem in error.problems
+            if problem.code != "not-fetched"
+        ]
+
+
+# Code -------------------------------------------------------------------------------------
+
+
+def _all_compiled(root: Node) -> Iterator[Problem]:
+    codes = [(node, name, code) for node in root.walk() for name, code in _codes(node)]
+    if len(codes) > 1:
+        with suppress(ScriptError):  # the check of each piece reports that there is no engine
+            syntax().look_ahead((code, not name) for _, name, code in codes)
+    checker = syntax()
+    for node, name, code in codes:
+        yield from _compile(node, name, code, checker)
+
+
+def _codes(node: Node) -> Iterator[tuple[str, str]]:
+    """The code of an element that an engine has to look at, with its attribute; none for a script."""
+    for name in node.attributes:
+        if is_code(node, name) and compiled(node.get(name)) is None:
+            yield name, node.get(name)
+    if node.key == "script" and node.own_text.strip():
+        yield "", node.own_text
+
+
+def _compile(node: Node, name: str, code: str, checker: IsolatedSyntax) -> Iterator[Problem]:
+    try:
+        (checker.expression if name else checker.script)(code)
+    except ScriptError as error:
+        if name not in ("", "cond") and checker.has_statements(code):
+            yield _statements(node, name)
+            return
+        place = node.code_place(name, error.line, error.column)
+        diagnosis = NOT_CHECKED if isinstance(error, EngineLost) else NOT_ECMASCRIPT
+        yield diagnosis.at(place, code=" ".join(code.split())[:LONGEST_CODE], error=error)
+
+
+def _statements(node: Node, name: str) -> Problem:
+    """An expression that is a script: other platforms take it, and so does this one."""
+    diagnosis = STATEMENTS if node.get(name).strip() else EMPTY
+    return diagnosis.at(node.attribute_place(name), name=name)

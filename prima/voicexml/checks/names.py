@@ -1,0 +1,66 @@
+"""Names of variables that no expression can read, or that hide the platform's own (5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from prima.errors import Place, Problem
+from prima.errors.diagnoses.values import BAD_VALUE
+from prima.markup.tree import Node
+from prima.script.globals import IDENTIFIER, RESERVED
+from prima.script.names import SCOPES, script_names
+from prima.voicexml.arranging import UNIT
+from prima.voicexml.checks.elements import FORM_ITEMS
+
+HIDING = {
+    "session": "the session variables, which are read-only",
+    **{name: f"the variables of the {name}" for name in sorted(SCOPES)},
+}
+"""Names that variables should not have, and what they make unreachable (5.1.2)."""
+SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
+"""Words that are names, too, in the ECMAScript of documents."""
+NAMING = {
+    **dict.fromkeys([*FORM_ITEMS, UNIT, "var", "data"], "name"),
+    **dict.fromkeys(["foreach", "said-foreach"], "item"),
+}
+"""Elements that have a variable, and the attribute that names it."""
+
+HIDES = BAD_VALUE.says('The variable "{name}" hides {what}.', "Write another name.", "warning")
+NOT_A_NAME = BAD_VALUE.says(
+    '"{name}" is not a name in ECMAScript: no expression can read it.',
+    "Write letters, digits and _, and no word that ECMAScript has for itself.",
+    "warning",
+)
+RESERVED_NAME = BAD_VALUE.says(
+    '"{name}" is reserved: names that begin with _ or end with $ are the platform\'s.',
+    "Write another name.",
+    "warning",
+)
+
+
+def check_script_names(script: Node) -> Iterator[Problem]:
+    """Variables of a script that hide the platform's scopes (5.1.2)."""
+    told: set[str] = set()
+    for use in script_names(script.own_text).uses:
+        if use.declares and not use.holder and use.name in HIDING.keys() - told:
+            told.add(use.name)
+            yield _hides(script.source.inside(script.index, "", use.start), use.name)
+
+
+def _hides(place: Place, name: str) -> Problem:
+    return HIDES.at(place, name=name, what=HIDING[name])
+
+
+def check_name(node: Node) -> Iterator[Problem]:
+    """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
+    attribute = NAMING.get(node.key, "")
+    name = node.get(attribute)
+    if not name:
+        return
+    place = node.attribute_place(attribute)
+    if name in HIDING:
+        yield _hides(place, name)
+    elif not IDENTIFIER.fullmatch(name) or name in RESERVED - SOMETIMES:
+        yield NOT_A_NAME.at(place, name=name)
+    elif name.startswith("_") or name[1:].endswith("$"):  # $ alone is not a shadow variable
+        yield RESERVED_NAME.at(place, name=name)

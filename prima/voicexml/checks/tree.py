@@ -1,0 +1,121 @@
+"""The elements of a VoiceXML document: which may stand where, and what they hold."""
+
+from __future__ import annotations
+
+from prima.errors import Hint, Problem, few, meant, nearest_word, one_of
+from prima.errors.diagnoses.structure import (
+    MISPLACED_ELEMENT,
+    STRAY_TEXT,
+    UNKNOWN_ELEMENT,
+    WRONG_NAMESPACE,
+)
+from prima.markup.spans import name_spans, renamed
+from prima.markup.tree import Node
+from prima.markup.vocabulary import Instead
+from prima.voicexml.arranging import check_items, is_unit
+from prima.voicexml.checks.attributes import ENTRIES, check_attributes
+from prima.voicexml.checks.elements import RULES
+from prima.voicexml.checks.guests import check_guest
+from prima.voicexml.upgrade import version_problem
+from prima.voicexml.vocabulary import COMMANDS, NAMESPACE, PRIMA_NAMESPACE, SRGS, VOICEXML
+
+MOST_ALIKE = 5
+"""Of problems that say the same, so many are shown, each with its place."""
+LONGEST_SHOWN = 30
+"""Characters of stray text that a message quotes."""
+HABITS: dict[str, str | Instead] = {
+    "speak": Instead("prompt"),
+    "say": Instead("prompt"),
+    "on": Instead("catch", 'event="..."'),
+    "send": Instead("submit"),
+    "iu": f'Write <p:iu> around Commands or form items, with xmlns:p="{PRIMA_NAMESPACE}".',
+    "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
+    "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
+}
+"""What to write for elements of other languages."""
+HOLDERS = {
+    "foreach": "a <foreach> of executable content",
+    "said-foreach": "a <foreach> of a prompt",
+}
+"""How messages name elements that hold different things by where they are."""
+
+HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
+IGNORED = WRONG_NAMESPACE.says(
+    '<{tag}> is of another namespace, "{namespace}".', "It is ignored.", "warning"
+)
+UNKNOWN_HERE = UNKNOWN_ELEMENT.says("There is no <{tag}> in VoiceXML.")
+NOT_HERE = MISPLACED_ELEMENT.says("<{tag}> cannot stand in {holder}.", "It may stand in {others}.")
+
+
+def check_tree(root: Node) -> list[Problem]:
+    """Give every node its key, take out what is of foreign namespaces, and report what is wrong.
+
+    A document with an error is not run: who fetches it gets ``error.badfetch`` (5.2.6).
+    """
+    root.key = "vxml"
+    problems = [problem] if (problem := version_problem(root)) else []
+    if problem is not None and problem.severity == "error":
+        return problems  # of another version, what else seems wrong may be right
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        entry = ENTRIES[node.key]
+        if node.attributes or entry.required or entry.alternatives:
+            problems += check_attributes(node, entry)
+        check = RULES.get(node.key)
+        if check is not None:
+            problems += check(node)
+        if not entry.text and node.content and node.text:
+            text = node.text[:LONGEST_SHOWN]
+            problems.append(HOLDS_TEXT.at(node.place, tag=node.tag, text=text))
+        if node.content and node.key not in ("grammar", "metadata"):
+            _check_children(node, stack, problems)
+    return few(problems, MOST_ALIKE)
+
+
+def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:
+    """Find the children's keys; those that are to be looked at go onto the stack."""
+    foreign = False
+    for child in node.content:
+        if isinstance(child, str):
+            continue
+        if is_unit(child) and node.key == "form":
+            stack.extend(check_items(child, problems))
+        elif child.namespace == PRIMA_NAMESPACE:
+            problems += check_guest(child, node)
+        elif child.namespace == NAMESPACE or (child.tag, child.namespace) == ("grammar", SRGS):
+            key = VOICEXML.child(node.key, child.tag)
+            if key is None:
+                problems.append(_misplaced(child, node))
+            else:
+                child.key = key
+                stack.append(child)
+        else:
+            foreign = True
+            problems.append(IGNORED.at(child.place, tag=child.tag, namespace=child.namespace))
+    if foreign:
+        kept = (NAMESPACE, PRIMA_NAMESPACE, SRGS)
+        node.held = [one for one in node.content if isinstance(one, str) or one.namespace in kept]
+
+
+def _misplaced(child: Node, node: Node) -> Problem:
+    if child.tag not in VOICEXML.tags:
+        return UNKNOWN_HERE.at(child.place, _known_instead(child), tag=child.tag)
+    others = one_of(tag for tag in VOICEXML.parents(child.tag) if tag != node.tag)
+    holder = HOLDERS.get(node.key, f"<{node.tag}>")
+    return NOT_HERE.at(child.place, tag=child.tag, holder=holder, others=others)
+
+
+def _known_instead(child: Node) -> Hint:
+    """The element to write instead of one that VoiceXML lacks."""
+    habit = HABITS.get(child.tag)
+    if isinstance(habit, Instead):
+        return renamed(str(habit), child, habit.tag)
+    if habit:
+        return Hint(habit)
+    if child.tag in COMMANDS:
+        return Hint(
+            f'It is a Command of PRIMA: write <p:{child.tag}>, with xmlns:p="{PRIMA_NAMESPACE}".'
+        )
+    tag = nearest_word(child.tag, VOICEXML.tags)
+    return meant(tag, *(name_spans(child) if tag else ()))
