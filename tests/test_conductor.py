@@ -38,7 +38,18 @@ from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.interpreter.reader import read_document
 from prima.language.commands import TABLE_4_2
-from prima.messages import Command, Ended, Failed, Halted, Heard, Inbound, Loaded, Order, Record
+from prima.messages import (
+    Command,
+    Ended,
+    Failed,
+    Halted,
+    Heard,
+    Inbound,
+    Listening,
+    Loaded,
+    Order,
+    Record,
+)
 from prima.scheduler.policy import policy_named
 from prima.session import Session
 from tests.generated import APPS, Play, plays
@@ -321,6 +332,30 @@ def test_a_device_that_does_not_stop_is_made_safe_and_given_up() -> None:
     desk.report(Back(frozenset({"speaker"})))
     (again,) = desk.order("start", "c#2", SPEAK)
     assert isinstance(again, Begin)
+
+
+def test_what_was_held_back_does_not_begin_on_a_device_that_is_lost() -> None:
+    desk = Desk()
+    (first,) = desk.order("start", "a#1", SPEAK)
+    desk.order("abort", "a#1")
+    desk.order("start", "b#1", SPEAK)
+    assert desk.report(Lost(frozenset({"speaker"}), "the link is down")) == []
+    assert desk.at(1) == [Failed("b#1", "speaker", "the link is down")]
+    assert desk.report(Stopped(first.key)) == []  # type: ignore[union-attr]
+
+
+def test_a_prompt_that_was_held_back_is_not_said_when_the_user_speaks_first() -> None:
+    desk = Desk()
+    (first,) = desk.order("start", "a#1", SPEAK)
+    desk.order("abort", "a#1")
+    question = Command("q-and-a", {"timeout": 5000}, "Well?", lang="en")
+    (listen,) = desk.order("start", "b#1", question)
+    assert isinstance(listen, Begin)
+    assert listen.kind == LISTEN
+    desk.conductor.speech_begins(10)
+    assert desk.conductor.drain() == []
+    assert desk.at(11) == [Listening("b#1")]
+    assert desk.report(Stopped(first.key)) == []  # type: ignore[union-attr]
 
 
 def test_a_lost_driver_fails_what_runs_on_it_alone() -> None:

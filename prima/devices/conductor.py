@@ -155,7 +155,13 @@ class Conductor:
         self._now = 0
 
     def drain(self) -> list[Call]:
-        """Give the calls for drivers made since the last time, in order."""
+        """Give the calls for drivers made since the last time, in order.
+
+        What was held back begins here, if its devices are free by now.
+        """
+        for goal in list(self._goals.values()):
+            if not goal.begun:
+                self._try(goal)
         calls, self._calls = self._calls, []
         return calls
 
@@ -242,8 +248,10 @@ class Conductor:
         self._try(goal)
 
     def _try(self, goal: Goal) -> None:
-        """Tell the driver, unless one of the devices is still stopping."""
+        """Tell the driver, unless one of the devices is still stopping, or lost."""
         devices = goal.begin.devices
+        if devices & self._missing.keys():
+            return
         if not any(one.cancelled and one.begin.devices & devices for one in self._goals.values()):
             goal.begun, goal.since = True, self._now
             self._calls.append(goal.begin)
@@ -251,11 +259,14 @@ class Conductor:
     def _cancel(self, task: Task) -> None:
         """Let the goals of an AB end as soon as they can."""
         for goal in list(task.goals):
-            if not goal.begun:
-                self._over(goal)
-            elif not goal.cancelled:
-                goal.cancelled, goal.since = True, self._now
-                self._calls.append(Cancel(goal.begin.key))
+            self._cancel_goal(goal)
+
+    def _cancel_goal(self, goal: Goal) -> None:
+        if not goal.begun:
+            self._over(goal)
+        elif not goal.cancelled:
+            goal.cancelled, goal.since = True, self._now
+            self._calls.append(Cancel(goal.begin.key))
 
     def _drop(self, task: Task) -> None:
         """An AB is no longer carried out; its goals may still have to stop."""
@@ -308,12 +319,9 @@ class Conductor:
             self._fail(task, report.device, report.reason)
 
     def _over(self, goal: Goal) -> None:
-        """A goal has ended: its devices are free for what was held back."""
+        """A goal has ended: its devices are free."""
         del self._goals[goal.begin.key]
         goal.task.goals.remove(goal)
-        for other in list(self._goals.values()):
-            if not other.begun:
-                self._try(other)
 
     def _fail(self, task: Task, device: str, reason: str) -> None:
         """E1: an AB fails as a whole."""
@@ -465,8 +473,7 @@ class Conductor:
         if task.said is not None:
             task.said.ends = now
         for goal in [one for one in task.goals if one.begin.kind == SAY]:
-            goal.cancelled, goal.since = True, now
-            self._calls.append(Cancel(goal.begin.key))
+            self._cancel_goal(goal)
 
     def longest_answer(self) -> int:
         """How long the user may speak (ms); 0 without end (VoiceXML 2.0, 6.3.2)."""
