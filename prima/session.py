@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from prima.interpreter.application import Interpreter
 from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
-from prima.interpreter.frame import GoOut
+from prima.interpreter.transfers import GoOut
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.language.values import moment
 from prima.messages import (

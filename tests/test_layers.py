@@ -91,8 +91,8 @@ INSIDE = {
     "interpreter": [
         {"diagnoses", "vocabulary"},
         {"elements"},
-        {"events", "plain", "selection", "sensors"},
-        {"naming"},
+        {"events", "places", "plain", "selection", "sensors"},
+        {"naming", "transfers"},
         {"entering", "rounds", "surroundings", "units"},
         {"returning", "ways"},
         {"repeats"},

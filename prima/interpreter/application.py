@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from prima.grammar.answers import Answers
 from prima.interpreter.bounds import Bounds, Visit
-from prima.interpreter.content import Executor, source
+from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
     Document,
@@ -28,20 +28,18 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.form import Algorithm, confidence_level
-from prima.interpreter.frame import (
-    Abandoned,
-    Fiber,
-    Frame,
+from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
+from prima.interpreter.handling import Handling
+from prima.interpreter.plain import PlainEngine, is_plain
+from prima.interpreter.sensors import NOTHING_READ, sensors_read
+from prima.interpreter.transfers import (
     GoBack,
-    GoForm,
     GoItem,
     GoOut,
     Thrown,
     Transfer,
+    thrown_of,
 )
-from prima.interpreter.handling import Handling
-from prima.interpreter.plain import PlainEngine, is_plain
-from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.markup.tree import Node
 from prima.messages import (
     PROMOTED,
@@ -64,7 +62,7 @@ from prima.messages import (
     Understood,
 )
 from prima.script.budget import Budget
-from prima.script.evaluation import EngineLost, Scope, ScriptError
+from prima.script.evaluation import Scope, ScriptError
 from prima.script.isolated import Engines
 
 if TYPE_CHECKING:
@@ -272,15 +270,6 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         """The application is taken out of the robot."""
         self._quit("unloaded")
 
-    def internal(
-        self, name: str, message: str, command: Command | None = None, **more: Json
-    ) -> Event:
-        """An event of the application's own."""
-        data: dict[str, Json] = {"message": message, **more}
-        if command is not None:
-            data["command"] = command.type
-        return Event(name, 0, data, reactive=False)
-
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self._runs)
@@ -319,9 +308,8 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event here later, unless the state is left before."""
         if len(self._timers) >= MAX_TIMERS:
-            place = source(act.node)
-            message = f"{place}: more than {MAX_TIMERS} delayed events"
-            raise Thrown(self.internal("error.semantic", message), place)
+            message = f"more than {MAX_TIMERS} delayed events"
+            raise Thrown.at(act.node, "error.semantic", message)
         due = self.now + max(milliseconds, 1)
         if milliseconds <= 1:  # who sends himself one after the other loops without ever waiting
             self.hurried = due
@@ -350,27 +338,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         try:
             if isinstance(error, GoOut):
                 raise error
-            self._seek_handler(self.thrown(error))
+            self._seek_handler(thrown_of(error))
         except (Thrown, ScriptError) as unhandled:
-            self._unhandled(self.thrown(unhandled))
+            self._unhandled(thrown_of(unhandled))
         except GoOut as out:
             self._quit(out.reason, out.failed, out.source)
-
-    def thrown(self, error: Thrown | ScriptError) -> Thrown:
-        """An error of the engine itself is an event as well.
-
-        What was thrown forgets where: content that handles it may wait, and would keep all that
-        led to it, what was thrown before included, without end.
-
-        Raises:
-            GoOut: the engine is lost.
-        """
-        if isinstance(error, EngineLost):
-            raise GoOut(f"error.semantic: {error}", True)
-        if isinstance(error, Thrown):
-            error.__context__ = error.__traceback__ = None
-            return error
-        return Thrown(self.internal("error.semantic", str(error)))
 
     def _seek_handler(self, thrown: Thrown) -> None:
         """An error outside all content, as in a condition of a handler, has handlers too."""
@@ -380,12 +352,8 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self.handling.dispatch(thrown.event, frame, thrown.source)
 
     def _unhandled(self, thrown: Thrown) -> None:
-        event = thrown.event
-        message = str(event.data.get("message", ""))
-        if thrown.source and not message.startswith(thrown.source):
-            message = f"{thrown.source}: {message}" if message else thrown.source
-        self.actions.append(Say("error", f"{event.name}: {message}", thrown.source))
-        self._quit(f"{event.name}: {message}", failed=True, place=thrown.source)
+        self.actions.append(Say("error", thrown.reason, thrown.source))
+        self._quit(thrown.reason, failed=True, place=thrown.source)
 
     def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
         if self.over:

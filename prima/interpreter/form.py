@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from prima.interpreter.content import source
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -16,20 +15,19 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
-from prima.interpreter.frame import (
-    MAX_DEPTH,
-    Content,
-    Fiber,
-    Frame,
+from prima.interpreter.frame import Content, Fiber, Frame, GoForm
+from prima.interpreter.owner import Owner
+from prima.interpreter.places import source
+from prima.interpreter.transfers import (
     GoBack,
-    GoForm,
     GoItem,
     Thrown,
     Transfer,
+    check_depth,
+    thrown_of,
 )
-from prima.interpreter.owner import Owner
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
-from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
+from prima.messages import CloseUnit, Command, Cue, Json, Notice, OpenUnit, Step
 from prima.script.evaluation import ScriptError
 
 
@@ -70,7 +68,7 @@ class Algorithm:
             act()
             return
         except (Thrown, ScriptError) as error:
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
 
     def _visit_all(
@@ -93,7 +91,7 @@ class Algorithm:
         try:
             return self.select_item(frame, fiber, items)
         except Thrown as error:
-            return self.owner.thrown(error)
+            return thrown_of(error)
 
     def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
         """The item that a goto names, else the first undefined one whose condition holds."""
@@ -137,7 +135,7 @@ class Algorithm:
             return
         except (Thrown, ScriptError) as error:
             frame.reprompt = False
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
@@ -175,9 +173,8 @@ class Algorithm:
         self.owner.execute.check(notice, fiber)
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
-            raise Thrown(
-                self.owner.internal(outcome, "", command, **_shadow(notice)), command.source
-            )
+            data = {**_shadow(notice), "command": command.type}
+            raise Thrown(outcome, "", command.source, data)
         self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
         self.owner.engine.set(frame.dialog, f"{field.name}$", _shadow(notice))
         yield from self._process(frame, fiber, field, field.filled)
@@ -207,9 +204,7 @@ class Algorithm:
         depth, outer = 0, frame.caller
         while outer is not None:
             depth, outer = depth + 1, outer.caller
-        if depth >= MAX_DEPTH:
-            message = f"{source(item.node)}: more than {MAX_DEPTH} subdialogs inside each other"
-            raise Thrown(self.owner.internal("error.semantic", message), source(item.node))
+        check_depth(depth, item.node)
         form = self.owner.document.forms[item.form]
         inner = self.owner.frame_for(form, None)
         inner.caller, inner.called_by = frame, item
@@ -224,7 +219,7 @@ class Algorithm:
         if result is None:
             result = yield 0
         if result.event:
-            raise Thrown(self.owner.internal(result.event, "", None), source(item.node))
+            raise Thrown(result.event, "", source(item.node))
         self.owner.engine.set(frame.dialog, item.name, result.data["result"])
         yield from self._process(frame, fiber, item, item.filled)
 
@@ -292,9 +287,8 @@ class Algorithm:
                     raise
                 frame.next_item, frame.reprompt = go.item, True
 
-    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, event: Event) -> Content:
+    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
         """U5: error.unit.timeout is thrown in the unit; then the form goes on behind it."""
-        thrown = Thrown(event, source(unit.node))
         yield from self.owner.handling.handle_thrown(frame, fiber, unit, thrown, 0)
         frame.item = None
         yield from self._visit_all(frame, fiber, frame.form.items, None)

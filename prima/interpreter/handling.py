@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.interpreter.content import source
 from prima.interpreter.elements import Expression, Handler, Item, Watch
-from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
+from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.owner import Owner
 from prima.interpreter.selection import Taking, prefixes, select_handler, taking
 from prima.interpreter.sensors import hides_sensors, sensors_of
+from prima.interpreter.transfers import MAX_DEPTH, Thrown, thrown_of
 from prima.messages import Event, Json, Notice
 from prima.script.evaluation import Scope, ScriptError
 
@@ -66,7 +66,7 @@ class Handling:
             self.owner.count_step(handler.node)
             if depth > MAX_DEPTH:
                 self.owner.give_up(handler.node, "its handlers throw without end")
-            again = self.owner.thrown(error)
+            again = thrown_of(error)
         yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
@@ -82,7 +82,7 @@ class Handling:
                 self._launch(fiber, handler)
                 return
         if event.name.startswith("error."):
-            unhandled = Thrown(event, place)
+            unhandled = Thrown(event.name, str(event.data.get("message", "")), place)
             unhandled.sought = True
             raise unhandled
 
@@ -131,7 +131,7 @@ class Handling:
         fiber = Fiber(frame)
         self._enter_unit(fiber, handler)
         self._bound_fibers(frame, handler)
-        thrown = self.owner.thrown(error)
+        thrown = thrown_of(error)
         self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
@@ -141,7 +141,7 @@ class Handling:
             yield from self.owner.execute.run(handler.content, fiber)
             return
         except (Thrown, ScriptError) as error:
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
@@ -177,9 +177,9 @@ class Handling:
             self.owner.forget(fiber)
         self.owner.close_units(frame)
         frame.item = unit
-        event = self.owner.internal(notice.event, f"{source(unit.node)}: {notice.message}")
-        fiber = Fiber(frame, main=True, local=self.event_scope(event))
-        self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, event))
+        thrown = Thrown.at(unit.node, notice.event, notice.message)
+        fiber = Fiber(frame, main=True, local=self.event_scope(thrown.event))
+        self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, thrown))
 
     def allow_reaction(self, handler: Handler, event: Event) -> None:
         """C5: what is requested first because of the event is a reaction, or not."""

@@ -8,8 +8,8 @@ from itertools import count, pairwise
 from pathlib import PurePath
 
 from prima.interpreter.bounds import Bounds, Visit
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoOut, Thrown
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.messages import (
@@ -40,7 +40,6 @@ from prima.voicexml.state import (
     Flow,
     Heard,
     Resume,
-    Thrown,
     UnitOver,
     thrown_of_event,
 )

@@ -5,20 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from prima.interpreter.frame import GoOut
 from prima.interpreter.selection import takes
+from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
-from prima.script.evaluation import EngineLost, Scope, ScriptError
-from prima.voicexml.state import (
-    MAX_DEPTH,
-    Context,
-    Flow,
-    GoBack,
-    GoItem,
-    HungUp,
-    Thrown,
-    Unasked,
-)
+from prima.script.evaluation import Scope, ScriptError
+from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -103,10 +94,7 @@ class Events:
     def unhandled(self, context: Context, thrown: Thrown) -> Flow:
         """Say what is queued, and end the application with an event that nothing takes."""
         yield from self.owner.finish(context)
-        place, message = thrown.source, thrown.message
-        if place and not message.startswith(place):
-            message = f"{place}: {message}" if message else place
-        raise GoOut(f"{thrown.name}: {message}", True, place)
+        raise GoOut(thrown.reason, True, thrown.source)
 
     def _count(self, context: Context, thrown: Thrown) -> None:
         """Count an event where it was thrown, under its name and all prefixes (5.2.2).
@@ -201,14 +189,3 @@ def handler_number(handler: Node) -> int:
     """From which time on a handler takes its events, or a prompt is said; 1 where it is none."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1
-
-
-def thrown_of(error: Thrown | ScriptError) -> Thrown:
-    """An error of the engine itself is an event as well.
-
-    Raises:
-        GoOut: the engine is lost.
-    """
-    if isinstance(error, EngineLost):
-        raise GoOut(f"error.semantic: {error}", True)
-    return error if isinstance(error, Thrown) else Thrown("error.semantic", str(error))

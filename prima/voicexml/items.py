@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from prima.interpreter.content import source
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoBack, Thrown, check_depth
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.arranging import parts_of
@@ -14,16 +15,7 @@ from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
 from prima.voicexml.recorder import Recordings
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import (
-    MAX_DEPTH,
-    Context,
-    Flow,
-    GoBack,
-    GoDialog,
-    Heard,
-    Params,
-    Thrown,
-)
+from prima.voicexml.state import Context, Flow, GoDialog, Heard, Params
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -150,9 +142,7 @@ class Items:
 
     def call(self, context: Context, item: Node) -> Flow:
         """A subdialog, in a context of its own (2.3.4)."""
-        if context.depth >= MAX_DEPTH:
-            message = f"{source(item)}: more than {MAX_DEPTH} subdialogs inside each other"
-            raise Thrown("error.semantic", message, source(item))
+        check_depth(context.depth, item)
         params = self._params(context, item)
         uri = self.owner.content.word(item, "src", context, self.owner.local())
         names = item.get("namelist").split()

@@ -6,8 +6,8 @@ from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.bounds import Visit
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
@@ -16,7 +16,7 @@ from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
-from prima.voicexml.events import Events, thrown_of
+from prima.voicexml.events import Events
 from prima.voicexml.fetching import Request, fetch, gathered
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
@@ -25,13 +25,10 @@ from prima.voicexml.scopes import Documents
 from prima.voicexml.state import (
     Context,
     Flow,
-    GoBack,
     GoDialog,
-    GoItem,
     Heard,
     Params,
     Resume,
-    Thrown,
     Unasked,
     thrown_outside,
 )
@@ -177,8 +174,7 @@ class Machine:
         owner = context.item if context.item is not None else context.form
         choices = owner.all("choice", "option") if owner is not None else []
         if owner is None or not choices or _holds_enumerate(node):
-            message = f"{source(node)}: there are no choices here to enumerate"
-            raise Thrown("error.semantic", message, source(node))
+            raise Thrown.at(node, "error.semantic", "there are no choices here to enumerate")
         keys = numbered(owner)
         if not node.content:
             speech.parts.append("; ".join(filter(None, map(words_of, choices))))
@@ -229,9 +225,8 @@ class Machine:
                     yield from self._enter(context, page, submitted)
                 node = page.dialog(dialog)
                 if node is None:
-                    where = source(page.root)
-                    message = f"{where}: the document has no dialog: add a <form> or <menu>"
-                    raise Thrown("error.badfetch", message, where)
+                    message = "the document has no dialog: add a <form> or <menu>"
+                    raise Thrown.at(page.root, "error.badfetch", message)
                 yield from self.dialog(context, node, heard)
                 raise GoOut
             except GoDialog as go:
@@ -283,7 +278,7 @@ class Machine:
             try:
                 yield from self.items_of.process(context, heard)
             except GoItem as go:
-                wanted = go.name
+                wanted = go.item
             except (Thrown, ScriptError) as error:
                 wanted = yield from self._handled(context, error)
         yield from self.visit_all(context, wanted)
@@ -307,7 +302,7 @@ class Machine:
                 more = yield from self._visit_next(context, wanted)
                 wanted = ""
             except GoItem as go:
-                wanted = go.name
+                wanted = go.item
             except (Thrown, ScriptError) as error:
                 if self.units.left_by(context, error):
                     raise
@@ -334,7 +329,7 @@ class Machine:
         try:
             yield from self.events.handle(context, thrown_of(error))
         except GoItem as go:
-            return go.name
+            return go.item
         return ""
 
     def _initialise(self, context: Context, form: Node) -> Flow:
@@ -351,8 +346,8 @@ class Machine:
             elif node.tag in ITEMS or is_unit(node):
                 self._declare_item(context, node)
         for name in params.names:
-            message = f'{source(form)}: no variable of the form is the parameter "{name}"'
-            raise Unasked("error.semantic", message, source(form))
+            message = f'no variable of the form is the parameter "{name}"'
+            raise Unasked.at(form, "error.semantic", message)
 
     def _declare_item(self, context: Context, item: Node) -> None:
         """Give an item's variable its first value; one without a name is but visited or not."""
@@ -412,8 +407,7 @@ class Machine:
                 yield from self.items_of.call(context, item)
             case "object":
                 name = item.get("classid") or "object"
-                message = f"{source(item)}: {name}"
-                raise Thrown("error.unsupported.objectname", message, source(item))
+                raise Thrown.at(item, "error.unsupported.objectname", name)
             case "transfer":
                 yield from self.items_of.calls.transfer(context, item)
             case _:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
+from prima.interpreter.transfers import Thrown, Transfer
 from prima.markup.tree import Node
 from prima.messages import Data, Event, Json
 from prima.script.evaluation import Scope
@@ -12,8 +13,6 @@ from prima.voicexml.document import Page
 
 SCOPES = ("session", "application", "document", "dialog", "anonymous")
 """Outermost first (5.1.2)."""
-MAX_DEPTH = 32
-"""Subdialogs inside each other, and events thrown while one is handled."""
 
 
 @dataclass(slots=True)
@@ -93,22 +92,6 @@ class Context:
         return (self.session, self.application, self.document, self.dialog, local)
 
 
-class Thrown(Exception):
-    """An event (5.2.1)."""
-
-    shared = False
-    """Whether it is of the robot or its surroundings, for every application: only handlers that
-    name it take it, as VoiceXML knows no such events (5.2)."""
-    outside = False
-    """Whether it has come from outside while the application waited for something else."""
-
-    def __init__(self, name: str, message: str = "", source: str = "") -> None:
-        super().__init__(name)
-        self.name = name
-        self.message = message
-        self.source = source
-
-
 class UnitOver(Thrown):
     """A unit around form items has taken longer than its longest duration (rule U5)."""
 
@@ -146,11 +129,7 @@ class Unasked(Thrown):
     """A parameter for which a subdialog has no variable: what it does not handle is its caller's."""
 
 
-class Leave(Exception):
-    """Control leaves what runs."""
-
-
-class GoDialog(Leave):
+class GoDialog(Transfer):
     """A goto or submit, or an utterance that another dialog's grammar has taken."""
 
     def __init__(
@@ -162,22 +141,3 @@ class GoDialog(Leave):
         self.page = page
         self.dialog = dialog
         self.heard = heard
-
-
-class GoItem(Leave):
-    """A goto nextitem."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(name)
-        self.name = name
-
-
-class GoBack(Leave):
-    """A return: values, or an event."""
-
-    def __init__(self, values: Scope | None, event: str = "", message: str = "") -> None:
-        super().__init__(event)
-        self.values = values
-        """The object that the subdialog's variable gets."""
-        self.event = event
-        self.message = message
