@@ -90,8 +90,8 @@ INSIDE = {
     ],
     "interpreter": [
         {"diagnoses", "vocabulary"},
-        {"elements"},
-        {"events", "places", "plain", "selection", "sensors"},
+        {"elements", "selection"},
+        {"events", "places", "plain", "sensors"},
         {"naming", "transfers"},
         {"entering", "rounds", "surroundings", "units"},
         {"returning", "ways"},

@@ -30,6 +30,7 @@ from prima.interpreter.elements import (
 from prima.interpreter.form import Algorithm, confidence_level
 from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
+from prima.interpreter.places import source
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.interpreter.transfers import (

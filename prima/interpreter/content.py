@@ -276,10 +276,7 @@ class Executor:
                 raise undeclared(act.node, name)
             self.engine.unset(scope, name)
             if name in items:
-                frame.prompts = {key: n for key, n in frame.prompts.items() if key != name}
-                frame.counters = {
-                    key: count for key, count in frame.counters.items() if key[0] != name
-                }
+                frame.counters = frame.counters.without(name)
 
     def goto(self, act: Goto, fiber: Fiber) -> Transfer:
         """Leave for a form or an item."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Generator, Sequence
 
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
+from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import Transfer
 from prima.messages import Notice
 from prima.script.evaluation import Scope
@@ -37,10 +37,8 @@ class Frame:
     asked = False
     """Whether the mediator has heard of the state: of a Command, or a unit."""
 
-    counters: Mapping[tuple[str, str], int] = MappingProxyType({})
-    """Occurrences of an event's names while an item ("" for the form) was visited."""
-    prompts: Mapping[str, int] = MappingProxyType({})
-    """How often an item has asked."""
+    counters = Counters()
+    """Of events while an item ("" for the form) was visited, and of prompts."""
     units: tuple[tuple[int, Unit], ...] = ()
     """The units that the state is in, outermost first, each with its number."""
     fibers: tuple[Fiber, ...] = ()

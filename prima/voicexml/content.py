@@ -166,12 +166,8 @@ class Content(Speaker):
         """Reset a form item: its variable, prompt counter and event counters."""
         if item.get("name"):
             self.engine.unset(context.dialog, item.get("name"))
-        context.prompts.pop(item.index, None)
-        if item.tag == "menu":
-            return  # menu-level counters are not reset (5.2.2)
-        context.counters = {
-            key: count for key, count in context.counters.items() if key[0] != item.index
-        }
+        # Counters of events at a menu are not reset (5.2.2).
+        context.counters = context.counters.without(item.index, events=item.tag != "menu")
 
     def named(self, node: Node, context: Context, local: Scope) -> dict[str, Json]:
         """The variables of a namelist as plain data."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.places import source
+from prima.interpreter.selection import satisfied
 from prima.interpreter.transfers import GoBack, Thrown, check_depth
 from prima.markup.tree import Node
 from prima.messages import Json
@@ -134,9 +135,8 @@ class Items:
         names = node.get("namelist").split()
         if names:
             items = [item for item in items if item.get("name") in names]
-        if not any(item in filled for item in items):
-            return False
-        return node.get("mode") == "any" or all(self.owner.guarded(context, item) for item in items)
+        mode = node.get("mode")
+        return satisfied(mode, items, filled, lambda item: self.owner.guarded(context, item))
 
     # Items with results of their own --------------------------------------------------
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.bounds import Visit
 from prima.interpreter.places import source
+from prima.interpreter.selection import Counters, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
@@ -16,7 +17,7 @@ from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
-from prima.voicexml.events import Events
+from prima.voicexml.events import Events, handler_number
 from prima.voicexml.fetching import Request, fetch, gathered
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
@@ -112,10 +113,6 @@ class Machine:
     ) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""
         return self.documents.go(context, uri, node, request, base)
-
-    def find(self, context: Context, thrown: Thrown) -> Node | None:
-        """The handler of an event that has been counted (5.2.4)."""
-        return self.events.find(context, thrown)
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""
@@ -265,7 +262,7 @@ class Machine:
         """Initialise, then select, collect, process (appendix C)."""
         self.owner.count_step(form, DIALOG_STEPS)
         context.form, context.item, context.unit = form, None, None
-        context.counters, context.prompts, context.visited = {}, {}, set()
+        context.counters, context.visited = Counters(), set()
         context.quiet = False
         wanted = ""
         try:
@@ -363,14 +360,13 @@ class Machine:
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
         items = self._next_to(context)
-        if wanted:
-            return next((item for item in items if holds(item, wanted)), None)
-        for item in items:
-            if item.tag == "menu":
-                return item
-            if not self.guarded(context, item) and self.content.holds(item, context, self.local()):
-                return item
-        return None
+        return select_item(items, wanted, holds, lambda one: self._is_open(context, one))
+
+    def _is_open(self, context: Context, item: Node) -> bool:
+        """Whether an item's guard is not set and its condition holds; a menu always is."""
+        if item.tag == "menu":
+            return True
+        return not self.guarded(context, item) and self._holds(context, item)
 
     def _next_to(self, context: Context) -> list[Node]:
         """The items that may be visited next: of the unit, or of the dialog with its units."""
@@ -417,17 +413,14 @@ class Machine:
 
     def _prompt(self, context: Context, item: Node) -> Flow:
         """Queue the prompts of an item that its counter has reached (4.1.6)."""
-        count = context.prompts[item.index] = context.prompts.get(item.index, 0) + 1
-        pieces = [
-            (_least(piece), piece)
-            for piece in item.content
-            if _is_spoken(piece) and _least(piece) <= count and self._holds(context, piece)
-        ]
-        highest = max((least for least, _ in pieces), default=0)
+        context.counters = context.counters.asked(item.index)
+        pieces = select_prompts(
+            ((_least(piece), piece) for piece in item.content if _is_spoken(piece)),
+            context.counters.prompts[item.index],
+            lambda piece: self._holds(context, piece),
+        )
         bare: list[Node | str] = []
-        for least, piece in pieces:
-            if least != highest:
-                continue
+        for piece in pieces:
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
@@ -559,5 +552,4 @@ def _holds_enumerate(node: Node) -> bool:
 
 def _least(piece: Node | str) -> int:
     """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
-    count = "1" if isinstance(piece, str) else piece.get("count", "1")
-    return int(count) if count.isdecimal() else 1
+    return 1 if isinstance(piece, str) else handler_number(piece)

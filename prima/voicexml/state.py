@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
+from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import Thrown, Transfer
 from prima.markup.tree import Node
 from prima.messages import Data, Event, Json
@@ -78,8 +79,8 @@ class Context:
     unit: Node | None = None
     """The ``p:iu`` around form items in which the dialog is (rule U5)."""
     item: Node | None = None
-    counters: dict[tuple[int, str], int] = field(default_factory=dict)
-    prompts: dict[int, int] = field(default_factory=dict)
+    counters: Counters = field(default_factory=Counters)
+    """Of events and prompts, by the index of an item; -1 for the dialog."""
     visited: set[int] = field(default_factory=set)
     """Items without a name that have been visited: their guards are set."""
     params: Params | None = None
