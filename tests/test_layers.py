@@ -101,7 +101,7 @@ INSIDE = {
         {"reader", "owner"},
         {"content"},
         {"form", "bounds"},
-        {"handling"},
+        {"handling", "protocol"},
         {"application"},
         {"__init__"},
     ],

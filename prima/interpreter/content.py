@@ -300,7 +300,7 @@ class Executor:
             self.owner.delay(act, params, self.milliseconds(delay, act.node), fiber)
         else:
             service = shown(self.plain(act.service, fiber))
-            self.owner.send(service, params, source(act.node))
+            self.owner.send(service, {"params": params}, source(act.node))
 
     def milliseconds(self, value: Json, node: Node) -> int:
         """A delay: milliseconds from an attribute, or a time or seconds from an expression."""

@@ -159,7 +159,7 @@ class Owner(Protocol):
     def connects(self, frame: Frame) -> bool:
         """Whether the robot has to face the user before the state's next word (X4)."""
 
-    def send(self, service: str, data: Json, place: str) -> None:
+    def send(self, service: str, data: Data, place: str) -> int:
         """Ask a service something."""
 
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:

@@ -163,7 +163,7 @@ class Calls:
     def _over(self, call: Call, outcome: str) -> None:
         """Tell that the call is over: this side has ended it."""
         data: Data = {"transfer": "over", "call": call.serial, "outcome": outcome}
-        self.app.send(call.to, data, call.item)
+        self.app.send(call.to, data, source(call.item))
 
     def _audio(self, context: Context, call: Call) -> Command | None:
         """What the caller hears until somebody answers."""

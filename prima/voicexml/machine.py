@@ -101,7 +101,7 @@ class Machine:
 
     def send(self, service: str, values: Json, node: Node) -> None:
         """Send values to a service, without waiting for its answer."""
-        self.owner.send(service, {"params": values}, node)
+        self.owner.send(service, {"params": values}, source(node))
 
     def go(
         self,
