@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from prima.grammar.builtin import TYPES
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
+from prima.interpreter.vocabulary import USUAL_CONFIDENCE
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
@@ -25,7 +26,6 @@ UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
-USUAL_CONFIDENCE = 0.5
 
 
 @dataclass(slots=True)
