@@ -14,6 +14,7 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
+from prima.voicexml.questions import open_to_answers
 from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, thrown_outside
 
 if TYPE_CHECKING:
@@ -101,15 +102,15 @@ class Calls:
         queue = self.owner.unqueue()
         if not queue:
             return
-        open_to_answers: list[Command] = []
+        opened: list[Command] = []
         last = take_last_said(queue) if call.listens else None
         if last is not None:
             question = self._question(context, call, "1ms", last)
             question.args["bargein"] = bool(last.hook)
-            open_to_answers = self.owner.open_to_answers(queue, question)
+            opened = open_to_answers(queue, question)
             queue.append(question)
         self.app.heard = None
-        resume = yield from self.app.wait(queue, open_to_answers)
+        resume = yield from self.app.wait(queue, opened)
         self._note(call, resume)
 
     def _question(

@@ -9,19 +9,18 @@ from prima.interpreter.bounds import Visit
 from prima.interpreter.places import source
 from prima.interpreter.selection import Counters, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
-from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Data, Json
-from prima.messages import Heard as Spoken
+from prima.messages import Command, Json
 from prima.script.evaluation import Scope, ScriptError
-from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
+from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
 from prima.voicexml.events import Events, handler_number
-from prima.voicexml.fetching import Request, fetch, gathered
+from prima.voicexml.fetching import Request, fetch
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
 from prima.voicexml.prompts import Speech
+from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
 from prima.voicexml.state import (
     Context,
@@ -68,6 +67,7 @@ class Machine:
         self.inputs = Inputs(self)
         self.documents = Documents(self)
         self.items_of = Items(self)
+        self.questions = Questions(self)
         self.events = Events(self)
         self.units = Units(self)
         self.context: Context | None = None
@@ -407,7 +407,7 @@ class Machine:
             case "transfer":
                 yield from self.items_of.calls.transfer(context, item)
             case _:
-                yield from self._listen(context, item)
+                yield from self.questions.ask(context, item)
 
     # Prompts --------------------------------------------------------------------------
 
@@ -437,11 +437,11 @@ class Machine:
     def play(self, context: Context) -> Flow:
         """Play what is queued and wait until it has been said."""
         del context
-        resume = yield from self._wait(self.queue)
+        resume = yield from self.wait(self.queue)
         if resume.event is not None:
             raise thrown_outside(resume)
 
-    def _wait(
+    def wait(
         self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
@@ -449,97 +449,6 @@ class Machine:
         if self.gone:
             raise GoOut(self.gone)
         return (yield from self.owner.wait(commands, open_to_answers))
-
-    def _listen(self, context: Context, item: Node) -> Flow:
-        """Play what is queued, then wait for the user (C4)."""
-        # A grammar that cannot be used is told before anything is said.
-        yield from gathered(self, lambda: self.inputs.activate(context))
-        if item.tag == "record":
-            self.items_of.recorder.check(item)
-        asked = take_last_said(self.queue)
-        question = self._question(context, item, asked)
-        if item.tag == "record":
-            self.items_of.recorder.prepare(item, question)
-        self.owner.heard = None
-        open_to_answers = [] if item.tag == "record" else self.open_to_answers(self.queue, question)
-        resume = yield from self._wait([*self.queue, question], open_to_answers)
-        yield from self._answered(context, item, resume)
-
-    @staticmethod
-    def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
-        """Of what is queued before a question that during which it may be answered (4.1.5).
-
-        Those are the last prompts: an answer ends the wait, and what may not be broken in on is
-        to be said before. They get the cues that an answer needs.
-        """
-        found: list[Command] = []
-        longest = tuple(cue for cue in question.cues if cue.kind == "longest")
-        for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
-            command = queue[index]
-            if isinstance(command, Arranged) or not command.hook:
-                break
-            marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
-            earlier = (Cue(0, "earlier"),) if marked else ()
-            command.cues = (*longest, *earlier, *command.cues)
-            found.append(command)
-        return found
-
-    def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
-        """The question that an item's last prompt is (4.1.5, 4.1.7)."""
-        prompt, self.asking = self.asking, None
-        timeout = prompt.get("timeout") if prompt is not None else ""
-        bargein = prompt.get("bargein") if prompt is not None else ""
-        args: dict[str, Json] = {
-            "timeout": f"{milliseconds(timeout or self.setting(context, 'timeout'), 5000)}ms",
-            "bargein": (bargein or self.setting(context, "bargein")) != "false",
-        }
-        own = item.get("xml:lang") if item.tag != "menu" else ""
-        lang = asked.lang if asked and asked.lang else own or context.page.lang
-        text = asked.text if asked else None
-        kind = prompt.get("bargeintype") if prompt is not None else ""
-        hotword = args["bargein"] and (kind or self.setting(context, "bargeintype")) == "hotword"
-        cues = self.content.question_cues(asked, self.queue, hotword)
-        longest = milliseconds(self.setting(context, "maxspeechtimeout"), 0)
-        spoken = item.tag != "record" and "voice" in self.inputs.modes(context)
-        if longest and spoken:  # a recording has its own maxtime
-            cues = (Cue(0, "longest", longest), *cues)
-        return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
-
-    def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
-        """Process what has ended the wait."""
-        if resume.event is not None:
-            if item.tag == "record":
-                self.items_of.recorder.broken_off(context, item, resume.event)
-            raise thrown_outside(resume)
-        outcome = str(resume.data.get("outcome", "noinput"))
-        heard = self.owner.heard
-        if outcome == "filled" and heard is not None:
-            heard.take_mark(resume.data)
-            if heard.owner is item and item.tag == "record":
-                yield from self.items_of.recorder.take(context, item, heard, resume.data)
-            else:
-                yield from self.items_of.process(context, heard)
-            return
-        if outcome == "nomatch":
-            self._not_taken(context, item, resume.data)
-        raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
-
-    def _not_taken(self, context: Context, item: Node, data: Data) -> None:
-        """Set ``application.lastresult$`` for what no grammar takes (5.1.5).
-
-        Raises:
-            Thrown: ``noinput``, if nobody listens to such input (6.3.6).
-        """
-        (text, sure), *others = Spoken(str(data.get("utterance", "")), data).hypotheses
-        noted = self.inputs.noted(context, text)
-        if noted is None:
-            raise Thrown("noinput", "", source(item))
-        said, mode = noted
-        further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
-        most = self.inputs.most_results(context)
-        heard = Heard(said, said, item, context.page, sure, mode, further[: most - 1])
-        heard.take_mark(data)
-        self.items_of.remember(context, heard)
 
 
 def _is_spoken(piece: Node | str) -> bool:
