@@ -13,12 +13,13 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from prima.interpreter.application import Interpreter
 from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
-from prima.interpreter.frame import GoOut
+from prima.interpreter.protocol import App
+from prima.interpreter.transfers import GoOut
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.language.values import moment
 from prima.messages import (
@@ -67,11 +68,10 @@ from prima.script.isolated import Engines
 from prima.script.prelude import START
 
 if TYPE_CHECKING:
-    from prima.voicexml.application import VoiceInterpreter
     from prima.voicexml.document import VoiceDocument
 
 AnyDocument: TypeAlias = "Document | VoiceDocument"
-App: TypeAlias = "Interpreter | VoiceInterpreter"
+AnyApp: TypeAlias = App[Any]
 
 
 SEEING = frozenset(["human.found", "human.lost"])
@@ -98,8 +98,9 @@ class Session:
     ) -> None:
         self._began = moment(date)
         self._engines = Engines(isolate)
-        own = {name: frozenset(row.arguments) for name, row in commands.items()}
-        self.apps = {doc.id: self._made(doc, own) for doc in documents}
+        self._arguments = {name: frozenset(row.arguments) for name, row in commands.items()}
+        self.documents = {document.id: document for document in documents}
+        self.apps = {name: self._made(one) for name, one in self.documents.items()}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.recorder = Recorder()
         self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
@@ -113,7 +114,7 @@ class Session:
         self._promoted = 0
         """The serial number of the event that was promoted last."""
         self._loaded: set[str] = set()
-        self._alive: list[App] | None = []
+        self._alive: list[AnyApp] | None = []
         """Applications that are loaded and not over, in declared order; None if to be looked up."""
         self._due: dict[str, int] = {}
         """When applications want to be called, by name."""
@@ -123,11 +124,11 @@ class Session:
         """Streams that wait ``suspended`` or have ``resumed`` by the latest selection, with which:
         their applications want to hear of it."""
 
-    def _made(self, document: AnyDocument, arguments: Mapping[str, frozenset[str]]) -> App:
+    def _made(self, document: AnyDocument) -> AnyApp:
         """The interpreter of a document; one for which no engine can be had ends at its start."""
 
-        def make() -> App:
-            return interpreter_of(document, arguments, self._began, self._engines)
+        def make() -> AnyApp:
+            return interpreter_of(document, self._arguments, self._began, self._engines)
 
         try:
             return make()
@@ -214,7 +215,7 @@ class Session:
         active = self.mediator.memory.active
         return -1 if active is not None and active.name == name else self.order.get(name, 0)
 
-    def _in_order(self) -> list[App]:
+    def _in_order(self) -> list[AnyApp]:
         """V3: the applications in declared order, the one whose stream is active first."""
         living = self._living() if self._alive is None else self._alive
         if len(living) == 1:
@@ -227,7 +228,7 @@ class Session:
             return living
         return [first, *(app for app in living if app is not first)]
 
-    def _living(self) -> list[App]:
+    def _living(self) -> list[AnyApp]:
         if self._alive is None:
             self._alive = [
                 app for name, app in self.apps.items() if name in self._loaded and not app.over
@@ -295,14 +296,14 @@ class Session:
         self._settle()
 
     @contextmanager
-    def _contained(self, app: App) -> Iterator[None]:
+    def _contained(self, app: AnyApp) -> Iterator[None]:
         """E2: what goes wrong in an application's interpreter ends that application alone."""
         try:
             yield
         except Exception as error:
             self._defect(app, error)
 
-    def _defect(self, app: App, error: Exception) -> None:
+    def _defect(self, app: AnyApp, error: Exception) -> None:
         if not isinstance(error, EngineLost | GoOut):
             self.defects.append(error)
         app.fail(error)
@@ -317,15 +318,14 @@ class Session:
         if name in self._loaded:
             if not app.over:
                 return
-            before, app = app, self._made(app.document, app.arguments)
+            before, app = app, self._made(self.documents[name])
             app.visits[:0] = before.visits
             self.apps[name] = app
         self._loaded.add(name)
         self._alive = None
         app.sensors.update(self._sensors)
-        if not isinstance(app, Interpreter):
-            app.connection = value.connection
-        self.mediator.load(name, app.kind, app.document.lang, self.order[name])
+        app.connection = value.connection
+        self.mediator.load(name, app.kind, self.documents[name].lang, self.order[name])
         with self._contained(app):
             app.start(self.recorder.now)
         self._act(app)
@@ -353,7 +353,7 @@ class Session:
             if one.actions or self._due or one.deadline is not None:
                 self._act(one)
 
-    def _alone(self, name: str) -> list[App]:
+    def _alone(self, name: str) -> list[AnyApp]:
         """The application of a name, if it is there."""
         app = self.apps.get(name)
         return [app] if app is not None and name in self._loaded and not app.over else []
@@ -412,7 +412,7 @@ class Session:
         now, memory = self.recorder.now, self.mediator.memory
         for ab in [*memory.running.values(), *memory.waiting.values()]:
             app = self.apps[ab.app.name]
-            if isinstance(app, Interpreter) or ab.command is None or ab.silent:
+            if ab.command is None or ab.silent:
                 continue
             during: Command | None = ab.command
             taken = False
@@ -444,7 +444,7 @@ class Session:
     def _answered(self, value: Fetched | Transferred) -> None:
         """An answer goes to the application that has asked."""
         app = self.apps.get(value.app)
-        if app is not None and not isinstance(app, Interpreter) and value.app in self._loaded:
+        if app is not None and value.app in self._loaded:
             with self._contained(app):
                 app.replied(self.recorder.now, value)
             self._act(app)
@@ -464,7 +464,7 @@ class Session:
         for app in self._in_order():
             self._look(app, value.values)
 
-    def _look(self, app: App, values: Data) -> None:
+    def _look(self, app: AnyApp, values: Data) -> None:
         """C6: an application is told of sensors, and its conditions on them may have turned true."""
         raised: list[str] = []
         with self._contained(app):
@@ -473,18 +473,18 @@ class Session:
             self._own_event(app, name, {}, reactive=True)
         self._act(app)
 
-    def _own_event(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
+    def _own_event(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
         """An event that one application alone has defined."""
         self._handle_own(app, name, data, reactive)
         self._act(app)
 
-    def _handle_own(self, app: App, name: str, data: dict[str, Json], reactive: bool) -> None:
+    def _handle_own(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
         """Let the application handle its own event; what it wants then is still to be done."""
         serial = self._record_own(app, name, data, "environment")
         with self._contained(app):
             app.event(self.recorder.now, Event(name, serial, data, reactive))
 
-    def _record_own(self, app: App, name: str, data: Data, actor: str) -> int:
+    def _record_own(self, app: AnyApp, name: str, data: Data, actor: str) -> int:
         """Record an event that one application alone has defined; gives its serial number."""
         self._serial += 1
         self.recorder.add(
@@ -556,7 +556,7 @@ class Session:
             self._act(app)
             self.mediator.close_window(told)
 
-    def _act(self, app: App) -> None:
+    def _act(self, app: AnyApp) -> None:
         """Carry out what an application wants, and note when it wants to be called."""
         if app.actions:
             self._carry_out(app)
@@ -566,7 +566,7 @@ class Session:
         elif self._due:
             self._due.pop(app.name, None)
 
-    def _carry_out(self, app: App) -> None:
+    def _carry_out(self, app: AnyApp) -> None:
         """Do what an application wants, in order; what comes of its own events first."""
         left: deque[Action] = deque()
         while app.actions or left:
@@ -597,13 +597,13 @@ class Session:
                     self._handle_own(app, action.event, {}, reactive=True)
                 case Promote():
                     self._promoted = self._record_own(app, action.event, {}, "robot")
-                case GoOn() if isinstance(app, Interpreter):
+                case GoOn():
                     with self._contained(app):
                         app.go_on_entering(action.state)
                 case Quit():
                     self._quit(app, action)
 
-    def _send(self, app: App, action: Send) -> None:
+    def _send(self, app: AnyApp, action: Send) -> None:
         data = {"to": action.service, **action.data}
         self.recorder.add(
             "send",
@@ -617,7 +617,7 @@ class Session:
         order.data = data
         self._sends.append(order)
 
-    def _log(self, app: App, action: Say) -> None:
+    def _log(self, app: AnyApp, action: Say) -> None:
         self.recorder.add(
             "log" if action.level == "log" else "error",
             "robot",
@@ -626,7 +626,7 @@ class Session:
             source=line_of(action.source),
         )
 
-    def _quit(self, app: App, action: Quit) -> None:
+    def _quit(self, app: AnyApp, action: Quit) -> None:
         self._alive = None
         if action.failed:
             self.failures.append(f"{app.name}: {action.reason}")
@@ -638,15 +638,15 @@ def interpreter_of(
     arguments: Mapping[str, frozenset[str]],
     began: int,
     engines: Engines,
-) -> App:
+) -> AnyApp:
     """The interpreter of a document, of whichever language it is, in a run that began then."""
-    app: App
+    app: AnyApp
     if isinstance(document, Document):
         app = Interpreter(document, arguments, engines)
     else:
         from prima.voicexml.application import VoiceInterpreter
 
-        app = VoiceInterpreter(document, arguments, engines)
+        app = VoiceInterpreter(document, engines)
     app.began = began
     return app
 

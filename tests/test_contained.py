@@ -9,7 +9,7 @@ import pytest
 
 from prima import api
 from prima.interpreter.application import Interpreter
-from prima.interpreter.frame import Thrown, Transfer
+from prima.interpreter.transfers import Thrown, Transfer
 from prima.messages import Ended, Event, Sensed
 from prima.script.evaluation import ScriptError
 from prima.script.prelude import reason

@@ -31,8 +31,8 @@ from prima.interpreter import (
     application,
     bounds,
     content,
-    frame,
     handling,
+    transfers,
     units,
 )
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
@@ -309,7 +309,7 @@ def limits() -> str:
             "the application ends",
         ),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
-        ("subdialogs inside each other", f"{frame.MAX_DEPTH}", "`error.semantic`"),
+        ("subdialogs inside each other", f"{transfers.MAX_DEPTH}", "`error.semantic`"),
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),
         (
             "steps of matching an utterance with a grammar",

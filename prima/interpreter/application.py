@@ -14,8 +14,8 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import Bounds, Visit
-from prima.interpreter.content import Executor, source
+from prima.interpreter.bounds import Visit
+from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
     Document,
@@ -28,20 +28,20 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.form import Algorithm, confidence_level
-from prima.interpreter.frame import (
-    Abandoned,
-    Fiber,
-    Frame,
+from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
+from prima.interpreter.handling import Handling
+from prima.interpreter.places import source
+from prima.interpreter.plain import PlainEngine, is_plain
+from prima.interpreter.protocol import App
+from prima.interpreter.sensors import NOTHING_READ, sensors_read
+from prima.interpreter.transfers import (
     GoBack,
-    GoForm,
     GoItem,
     GoOut,
     Thrown,
     Transfer,
+    thrown_of,
 )
-from prima.interpreter.handling import Handling
-from prima.interpreter.plain import PlainEngine, is_plain
-from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.markup.tree import Node
 from prima.messages import (
     PROMOTED,
@@ -51,20 +51,17 @@ from prima.messages import (
     Event,
     GoOn,
     Hypothesis,
-    Json,
     LeaveState,
     Notice,
     Promote,
-    Quit,
     Raise,
     Request,
     Say,
-    Send,
     Step,
     Understood,
 )
 from prima.script.budget import Budget
-from prima.script.evaluation import EngineLost, Scope, ScriptError
+from prima.script.evaluation import Scope, ScriptError
 from prima.script.isolated import Engines
 
 if TYPE_CHECKING:
@@ -73,7 +70,7 @@ if TYPE_CHECKING:
 MAX_TIMERS = 256
 
 
-class Interpreter(Bounds["AnyEngine | PlainEngine"]):
+class Interpreter(App["AnyEngine | PlainEngine"]):
     """Runs one document. ``arguments`` are the motion arguments of the robot's own Commands.
 
     ``engines`` makes what evaluates the document's code, if it needs one.
@@ -86,10 +83,8 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         engines: Engines | None = None,
     ) -> None:
         self.document = document
-        self.name = document.id
-        self.kind = document.kind
         self.arguments = arguments or {}
-        super().__init__(evaluator_of(document, engines or Engines()))
+        super().__init__(document.id, document.kind, evaluator_of(document, engines or Engines()))
         self.application = self.engine.named("application")
         self.visits.append(Visit(self.name, 0, "document", document.node, document.file))
         self.execute = Executor(self)
@@ -97,14 +92,9 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self.algorithm = Algorithm(self)
         self.frame: Frame | None = None
         self._waiting: dict[int, Fiber] = {}
-        self._runs = count(1)
-        self.states = count(1)
-        self.units = count(1)
-        self._sends = count(1)
         self._timers: list[tuple[int, int, str, Data, int]] = []
         """Delayed events: when, serial number, name, data, and the state they belong to."""
         self._timer_serial = count(1)
-        self.sensors: dict[str, Json] = {}
         self.untold = False
         """Whether the variable ``sensor`` has old values: it is told the new ones when code runs."""
         self.reports = 0
@@ -268,22 +258,9 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         self._keep_timers([timer for timer in self._timers if timer[0] > now])
         return [(name, data) for _, _, name, data, _ in due]
 
-    def stop(self) -> None:
-        """The application is taken out of the robot."""
-        self._quit("unloaded")
-
-    def internal(
-        self, name: str, message: str, command: Command | None = None, **more: Json
-    ) -> Event:
-        """An event of the application's own."""
-        data: dict[str, Json] = {"message": message, **more}
-        if command is not None:
-            data["command"] = command.type
-        return Event(name, 0, data, reactive=False)
-
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
-        number = next(self._runs)
+        number = next(self.runs)
         frame = fiber.frame
         asked = Request(number, steps, frame.state, self.take_cause(), fiber.unit)
         asked.hold = frame.form.hold
@@ -312,16 +289,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         asks = isinstance(frame.item, Field) and frame.item.connect
         return asks or (frame.form.connect and not frame.connected)
 
-    def send(self, service: str, data: Json, place: str) -> None:
-        """Ask a service something."""
-        self.actions.append(Send(service, {"params": data}, next(self._sends), place))
-
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event here later, unless the state is left before."""
         if len(self._timers) >= MAX_TIMERS:
-            place = source(act.node)
-            message = f"{place}: more than {MAX_TIMERS} delayed events"
-            raise Thrown(self.internal("error.semantic", message), place)
+            message = f"more than {MAX_TIMERS} delayed events"
+            raise Thrown.at(act.node, "error.semantic", message)
         due = self.now + max(milliseconds, 1)
         if milliseconds <= 1:  # who sends himself one after the other loops without ever waiting
             self.hurried = due
@@ -350,27 +322,11 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
         try:
             if isinstance(error, GoOut):
                 raise error
-            self._seek_handler(self.thrown(error))
+            self._seek_handler(thrown_of(error))
         except (Thrown, ScriptError) as unhandled:
-            self._unhandled(self.thrown(unhandled))
+            self.quit_unhandled(thrown_of(unhandled))
         except GoOut as out:
-            self._quit(out.reason, out.failed, out.source)
-
-    def thrown(self, error: Thrown | ScriptError) -> Thrown:
-        """An error of the engine itself is an event as well.
-
-        What was thrown forgets where: content that handles it may wait, and would keep all that
-        led to it, what was thrown before included, without end.
-
-        Raises:
-            GoOut: the engine is lost.
-        """
-        if isinstance(error, EngineLost):
-            raise GoOut(f"error.semantic: {error}", True)
-        if isinstance(error, Thrown):
-            error.__context__ = error.__traceback__ = None
-            return error
-        return Thrown(self.internal("error.semantic", str(error)))
+            self.quit(out.reason, out.failed, out.source)
 
     def _seek_handler(self, thrown: Thrown) -> None:
         """An error outside all content, as in a condition of a handler, has handlers too."""
@@ -379,23 +335,12 @@ class Interpreter(Bounds["AnyEngine | PlainEngine"]):
             raise thrown
         self.handling.dispatch(thrown.event, frame, thrown.source)
 
-    def _unhandled(self, thrown: Thrown) -> None:
-        event = thrown.event
-        message = str(event.data.get("message", ""))
-        if thrown.source and not message.startswith(thrown.source):
-            message = f"{thrown.source}: {message}" if message else thrown.source
-        self.actions.append(Say("error", f"{event.name}: {message}", thrown.source))
-        self._quit(f"{event.name}: {message}", failed=True, place=thrown.source)
-
-    def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
-        if self.over:
-            return
-        self.over = True
+    def leave_states(self) -> None:
+        """O3: leave the form, and those that have called it."""
         while self.frame is not None:
             self.leave(self.frame)
             self.frame = self.frame.caller
         self._keep_timers([])
-        self.actions.append(Quit(reason, failed, place))
 
     def _resume(self, fiber: Fiber, notice: Notice) -> None:
         """Go on with content whose Commands have met their fate."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, NoReturn, TypeVar
 
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoOut
 from prima.language.values import moment
 from prima.markup.tree import Node
 from prima.messages import Action, Json, Quit, Say

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NoReturn
 
-from prima.errors import Place
 from prima.interpreter.elements import (
     Act,
     Assign,
@@ -30,23 +29,24 @@ from prima.interpreter.elements import (
     Throw,
     all_items,
 )
-from prima.interpreter.frame import (
-    Abandoned,
-    Content,
-    Fiber,
+from prima.interpreter.frame import Abandoned, Content, Fiber, GoForm
+from prima.interpreter.owner import Owner
+from prima.interpreter.places import source, where
+from prima.interpreter.plain import PlainEngine
+from prima.interpreter.transfers import (
     GoBack,
-    GoForm,
     GoItem,
     GoOut,
     Thrown,
     Transfer,
+    failure,
+    no_item,
+    undeclared,
 )
-from prima.interpreter.owner import Owner
-from prima.interpreter.plain import PlainEngine
 from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
-from prima.script.evaluation import RESULT_LIMIT, EngineLost, Scope, ScriptError
+from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 
 MAX_TEXT = 4000
 """Characters that a Command may say."""
@@ -80,31 +80,19 @@ class Executor:
 
     # Expressions --------------------------------------------------------------
 
-    def failure(self, error: ScriptError, expr: Expression) -> Thrown:
-        """``error.semantic`` with the place of the expression that failed.
-
-        Raises:
-            GoOut: the engine is lost.
-        """
-        place = where(expr, error)
-        message = f"{place}: {expr.code.strip()[:80]}: {error}"
-        if isinstance(error, EngineLost):
-            raise GoOut(f"error.semantic: {message}", True, place)
-        return Thrown(self.owner.internal("error.semantic", message), place)
-
     def evaluate(self, expr: Expression, fiber: Fiber) -> Json:
         """An expression's value as plain data."""
         try:
             return self.engine.value(expr.code, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, expr) from None
+            raise failure(error, expr.code, where(expr, error)) from None
 
     def condition(self, expr: Expression, fiber: Fiber) -> bool:
         """An expression as a condition."""
         try:
             holds = self.engine.condition(expr.code, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, expr) from None
+            raise failure(error, expr.code, where(expr, error)) from None
         self.owner.note(expr.node, "true" if holds else "false")
         return holds
 
@@ -144,7 +132,7 @@ class Executor:
         try:
             return self.engine.text(expr.code, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, expr) from None
+            raise failure(error, expr.code, where(expr, error)) from None
 
     def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
         """A value, or the value of an expression."""
@@ -168,7 +156,7 @@ class Executor:
         try:
             self.engine.assign(scope, act.name, act.expr.code, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, act.expr) from None
+            raise failure(error, act.expr.code, where(act.expr, error)) from None
 
     def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
         """Run a script; what it declares belongs to the scope."""
@@ -176,7 +164,7 @@ class Executor:
         try:
             self.engine.script(act.code.code, scope, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, act.code) from None
+            raise failure(error, act.code.code, where(act.code, error)) from None
 
     # Content ------------------------------------------------------------------
 
@@ -228,7 +216,7 @@ class Executor:
         try:
             elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
         except ScriptError as error:
-            raise self.failure(error, act.array) from None
+            raise failure(error, act.array.code, where(act.array, error)) from None
         for element in elements:
             self.owner.count_step(act.node)
             self.engine.put(self.local(fiber), act.item, element)
@@ -238,7 +226,7 @@ class Executor:
         """Throw an event (VoiceXML 5.2.1)."""
         name = self.event_name(act, fiber)
         message = shown(self.plain(act.message, fiber) or "")
-        raise Thrown(self.owner.internal(name, message), source(act.node))
+        raise Thrown(name, message, source(act.node))
 
     def event_name(self, act: Throw, fiber: Fiber) -> str:
         """The name of the event to throw; that of an expression may be none."""
@@ -249,8 +237,8 @@ class Executor:
         try:
             return str(read_value("event", "" if value is None else name))
         except ValueError as error:
-            message = f"{source(act.node)}: event {quoted(value)} {error}"
-            raise Thrown(self.owner.internal("error.semantic", message), source(act.node)) from None
+            message = f"event {quoted(value)} {error}"
+            raise Thrown.at(act.node, "error.semantic", message) from None
 
     def leave(self, act: Return, fiber: Fiber) -> Transfer:
         """Return from a subdialog, with values (VoiceXML 5.3.10)."""
@@ -273,7 +261,7 @@ class Executor:
         try:
             self.engine.assign_declared(act.name, act.expr.code, self.scopes(fiber))
         except ScriptError as error:
-            raise self.failure(error, act.expr) from None
+            raise failure(error, act.expr.code, where(act.expr, error)) from None
 
     def clear(self, act: Clear, fiber: Fiber) -> None:
         """Undefine form items and reset their counters (VoiceXML 5.3.3)."""
@@ -285,29 +273,23 @@ class Executor:
                 (one for one in reversed(self.scopes(fiber)) if self.engine.has(one, name)), None
             )
             if scope is None:
-                message = f'{source(act.node)}: the variable "{name}" is not declared'
-                raise Thrown(self.owner.internal("error.semantic", message), source(act.node))
+                raise undeclared(act.node, name)
             self.engine.unset(scope, name)
             if name in items:
-                frame.prompts = {key: n for key, n in frame.prompts.items() if key != name}
-                frame.counters = {
-                    key: count for key, count in frame.counters.items() if key[0] != name
-                }
+                frame.counters = frame.counters.without(name)
 
     def goto(self, act: Goto, fiber: Fiber) -> Transfer:
         """Leave for a form or an item."""
         if act.item is not None:
             name = shown(self.plain(act.item, fiber))
             if all(item.name != name for item in all_items(fiber.frame.form.items)):
-                message = f'{source(act.node)}: there is no form item "{name}"'
-                raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
+                raise no_item(act.node, name)
             return GoItem(name)
         target = act.form
         if not isinstance(target, str):
             target = shown(self.plain(target, fiber)).removeprefix("#")
         if target not in self.owner.document.forms:
-            message = f'{source(act.node)}: there is no form "{target}"'
-            raise Thrown(self.owner.internal("error.badfetch", message), source(act.node))
+            raise Thrown.at(act.node, "error.badfetch", f'there is no form "{target}"')
         return GoForm(target)
 
     def send(self, act: SendOut, fiber: Fiber) -> None:
@@ -318,7 +300,7 @@ class Executor:
             self.owner.delay(act, params, self.milliseconds(delay, act.node), fiber)
         else:
             service = shown(self.plain(act.service, fiber))
-            self.owner.send(service, params, source(act.node))
+            self.owner.send(service, {"params": params}, source(act.node))
 
     def milliseconds(self, value: Json, node: Node) -> int:
         """A delay: milliseconds from an attribute, or a time or seconds from an expression."""
@@ -329,8 +311,7 @@ class Executor:
                 return round(value) if "delay" in node.attributes else round(value * 1000)
         except ValueError:
             pass
-        message = f"{source(node)}: delay {quoted(value)} is not a time"
-        raise Thrown(self.owner.internal("error.semantic", message), source(node))
+        raise Thrown.at(node, "error.semantic", f"delay {quoted(value)} is not a time")
 
     # Commands -----------------------------------------------------------------
 
@@ -351,7 +332,8 @@ class Executor:
             fiber.commands = (notice.command.hook if notice.command else None) or ()
             place = notice.command.source if notice.command else ""
             message = f"{place}: {notice.message}" if place else notice.message
-            raise Thrown(self.owner.internal(notice.event, message, notice.command), place)
+            data = {"command": notice.command.type} if notice.command else {}
+            raise Thrown(notice.event, message, place, data)
         if notice.what == "cancelled":
             raise Abandoned
 
@@ -407,18 +389,3 @@ SIMPLE: dict[type, Callable[[Executor, Any, Fiber], Transfer | None]] = {
     SendOut: Executor.send,
 }
 """How content that takes no time is run, by its kind."""
-
-
-def source(node: Node) -> str:
-    """The document, line and column of an element, for messages; records have its line."""
-    return short(node.place)
-
-
-def short(place: Place) -> str:
-    """A place with the name of its document alone: ``FILE:LINE:COLUMN``."""
-    return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}:{place.column}"
-
-
-def where(expr: Expression, error: ScriptError) -> str:
-    """The document, line and column of what failed in an expression or script."""
-    return short(expr.node.code_place(expr.attribute, error.line, error.column))

@@ -22,6 +22,7 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
+from prima.interpreter.selection import takes
 from prima.language.commands import DEVICES
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -81,11 +82,6 @@ class Raised:
     attribute: str
     fatal: bool
     """Whether it ends the application if no handler takes it."""
-
-
-def takes(handler: str, event: str) -> bool:
-    """Whether a handler's name takes an event (VoiceXML 2.0, 5.2.4)."""
-    return event == handler or event.startswith(f"{handler}.")
 
 
 def beginnings(event: str) -> Iterator[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from prima.interpreter.content import source
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -12,24 +11,25 @@ from prima.interpreter.elements import (
     Filled,
     Form,
     Item,
+    Prompt,
     Subdialog,
     Unit,
     all_items,
 )
-from prima.interpreter.frame import (
-    MAX_DEPTH,
-    Content,
-    Fiber,
-    Frame,
+from prima.interpreter.frame import Content, Fiber, Frame, GoForm
+from prima.interpreter.owner import Owner
+from prima.interpreter.places import source
+from prima.interpreter.selection import satisfied, select_item, select_prompts
+from prima.interpreter.transfers import (
     GoBack,
-    GoForm,
     GoItem,
     Thrown,
     Transfer,
+    check_depth,
+    thrown_of,
 )
-from prima.interpreter.owner import Owner
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
-from prima.messages import CloseUnit, Command, Cue, Event, Json, Notice, OpenUnit, Step
+from prima.messages import CloseUnit, Command, Cue, Json, Notice, OpenUnit, Step
 from prima.script.evaluation import ScriptError
 
 
@@ -38,6 +38,12 @@ def confidence_level(document: Document, form: Form, field: Field | None = None)
     nearer = field.properties if field is not None else {}
     settings = {**document.properties, **form.properties, **nearer}
     return float(settings.get("confidencelevel", USUAL_CONFIDENCE))
+
+
+def holds(item: Item, name: str) -> bool:
+    """Whether an item has a name, or is a unit around the one that has."""
+    inner = item.items if isinstance(item, Unit) else ()
+    return any(one.name == name for one in (item, *inner))
 
 
 def _shadow(notice: Notice) -> dict[str, Json]:
@@ -70,7 +76,7 @@ class Algorithm:
             act()
             return
         except (Thrown, ScriptError) as error:
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.owner.handling.handle_thrown(frame, fiber, None, thrown, 0)
 
     def _visit_all(
@@ -93,29 +99,22 @@ class Algorithm:
         try:
             return self.select_item(frame, fiber, items)
         except Thrown as error:
-            return self.owner.thrown(error)
+            return thrown_of(error)
 
     def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
         """The item that a goto names, else the first undefined one whose condition holds."""
-        wanted, target = frame.next_item, None
-        if wanted:
-            for item in items:
-                if item.name == wanted or (
-                    isinstance(item, Unit) and wanted in {one.name for one in item.items}
-                ):
-                    target = item
-            if target is not None:
-                self.owner.note(target.node)
-                if target.name == wanted:
-                    frame.next_item = ""
-            return target
-        for item in items:
-            if not self.owner.engine.defined(frame.dialog, item.name) and (
-                item.cond is None or self.owner.execute.condition(item.cond, fiber)
-            ):
-                self.owner.note(item.node)
-                return item
-        return None
+        item = select_item(items, frame.next_item, holds, lambda one: self._is_open(fiber, one))
+        if item is not None:
+            self.owner.note(item.node)
+            if item.name == frame.next_item:
+                frame.next_item = ""
+        return item
+
+    def _is_open(self, fiber: Fiber, item: Item) -> bool:
+        """Whether an item's variable is undefined and its condition holds."""
+        if self.owner.engine.defined(fiber.frame.dialog, item.name):
+            return False
+        return item.cond is None or self.owner.execute.condition(item.cond, fiber)
 
     def _visit(self, frame: Frame, fiber: Fiber, item: Item) -> Content:
         match item:
@@ -137,50 +136,50 @@ class Algorithm:
             return
         except (Thrown, ScriptError) as error:
             frame.reprompt = False
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
         """Ask, and take the answer: the Command Q&A (C4)."""
-        settings = {**self.owner.document.properties, **frame.form.properties, **field.properties}
-        text = ""
-        cues: tuple[Cue, ...] = ()
-        if frame.reprompt:
-            seen = frame.prompts.get(field.name, 0) + 1
-            frame.prompts = {**frame.prompts, field.name: seen}
-            fitting = [
-                prompt
-                for prompt in field.prompts
-                if prompt.count <= seen
-                and (prompt.cond is None or self.owner.execute.condition(prompt.cond, fiber))
-            ]
-            highest = max((prompt.count for prompt in fitting), default=0)
-            for prompt in fitting:
-                if prompt.count == highest:
-                    text, more = self.owner.execute.speech(prompt.text, fiber, text)
-                    cues += more
-                    if prompt.timeout is not None:
-                        settings["timeout"] = prompt.timeout
-                    if prompt.bargein is not None:
-                        settings["bargein"] = prompt.bargein
-        frame.reprompt = True
-        settings.pop("confidencelevel", None)  # it is for who understands, not for who listens
-        args = {key: f"{value}ms" if key == "timeout" else value for key, value in settings.items()}
-        self.owner.count_output(len(text), field.node)
-        command = Command(
-            "q-and-a", args, text or None, lang=field.lang, source=source(field.node), cues=cues
-        )
-        number = self.owner.request([Step(command)], fiber)
-        notice = yield number
+        command = self._question(frame, fiber, field)
+        notice = yield self.owner.request([Step(command)], fiber)
         self.owner.execute.check(notice, fiber)
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
-            raise Thrown(
-                self.owner.internal(outcome, "", command, **_shadow(notice)), command.source
-            )
+            data = {**_shadow(notice), "command": command.type}
+            raise Thrown(outcome, "", command.source, data)
         self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
         self.owner.engine.set(frame.dialog, f"{field.name}$", _shadow(notice))
         yield from self._process(frame, fiber, field, field.filled)
+
+    def _question(self, frame: Frame, fiber: Fiber, field: Field) -> Command:
+        """A Q&A of the prompts that are said now."""
+        args = {**self.owner.document.properties, **frame.form.properties, **field.properties}
+        text = ""
+        cues: tuple[Cue, ...] = ()
+        for prompt in self._prompts(frame, fiber, field):
+            text, more = self.owner.execute.speech(prompt.text, fiber, text)
+            cues += more
+            own = {"timeout": prompt.timeout, "bargein": prompt.bargein}
+            args |= {name: value for name, value in own.items() if value is not None}
+        args.pop("confidencelevel", None)  # it is for who understands, not for who listens
+        if "timeout" in args:
+            args["timeout"] = f"{args['timeout']}ms"
+        self.owner.count_output(len(text), field.node)
+        place = source(field.node)
+        return Command("q-and-a", args, text or None, lang=field.lang, source=place, cues=cues)
+
+    def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
+        """What a field says before it listens, if it is not to be quiet after an event (4.1.6)."""
+        speaks, frame.reprompt = frame.reprompt, True
+        if not speaks:
+            return []
+        frame.counters = frame.counters.asked(field.name)
+        return select_prompts(
+            ((one.count, one) for one in field.prompts),
+            frame.counters.prompts[field.name],
+            lambda one: one.cond is None or self.owner.execute.condition(one.cond, fiber),
+        )
 
     def _process(self, frame: Frame, fiber: Fiber, item: Item, own: Sequence[Filled]) -> Content:
         """Run the filled elements that an answer has satisfied (VoiceXML 2.4)."""
@@ -188,16 +187,16 @@ class Algorithm:
             fiber.local = None
             self.owner.note(filled.node)
             yield from self.owner.execute.run(filled.content, fiber)
+
+        def is_defined(name: str) -> bool:
+            return self.owner.engine.defined(frame.dialog, name)
+
         inputs = [
             one.name for one in all_items(frame.form.items) if isinstance(one, Field | Subdialog)
         ]
         for filled in frame.form.filled:
             names = filled.names or inputs
-            if item.name not in names:
-                continue
-            if filled.mode == "any" or all(
-                self.owner.engine.defined(frame.dialog, name) for name in names
-            ):
+            if satisfied(filled.mode, names, [item.name], is_defined):
                 fiber.local = None
                 self.owner.note(filled.node)
                 yield from self.owner.execute.run(filled.content, fiber)
@@ -207,9 +206,7 @@ class Algorithm:
         depth, outer = 0, frame.caller
         while outer is not None:
             depth, outer = depth + 1, outer.caller
-        if depth >= MAX_DEPTH:
-            message = f"{source(item.node)}: more than {MAX_DEPTH} subdialogs inside each other"
-            raise Thrown(self.owner.internal("error.semantic", message), source(item.node))
+        check_depth(depth, item.node)
         form = self.owner.document.forms[item.form]
         inner = self.owner.frame_for(form, None)
         inner.caller, inner.called_by = frame, item
@@ -224,7 +221,7 @@ class Algorithm:
         if result is None:
             result = yield 0
         if result.event:
-            raise Thrown(self.owner.internal(result.event, "", None), source(item.node))
+            raise Thrown(result.event, "", source(item.node))
         self.owner.engine.set(frame.dialog, item.name, result.data["result"])
         yield from self._process(frame, fiber, item, item.filled)
 
@@ -292,9 +289,8 @@ class Algorithm:
                     raise
                 frame.next_item, frame.reprompt = go.item, True
 
-    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, event: Event) -> Content:
+    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
         """U5: error.unit.timeout is thrown in the unit; then the form goes on behind it."""
-        thrown = Thrown(event, source(unit.node))
         yield from self.owner.handling.handle_thrown(frame, fiber, unit, thrown, 0)
         frame.item = None
         yield from self._visit_all(frame, fiber, frame.form.items, None)

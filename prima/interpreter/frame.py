@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Generator, Sequence
 
 from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
-from prima.messages import Event, Json, Notice
+from prima.interpreter.selection import Counters
+from prima.interpreter.transfers import Transfer
+from prima.messages import Notice
 from prima.script.evaluation import Scope
-
-MAX_DEPTH = 32
-"""Subdialogs inside subdialogs, and events thrown while one is handled."""
 
 Content = Generator[int, Notice, None]
 """A piece of content as a coroutine: it yields the run it waits for and is sent its fate."""
@@ -39,10 +37,8 @@ class Frame:
     asked = False
     """Whether the mediator has heard of the state: of a Command, or a unit."""
 
-    counters: Mapping[tuple[str, str], int] = MappingProxyType({})
-    """Occurrences of an event's names while an item ("" for the form) was visited."""
-    prompts: Mapping[str, int] = MappingProxyType({})
-    """How often an item has asked."""
+    counters = Counters()
+    """Of events while an item ("" for the form) was visited, and of prompts."""
     units: tuple[tuple[int, Unit], ...] = ()
     """The units that the state is in, outermost first, each with its number."""
     fibers: tuple[Fiber, ...] = ()
@@ -78,55 +74,11 @@ class Fiber:
         """Handlers written inside the Command whose event is being handled."""
 
 
-class Thrown(Exception):
-    """An event thrown in the application (VoiceXML 5.2.1)."""
-
-    def __init__(self, event: Event, source: str = "") -> None:
-        super().__init__(event.name)
-        self.event = event
-        self.source = source
-        self.sought = False
-        """Whether its handlers have been looked for, and there is none."""
-
-
-class Transfer(Exception):
-    """Control leaves the content: a form, an item, a return, or the end."""
-
-    __slots__ = ()
-
-
 class GoForm(Transfer):
     """A goto to a form."""
 
-    __slots__ = ("form",)
-
     def __init__(self, form: str) -> None:
         self.form = form
-
-
-class GoItem(Transfer):
-    """A goto to an item of this form."""
-
-    def __init__(self, item: str) -> None:
-        self.item = item
-
-
-class GoBack(Transfer):
-    """A return from a subdialog, with its values or an event."""
-
-    def __init__(self, values: dict[str, Json], event: str) -> None:
-        self.values = values
-        self.event = event
-
-
-class GoOut(Transfer):
-    """An exit."""
-
-    def __init__(self, reason: str = "exit", failed: bool = False, source: str = "") -> None:
-        super().__init__(reason)
-        self.reason = reason
-        self.failed = failed
-        self.source = source
 
 
 class Abandoned(Exception):

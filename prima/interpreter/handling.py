@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.interpreter.content import source
-from prima.interpreter.elements import Expression, Handler, Item, Watch
-from prima.interpreter.frame import MAX_DEPTH, Content, Fiber, Frame, Thrown
+from prima.interpreter.elements import Handler, Item, Watch
+from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.owner import Owner
-from prima.interpreter.selection import Taking, prefixes, select_handler, taking
+from prima.interpreter.selection import Candidate, prefixes, select_handler, taking
 from prima.interpreter.sensors import hides_sensors, sensors_of
+from prima.interpreter.transfers import MAX_DEPTH, Thrown, thrown_of
 from prima.messages import Event, Json, Notice
 from prima.script.evaluation import Scope, ScriptError
 
@@ -21,6 +21,7 @@ REPROMPTED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a field asks again where nobody handles them (VoiceXML 5.2.5)."""
 
 
+Taking = list[Candidate[Handler]]
 Key = str | tuple[str, str]
 """An event, by its name and that of the item, if any, that is being visited."""
 
@@ -28,6 +29,16 @@ Key = str | tuple[str, str]
 def key_of(item: Item | None, event: str) -> Key:
     """By what a form keeps what an event does in it."""
     return event if item is None else (item.name, event)
+
+
+def name_of(item: Item | None) -> str:
+    """Where events are counted: at the item that is visited, or at the form itself."""
+    return item.name if item is not None else ""
+
+
+def offers(handlers: Iterable[Handler], event: str) -> Taking:
+    """Those of some handlers that take an event."""
+    return taking((Candidate(one, one.events, one.count) for one in handlers), event)
 
 
 class Handling:
@@ -66,7 +77,7 @@ class Handling:
             self.owner.count_step(handler.node)
             if depth > MAX_DEPTH:
                 self.owner.give_up(handler.node, "its handlers throw without end")
-            again = self.owner.thrown(error)
+            again = thrown_of(error)
         yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
@@ -82,7 +93,7 @@ class Handling:
                 self._launch(fiber, handler)
                 return
         if event.name.startswith("error."):
-            unhandled = Thrown(event, place)
+            unhandled = Thrown(event.name, str(event.data.get("message", "")), place)
             unhandled.sought = True
             raise unhandled
 
@@ -131,7 +142,7 @@ class Handling:
         fiber = Fiber(frame)
         self._enter_unit(fiber, handler)
         self._bound_fibers(frame, handler)
-        thrown = self.owner.thrown(error)
+        thrown = thrown_of(error)
         self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
@@ -141,7 +152,7 @@ class Handling:
             yield from self.owner.execute.run(handler.content, fiber)
             return
         except (Thrown, ScriptError) as error:
-            thrown = self.owner.thrown(error)
+            thrown = thrown_of(error)
         yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
@@ -177,9 +188,9 @@ class Handling:
             self.owner.forget(fiber)
         self.owner.close_units(frame)
         frame.item = unit
-        event = self.owner.internal(notice.event, f"{source(unit.node)}: {notice.message}")
-        fiber = Fiber(frame, main=True, local=self.event_scope(event))
-        self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, event))
+        thrown = Thrown.at(unit.node, notice.event, notice.message)
+        fiber = Fiber(frame, main=True, local=self.event_scope(thrown.event))
+        self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, thrown))
 
     def allow_reaction(self, handler: Handler, event: Event) -> None:
         """C5: what is requested first because of the event is a reaction, or not."""
@@ -201,50 +212,46 @@ class Handling:
         """Count an occurrence for the item being visited, under all the event's prefixes."""
         if not self.owner.document.counting:
             return
-        where = item.name if item is not None else ""
-        keys = [(where, prefix) for prefix in prefixes(name)]
-        counted = {key: frame.counters.get(key, 0) + 1 for key in keys}
-        frame.counters = {**frame.counters, **counted}
+        frame.counters = frame.counters.came(name_of(item), prefixes(name))
 
-    def _in_scope(self, frame: Frame, item: Item | None) -> list[Handler]:
-        """Handlers of the item, its unit, the form and the document, in this order."""
+    def _in_scope(self, frame: Frame, item: Item | None, event: str) -> Taking:
+        """Handlers of the item, its unit, the form and the document that take an event, so ordered."""
         found = list(item.handlers) if item is not None else []
         for _, unit in reversed(frame.units):
             if unit is not item:
                 found += unit.handlers
-        return [*found, *frame.form.handlers, *self.owner.document.handlers]
+        return offers([*found, *frame.form.handlers, *self.owner.document.handlers], event)
 
     def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
         """The handlers in scope whose names take an event; a form keeps what has been found."""
         if frame.units:
-            return taking(self._in_scope(frame, item), event)
+            return self._in_scope(frame, item, event)
         kept = frame.form.takers
         key = key_of(item, event)
         found = kept.get(key)
         if found is None:
             if len(kept) >= MOST_KEPT:
                 kept.clear()
-            found = kept[key] = taking(self._in_scope(frame, item), event)
+            found = kept[key] = self._in_scope(frame, item, event)
         return found
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is handled, and those in scope."""
-        inside = taking(fiber.commands, event) if fiber.commands else ()
+        inside = offers(fiber.commands, event) if fiber.commands else []
         return inside + self.takers(frame, item, event)
 
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking
     ) -> Handler | None:
         if len(candidates) == 1:
-            first = candidates[0][0]
+            first = candidates[0].handler
             if first.cond is None and first.count <= 1:
                 return first
-        where = item.name if item is not None else ""
-
-        def holds(cond: Expression) -> bool:
-            return self.owner.execute.condition(cond, fiber)
-
-        return select_handler(candidates, lambda name: frame.counters.get((where, name), 0), holds)
+        return select_handler(
+            candidates,
+            lambda name: frame.counters.seen(name_of(item), name),
+            lambda one: one.cond is None or self.owner.execute.condition(one.cond, fiber),
+        )
 
     def find_handler(
         self, frame: Frame, fiber: Fiber, item: Item | None, event: Event

@@ -22,10 +22,11 @@ from prima.interpreter.elements import (
     Text,
     Unit,
 )
-from prima.interpreter.frame import Content, Fiber, Frame, GoItem, Thrown, Transfer
+from prima.interpreter.frame import Content, Fiber, Frame
+from prima.interpreter.transfers import GoItem, Thrown, Transfer
 from prima.markup.tree import Node
-from prima.messages import Action, Command, Cue, Data, Event, Json, Notice, Step
-from prima.script.evaluation import Scope, ScriptError
+from prima.messages import Action, Cue, Data, Json, Notice, Step
+from prima.script.evaluation import Scope
 
 if TYPE_CHECKING:
     from prima.interpreter.plain import PlainEngine
@@ -54,7 +55,7 @@ class Contents(Protocol):
 class Forms(Protocol):
     """Visits the items of forms."""
 
-    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, event: Event) -> Content:
+    def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
         """U5: throw an event in a unit that has ended, then go on behind it."""
 
 
@@ -158,25 +159,11 @@ class Owner(Protocol):
     def connects(self, frame: Frame) -> bool:
         """Whether the robot has to face the user before the state's next word (X4)."""
 
-    def send(self, service: str, data: Json, place: str) -> None:
+    def send(self, service: str, data: Data, place: str) -> int:
         """Ask a service something."""
 
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event later, unless the state is left before."""
-
-    # Events and errors:
-
-    def internal(
-        self, name: str, message: str, command: Command | None = None, **more: Json
-    ) -> Event:
-        """An event of the application's own."""
-
-    def thrown(self, error: Thrown | ScriptError) -> Thrown:
-        """An error of the engine itself is an event as well.
-
-        Raises:
-            GoOut: the engine is lost.
-        """
 
     # States:
 

@@ -21,7 +21,7 @@ from prima.interpreter.elements import (
     all_acts,
     all_items,
 )
-from prima.interpreter.events import takes
+from prima.interpreter.selection import takes
 
 AGAIN = ENDLESS.says(
     "This reaction to {event} leads to itself again without a wait: no other application has a turn.",

@@ -1,14 +1,53 @@
-"""Which handler takes an event: VoiceXML 2.0, section 5.2.4."""
+"""What the Form Interpretation Algorithm decides, for both languages (VoiceXML 2.0, appendix C).
+
+Which item is visited next, which handler takes an event, which prompts are said, which
+``filled`` run. The languages differ in what items and handlers are: they are handed over
+with what counts of them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Generic, NamedTuple, TypeVar
 
-from prima.interpreter.elements import Expression, Handler
+T = TypeVar("T")
 
-Taking = tuple[tuple[Handler, tuple[str, ...]], ...]
-"""Handlers that take an event, innermost scope first, each with the names that it takes it by."""
+
+class Candidate(NamedTuple, Generic[T]):
+    """A handler with the names by which it takes events, from which occurrence on."""
+
+    handler: T
+    names: tuple[str, ...]
+    least: int
+
+
+@dataclass(frozen=True, slots=True)
+class Counters:
+    """How often events have come, and items asked, while their dialog is active (2.1.6.1)."""
+
+    events: Mapping[tuple[Hashable, str], int] = field(default_factory=dict)
+    """By the item that was visited, and the name under which they count."""
+    prompts: Mapping[Hashable, int] = field(default_factory=dict)
+
+    def came(self, item: Hashable, names: Iterable[str]) -> Counters:
+        """One more event while an item was visited, under each of its names (5.2.2)."""
+        more = {(item, name): self.seen(item, name) + 1 for name in names}
+        return replace(self, events={**self.events, **more})
+
+    def seen(self, item: Hashable, name: str) -> int:
+        """How often events of a name came while an item was visited."""
+        return self.events.get((item, name), 0)
+
+    def asked(self, item: Hashable) -> Counters:
+        """One more visit of an item that asks (4.1.6)."""
+        return replace(self, prompts={**self.prompts, item: self.prompts.get(item, 0) + 1})
+
+    def without(self, item: Hashable, events: bool = True) -> Counters:
+        """What a clear of an item leaves (5.3.3); ``events`` says whether its events go as well."""
+        kept = {key: times for key, times in self.events.items() if key[0] != item or not events}
+        return Counters(kept, {**self.prompts, item: 0})
 
 
 def takes(handler_event: str, event: str) -> bool:
@@ -23,29 +62,77 @@ def prefixes(event: str) -> tuple[str, ...]:
     return ("", *(".".join(parts[: n + 1]) for n in range(len(parts))))
 
 
-def taking(handlers: Iterable[Handler], event: str) -> Taking:
-    """Those of a list of handlers whose names take an event."""
+def taking(
+    handlers: Iterable[Candidate[T]], event: str, by_name: bool = False
+) -> list[Candidate[T]]:
+    """The handlers that take an event, each with the names that do.
+
+    Args:
+        handlers: those in scope, innermost first.
+        event: its name.
+        by_name: whether the empty name, which is for all events, does not take this one.
+    """
     found = []
-    for handler in handlers:
-        names = tuple(name for name in handler.events if takes(name, event))
-        if names:
-            found.append((handler, names))
-    return tuple(found)
+    for handler, names, least in handlers:
+        fitting = tuple(one for one in names if takes(one, event) and (one or not by_name))
+        if fitting:
+            found.append(Candidate(handler, fitting, least))
+    return found
 
 
 def select_handler(
-    candidates: Taking, occurrences: Callable[[str], int], holds: Callable[[Expression], bool]
-) -> Handler | None:
-    """Find the handler of an event among those whose names take it.
+    candidates: Iterable[Candidate[T]], seen: Callable[[str], int], holds: Callable[[T], bool]
+) -> T | None:
+    """The handler of an event among those that take it (5.2.4).
 
     Those whose condition does not hold are left out; of the rest, those with the highest
     count that the occurrences have reached remain, and the first of them it is.
     """
-    found: Handler | None = None
-    for handler, names in candidates:
-        if handler.count > 1 and handler.count > max(map(occurrences, names)):
-            continue
-        holding = handler.cond is None or holds(handler.cond)
-        if holding and (found is None or handler.count > found.count):
-            found = handler
-    return found
+    fitting = (
+        (one.least, one.handler)
+        for one in candidates
+        if (one.least <= 1 or one.least <= max(map(seen, one.names))) and holds(one.handler)
+    )
+    return next(iter(of_highest_count(fitting)), None)
+
+
+def select_prompts(
+    prompts: Iterable[tuple[int, T]], asked: int, holds: Callable[[T], bool]
+) -> list[T]:
+    """What an item says that is visited for the time ``asked``, of prompts and counts (4.1.6)."""
+    return of_highest_count((least, one) for least, one in prompts if least <= asked and holds(one))
+
+
+def of_highest_count(found: Iterable[tuple[int, T]]) -> list[T]:
+    """What has the highest count, in document order."""
+    counted = list(found)
+    highest = max((count for count, _ in counted), default=0)
+    return [one for count, one in counted if count == highest]
+
+
+def select_item(
+    items: Sequence[T],
+    wanted: str,
+    named: Callable[[T, str], bool],
+    is_open: Callable[[T], bool],
+) -> T | None:
+    """The item to visit: that a goto names, or the first that is open (2.1.6.2).
+
+    Args:
+        items: form items, and units with items inside.
+        wanted: the name of one of these.
+        named: whether an item has a name, or is a unit around the one that has.
+        is_open: whether its variable is undefined and its condition holds.
+    """
+    if wanted:
+        return next((item for item in items if named(item, wanted)), None)
+    return next(filter(is_open, items), None)
+
+
+def satisfied(
+    mode: str, items: Collection[T], filled: Collection[T], is_defined: Callable[[T], bool]
+) -> bool:
+    """Whether a form's ``filled`` for some items runs, once others have been filled (2.4)."""
+    if not any(item in filled for item in items):
+        return False
+    return mode == "any" or all(map(is_defined, items))

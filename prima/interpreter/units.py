@@ -35,7 +35,7 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.naming import events_named
-from prima.interpreter.selection import taking
+from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
 
@@ -322,7 +322,7 @@ def _taking(handlers: Iterable[Handler], event: str | None) -> list[Handler]:
     """The handlers that take an event; all of them where nobody knows its name."""
     if event is None:
         return [handler for handler in handlers if handler.events]
-    return [handler for handler, _ in taking(handlers, event)]
+    return [one for one in handlers if any(takes(name, event) for name in one.events)]
 
 
 def _own(item: Item) -> list[tuple[Act, ...]]:

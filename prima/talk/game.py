@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from prima.errors import DocumentError, Problem, UsageError, one_of
-from prima.interpreter.application import Interpreter
 from prima.interpreter.elements import Document
 from prima.interpreter.events import Events
 from prima.language.values import LONGEST_MS
@@ -165,7 +164,7 @@ class Game:
         if question is None or question.run is None:
             return []
         app = self.rehearsal.session.apps[question.app.name]
-        answers = app.answers(question.run.number) if isinstance(app, Interpreter) else None
+        answers = app.answers(question.run.number)
         return phrases(answers) if answers is not None else []
 
     # Time -----------------------------------------------------------------------------

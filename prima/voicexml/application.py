@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Generator, Mapping, Sequence
-from itertools import count, pairwise
+from collections.abc import Generator, Sequence
+from itertools import pairwise
 from pathlib import PurePath
 
-from prima.interpreter.bounds import Bounds, Visit
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.bounds import Visit
+from prima.interpreter.places import source
+from prima.interpreter.protocol import Answer, App
+from prima.interpreter.transfers import GoOut, Thrown
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.messages import (
@@ -23,10 +24,8 @@ from prima.messages import (
     LeaveState,
     Notice,
     OpenUnit,
-    Quit,
     Request,
     Say,
-    Send,
     Transferred,
     Understood,
 )
@@ -40,44 +39,32 @@ from prima.voicexml.state import (
     Flow,
     Heard,
     Resume,
-    Thrown,
     UnitOver,
     thrown_of_event,
 )
 
-Answer = Fetched | Transferred
-"""What is waited for outside: a resource, or what becomes of a call."""
 
-
-class VoiceInterpreter(Bounds[AnyEngine]):
-    """Runs one VoiceXML application; its interface is :class:`prima.interpreter.application`'s."""
+class VoiceInterpreter(App[AnyEngine]):
+    """Runs one VoiceXML application."""
 
     def __init__(
         self,
         document: VoiceDocument,
-        arguments: Mapping[str, frozenset[str]] | None = None,
         engines: Engines | None = None,
     ) -> None:
         self.document = document
-        self.name = document.id
-        self.kind = document.kind
-        self.arguments = arguments or {}
-        super().__init__((engines or Engines()).engine(document.id, document.kind, SCOPES))
-        self.sensors: dict[str, Json] = {}
+        engine = (engines or Engines()).engine(document.id, document.kind, SCOPES)
+        super().__init__(document.id, document.kind, engine)
         self.heard: Heard | None = None
         self.note_document(document.page)
         self._machine = Machine(self)
         self._flow: Flow | None = None
-        self._runs = count(1)
         self._run = 0
         self._state = 0
         self._left = 0
         """The state that was left last: each is left once (O3)."""
         self._cause: int | None = None
         self._marked: str | None = None
-        self._sends = count(1)
-        self.connection: Data = {}
-        """What is known of the user's connection (5.1.4)."""
         self._asked: int | None = None
         """The serial of what is asked for outside and waited for: the transitioning state."""
         self._answer: Answer | None = None
@@ -93,7 +80,6 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
         """Events that came while an answer was waited for (4.1.8): none is lost."""
-        self._units = count(1)
         self._unit_node = document.node
         self._unit: int | None = None
         """The unit around form items in which Commands are asked for (U5)."""
@@ -145,7 +131,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             return
         self._cause = event.serial if event.reactive else None
         self._tell(event)
-        self._leave()
+        self.leave_states()
         self._drive(Resume(event=event, outside=True))
         self._cause = None
 
@@ -187,7 +173,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         if self._run and self._patient:
             return
         if self._run:
-            self._leave()
+            self.leave_states()
         self._drive(Resume())
         self._catch_up()
 
@@ -196,12 +182,6 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         self._tick(now)
         self.sensors.update(values)
         return []
-
-    def listens_to(self, said: Sequence[Hypothesis]) -> None:
-        """VoiceXML listens where it waits, and nowhere else."""
-
-    def follow(self, now: int, link: object, event: Event) -> None:
-        """Nothing is followed, as nothing is listened to all the time."""
 
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
         """What the active grammars make of what the user said, or None if they take it not."""
@@ -249,7 +229,7 @@ class VoiceInterpreter(Bounds[AnyEngine]):
                 return False
             self.heard.mark = None  # the last one played, which the device tells
             outcome = heard.filled(answer)
-        self._leave()
+        self.leave_states()
         self._drive(Resume(outcome))
         self._catch_up()
         return True
@@ -260,10 +240,6 @@ class VoiceInterpreter(Bounds[AnyEngine]):
         if self._late is not None and self.deadline is not None and now >= self.deadline:
             self.replied(now, self._late)
         return []
-
-    def stop(self) -> None:
-        """The application is taken out of the robot."""
-        self._quit("unloaded")
 
     # What the machine asks for --------------------------------------------------------
 
@@ -276,8 +252,8 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             commands: the Commands.
             open_to_answers: those during which the question behind them may be answered.
         """
-        self._run = next(self._runs)
-        self._state += 1
+        self._run = next(self.runs)
+        self._state = next(self.states)
         cause, self._cause = self._cause, None
         content = self._machine.content
         self._marked, content.mark = content.mark, None
@@ -300,8 +276,8 @@ class VoiceInterpreter(Bounds[AnyEngine]):
 
     def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
         """U5: what is asked for from now on belongs to a unit, which is a state of its own."""
-        self._unit, self._unit_node = next(self._units), node
-        self._state += 1
+        self._unit, self._unit_node = next(self.units), node
+        self._state = next(self.states)
         cause, self._cause = self._cause, None
         place, devices, types = source(node), reach.devices, reach.types
         self.actions.append(
@@ -325,15 +301,9 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             self.expect_nothing()
             raise UnitOver("error.unit.timeout", message, source(self._unit_node))
 
-    def send(self, service: str, data: Data, node: Node) -> int:
-        """Send something to a service, or to a URI; gives its serial."""
-        serial = next(self._sends)
-        self.actions.append(Send(service, data, serial, source(node)))
-        return serial
-
     def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
         """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
-        late.serial = self.send(uri, data, node)
+        late.serial = self.send(uri, data, source(node))
         self.expect(late, timeout)
 
     def expect(self, late: Answer, timeout: int | None) -> None:
@@ -395,29 +365,21 @@ class VoiceInterpreter(Bounds[AnyEngine]):
             else:
                 self._flow.send(resume)
         except StopIteration:
-            self._quit("exit")
+            self.quit("exit")
         except GoOut as out:
             if out.failed:
                 self.actions.append(Say("error", out.reason, out.source))
-            self._quit(out.reason, out.failed, out.source)
+            self.quit(out.reason, out.failed, out.source)
         except Thrown as thrown:  # when nothing is left that could handle it
-            self.actions.append(Say("error", f"{thrown.name}: {thrown.message}", thrown.source))
-            self._quit(f"{thrown.name}: {thrown.message}", True, thrown.source)
+            self.quit_unhandled(thrown)
         except RecursionError:
-            self._quit("error.semantic: its elements are nested too deep", failed=True)
+            self.quit("error.semantic: its elements are nested too deep", failed=True)
 
-    def _leave(self) -> None:
+    def leave_states(self) -> None:
         """O3: what is asked for and waited for is given up."""
         if self._left != self._state:
             self._left = self._state
             self.actions.append(LeaveState(self._state))
-
-    def _quit(self, reason: str, failed: bool = False, place: str = "") -> None:
-        if self.over:
-            return
-        self.over = True
-        self._leave()
-        self.actions.append(Quit(reason, failed, place))
 
 
 def _hangs_up(event: Event) -> bool:

@@ -7,14 +7,15 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoOut, Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
-from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, Thrown, thrown_outside
+from prima.voicexml.questions import open_to_answers
+from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, thrown_outside
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -78,7 +79,7 @@ class Calls:
         if call.heard is None:
             outcome = yield from self._connected(context, call, aai)
         if outcome.startswith("error."):
-            raise Thrown(outcome, f"{source(item)}: {call.to}", source(item))
+            raise Thrown.at(item, outcome, call.to)
         gives_away = call.kind == "blind" or (call.kind == "consultation" and outcome == ANSWERED)
         if gives_away and call.heard is None:
             raise HungUp("connection.disconnect.transfer", "", source(item))
@@ -101,15 +102,15 @@ class Calls:
         queue = self.owner.unqueue()
         if not queue:
             return
-        open_to_answers: list[Command] = []
+        opened: list[Command] = []
         last = take_last_said(queue) if call.listens else None
         if last is not None:
             question = self._question(context, call, "1ms", last)
             question.args["bargein"] = bool(last.hook)
-            open_to_answers = self.owner.open_to_answers(queue, question)
+            opened = open_to_answers(queue, question)
             queue.append(question)
         self.app.heard = None
-        resume = yield from self.app.wait(queue, open_to_answers)
+        resume = yield from self.app.wait(queue, opened)
         self._note(call, resume)
 
     def _question(
@@ -163,7 +164,7 @@ class Calls:
     def _over(self, call: Call, outcome: str) -> None:
         """Tell that the call is over: this side has ended it."""
         data: Data = {"transfer": "over", "call": call.serial, "outcome": outcome}
-        self.app.send(call.to, data, call.item)
+        self.app.send(call.to, data, source(call.item))
 
     def _audio(self, context: Context, call: Call) -> Command | None:
         """What the caller hears until somebody answers."""
@@ -205,12 +206,12 @@ def check_destination(uri: str, item: Node) -> None:
         Thrown: ``error.unsupported.uri`` for a scheme that is none of a telephone's,
             ``error.connection.baddestination`` for what is none of its scheme.
     """
-    place, scheme = source(item), uri.partition(":")[0].lower()
+    scheme = uri.partition(":")[0].lower()
     known = scheme in ("tel", "sip", "sips")
     if ":" in uri and not known:
-        message = f'{place}: "{uri}" is called by nobody; write "tel:", "sip:" or "sips:"'
-        raise Thrown("error.unsupported.uri", message, place)
+        message = f'"{uri}" is called by nobody; write "tel:", "sip:" or "sips:"'
+        raise Thrown.at(item, "error.unsupported.uri", message)
     form = TELEPHONE if scheme == "tel" else ADDRESS
     if not known or form.fullmatch(scheme + uri[len(scheme) :]) is None:
-        message = f'{place}: "{uri}" is no number to call; write it as "tel:+1-555-1234"'
-        raise Thrown("error.connection.baddestination", message, place)
+        message = f'"{uri}" is no number to call; write it as "tel:+1-555-1234"'
+        raise Thrown.at(item, "error.connection.baddestination", message)

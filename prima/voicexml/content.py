@@ -6,24 +6,15 @@ import json
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.places import source
+from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, undeclared
 from prima.markup.tree import Node
 from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.fetching import Request, decoded
 from prima.voicexml.prompts import Speaker, Speech
-from prima.voicexml.state import (
-    SCOPES,
-    Context,
-    Flow,
-    GoBack,
-    GoDialog,
-    GoItem,
-    HungUp,
-    Thrown,
-)
+from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 if TYPE_CHECKING:
@@ -162,8 +153,7 @@ class Content(Speaker):
                 (one for one in reversed(scopes.values()) if self.engine.has(one, name)), None
             )
             if scope is None:
-                message = f'{source(node)}: the variable "{name}" is not declared'
-                raise Thrown("error.semantic", message, source(node))
+                raise undeclared(node, name)
             try:
                 self.engine.unset(scope, name)
             except ScriptError as error:  # the session's
@@ -176,12 +166,8 @@ class Content(Speaker):
         """Reset a form item: its variable, prompt counter and event counters."""
         if item.get("name"):
             self.engine.unset(context.dialog, item.get("name"))
-        context.prompts.pop(item.index, None)
-        if item.tag == "menu":
-            return  # menu-level counters are not reset (5.2.2)
-        context.counters = {
-            key: count for key, count in context.counters.items() if key[0] != item.index
-        }
+        # Counters of events at a menu are not reset (5.2.2).
+        context.counters = context.counters.without(item.index, events=item.tag != "menu")
 
     def named(self, node: Node, context: Context, local: Scope) -> dict[str, Json]:
         """The variables of a namelist as plain data."""
@@ -220,9 +206,8 @@ class Content(Speaker):
         item = self.word(node, "nextitem", context, local)
         if item:
             if all(one.get("name") != item for one in self.owner.items(context)):
-                message = f'{source(node)}: there is no form item "{item}"'
                 context.item = None  # it is handled in the dialog's scope
-                raise Thrown("error.badfetch", message, source(node))
+                raise no_item(node, item)
             raise GoItem(item)
         yield from self.owner.go(context, self.word(node, "next", context, local), node)
 
@@ -238,16 +223,14 @@ class Content(Speaker):
             yield from self.owner.go(context, uri, node, request)
             return
         if context.page.dialog(dialog) is None:
-            message = f'{source(node)}: there is no dialog "{dialog}"'
-            raise Thrown("error.badfetch", message, source(node))
+            raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')
         self.owner.send(service, values, node)
         raise GoDialog(None, dialog)
 
     def give_back(self, node: Node, context: Context, local: Scope) -> None:
         """Come back from a subdialog (5.3.10)."""
         if not context.depth:
-            message = f"{source(node)}: there is no subdialog to return from"
-            raise Thrown("error.semantic", message, source(node))
+            raise Thrown.at(node, "error.semantic", "there is no subdialog to return from")
         values = self.engine.scope()
         for name in node.get("namelist").split():
             try:

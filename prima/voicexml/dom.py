@@ -6,9 +6,9 @@ from typing import Any
 from xml.parsers import expat
 
 from prima.errors import DocumentError
+from prima.interpreter.transfers import Thrown
 from prima.markup.reader import parse
 from prima.messages import Json
-from prima.voicexml.state import Thrown
 
 XMLNS = "http://www.w3.org/2000/xmlns/"
 ELEMENT, ATTRIBUTE, TEXT, CDATA, INSTRUCTION, COMMENT = 1, 2, 3, 4, 7, 8

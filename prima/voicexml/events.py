@@ -5,20 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from prima.interpreter.frame import GoOut
-from prima.interpreter.selection import takes
+from prima.interpreter.selection import Candidate, select_handler, takes, taking
+from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
-from prima.script.evaluation import EngineLost, Scope, ScriptError
-from prima.voicexml.state import (
-    MAX_DEPTH,
-    Context,
-    Flow,
-    GoBack,
-    GoItem,
-    HungUp,
-    Thrown,
-    Unasked,
-)
+from prima.script.evaluation import Scope, ScriptError
+from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -69,16 +60,12 @@ class Events:
 
     def find(self, context: Context, thrown: Thrown) -> Node | None:
         """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
-        local = self._scope(thrown)
-        fitting: list[tuple[int, Node]] = []
-        for handler in _handlers(context):
-            least = handler_number(handler)
-            if least <= self._seen(context, handler, thrown) and self.owner.content.holds(
-                handler, context, local
-            ):
-                fitting.append((least, handler))
-        highest = max((least for least, _ in fitting), default=0)
-        return next((handler for least, handler in fitting if least == highest), None)
+        local, where = self._scope(thrown), _place(context)
+        return select_handler(
+            _takers(context, thrown),
+            lambda name: context.counters.seen(where, name),
+            lambda one: self.owner.content.holds(one, context, local),
+        )
 
     def takes(self, context: Context, thrown: Thrown) -> bool:
         """Whether a handler is there for an event that has not been counted; it is not then."""
@@ -93,7 +80,7 @@ class Events:
         Raises:
             Thrown: for a condition that fails.
         """
-        held = dict(context.counters)
+        held = context.counters
         self._count(context, thrown)
         try:
             return self.find(context, thrown)
@@ -103,27 +90,15 @@ class Events:
     def unhandled(self, context: Context, thrown: Thrown) -> Flow:
         """Say what is queued, and end the application with an event that nothing takes."""
         yield from self.owner.finish(context)
-        place, message = thrown.source, thrown.message
-        if place and not message.startswith(place):
-            message = f"{place}: {message}" if message else place
-        raise GoOut(f"{thrown.name}: {message}", True, place)
+        raise GoOut(thrown.reason, True, thrown.source)
 
     def _count(self, context: Context, thrown: Thrown) -> None:
         """Count an event where it was thrown, under its name and all prefixes (5.2.2).
 
         Only those that a handler names make a difference.
         """
-        where = _place(context)
-        named = {name for handler in _handlers(context) for name in handler_names(handler)}
-        for name in named:
-            if _takes(name, thrown):
-                context.counters[where, name] = context.counters.get((where, name), 0) + 1
-
-    def _seen(self, context: Context, handler: Node, thrown: Thrown) -> int:
-        """How often a handler's event has been counted; 0 where it does not take this one."""
-        where, names = _place(context), handler_names(handler)
-        counts = [context.counters.get((where, one), 0) for one in names if _takes(one, thrown)]
-        return max(counts, default=0)
+        names = {name for one in _takers(context, thrown) for name in one.names}
+        context.counters = context.counters.came(_place(context), names)
 
     def _scope(self, thrown: Thrown) -> Scope:
         """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
@@ -187,9 +162,12 @@ def handler_names(handler: Node) -> list[str]:
     return [name.rstrip(".") for name in handler.get("event").split()] or [""]
 
 
-def _takes(name: str, thrown: Thrown) -> bool:
-    """Whether a handler of a name takes an event; the empty name takes VoiceXML's own alone."""
-    return takes(name, thrown.name) and bool(name or not thrown.shared)
+def _takers(context: Context, thrown: Thrown) -> list[Candidate[Node]]:
+    """The handlers in scope that take an event; that of all takes VoiceXML's own events alone."""
+    known = (
+        Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in _handlers(context)
+    )
+    return taking(known, thrown.name, by_name=thrown.shared)
 
 
 def _place(context: Context) -> int:
@@ -201,14 +179,3 @@ def handler_number(handler: Node) -> int:
     """From which time on a handler takes its events, or a prompt is said; 1 where it is none."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1
-
-
-def thrown_of(error: Thrown | ScriptError) -> Thrown:
-    """An error of the engine itself is an event as well.
-
-    Raises:
-        GoOut: the engine is lost.
-    """
-    if isinstance(error, EngineLost):
-        raise GoOut(f"error.semantic: {error}", True)
-    return error if isinstance(error, Thrown) else Thrown("error.semantic", str(error))

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.errors import DocumentError
-from prima.interpreter.content import source
+from prima.interpreter.places import source
+from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Fetched, Json
 from prima.voicexml.document import FetchError, Page, broken, of_web, read_page
-from prima.voicexml.state import Flow, Resume, Thrown
+from prima.voicexml.state import Flow, Resume
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -67,13 +68,13 @@ def load_page(
         except DocumentError as failure:
             error = failure
         if error is not None or page is None:
-            message = f"{source(node)}: {error.problems[0] if error else uri}"
-            raise Thrown("error.badfetch", message, source(node))
+            message = str(error.problems[0]) if error else uri
+            raise Thrown.at(node, "error.badfetch", message)
         if not asks:
             owner.pages[uri] = page
     if node.tag == "vxml" and page.application:
-        message = f"{source(node)}: {uri} names an application root itself"
-        raise Thrown("error.semantic", message, source(node))
+        message = f"{uri} names an application root itself"
+        raise Thrown.at(node, "error.semantic", message)
     return page
 
 
@@ -101,8 +102,7 @@ def fetch(
     if answer.problem:
         name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
         missing = "the folder has no such file; " if asked != whole else ""
-        message = f"{source(node)}: {asked}: {missing}{answer.problem}"
-        raise Thrown(name, message, source(node))
+        raise Thrown.at(node, name, f"{asked}: {missing}{answer.problem}")
     if answer.host:
         owner.hosted.add(whole)
     else:
@@ -140,8 +140,7 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
         Thrown: ``error.badfetch``.
     """
     if of_web(node.source.file) and not of_web(where):
-        message = f"{source(node)}: {uri}: {HOSTS_ONLY}"
-        raise Thrown("error.badfetch", message, source(node))
+        raise Thrown.at(node, "error.badfetch", f"{uri}: {HOSTS_ONLY}")
 
 
 def _setting(owner: Machine, node: Node, name: str) -> str:
@@ -155,7 +154,7 @@ def _file(owner: Machine, uri: str, node: Node) -> bytes:
     try:
         return owner.document.fetch(uri)
     except FetchError as error:
-        raise Thrown(error.event, f"{source(node)}: {uri}: {error}", source(node)) from None
+        raise Thrown.at(node, error.event, f"{uri}: {error}") from None
 
 
 # Grammars -----------------------------------------------------------------------------------

@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from prima.grammar.builtin import TYPES
-from prima.interpreter.content import source
+from prima.interpreter.places import source
+from prima.interpreter.transfers import Thrown
+from prima.interpreter.vocabulary import USUAL_CONFIDENCE
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
-from prima.voicexml.state import Context, Heard, Thrown
+from prima.voicexml.state import Context, Heard
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -24,7 +26,6 @@ UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
-USUAL_CONFIDENCE = 0.5
 
 
 @dataclass(slots=True)
@@ -61,8 +62,7 @@ class Inputs:
         self._active = list(self.active(context))
         item = context.item
         if not self._active and item is not None and item.tag not in DEAF:
-            message = f"{source(item)}: no grammar listens here"
-            raise Thrown("error.semantic", message, source(item))
+            raise Thrown.at(item, "error.semantic", "no grammar listens here")
 
     def hear(self, context: Context, said: Sequence[Hypothesis]) -> Heard | None:
         """What the most specific grammars take of what was said, or None (3.1.4).

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from prima.interpreter.content import source
+from prima.interpreter.places import source
+from prima.interpreter.selection import satisfied
+from prima.interpreter.transfers import GoBack, Thrown, check_depth
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.arranging import parts_of
@@ -14,16 +16,7 @@ from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request
 from prima.voicexml.recorder import Recordings
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import (
-    MAX_DEPTH,
-    Context,
-    Flow,
-    GoBack,
-    GoDialog,
-    Heard,
-    Params,
-    Thrown,
-)
+from prima.voicexml.state import Context, Flow, GoDialog, Heard, Params
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -142,17 +135,14 @@ class Items:
         names = node.get("namelist").split()
         if names:
             items = [item for item in items if item.get("name") in names]
-        if not any(item in filled for item in items):
-            return False
-        return node.get("mode") == "any" or all(self.owner.guarded(context, item) for item in items)
+        mode = node.get("mode")
+        return satisfied(mode, items, filled, lambda item: self.owner.guarded(context, item))
 
     # Items with results of their own --------------------------------------------------
 
     def call(self, context: Context, item: Node) -> Flow:
         """A subdialog, in a context of its own (2.3.4)."""
-        if context.depth >= MAX_DEPTH:
-            message = f"{source(item)}: more than {MAX_DEPTH} subdialogs inside each other"
-            raise Thrown("error.semantic", message, source(item))
+        check_depth(context.depth, item)
         params = self._params(context, item)
         uri = self.owner.content.word(item, "src", context, self.owner.local())
         names = item.get("namelist").split()

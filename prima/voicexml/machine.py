@@ -6,32 +6,29 @@ from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.bounds import Visit
-from prima.interpreter.content import source
-from prima.interpreter.frame import GoOut
-from prima.language.values import milliseconds
+from prima.interpreter.places import source
+from prima.interpreter.selection import Counters, select_item, select_prompts
+from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Data, Json
-from prima.messages import Heard as Spoken
+from prima.messages import Command, Json
 from prima.script.evaluation import Scope, ScriptError
-from prima.voicexml.arranging import Arranged, Queued, holds, is_unit, parts_of, take_last_said
+from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
 from prima.voicexml.content import ITEMS, Content
 from prima.voicexml.document import Page
-from prima.voicexml.events import Events, thrown_of
-from prima.voicexml.fetching import Request, fetch, gathered
+from prima.voicexml.events import Events, handler_number
+from prima.voicexml.fetching import Request, fetch
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
 from prima.voicexml.prompts import Speech
+from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
 from prima.voicexml.state import (
     Context,
     Flow,
-    GoBack,
     GoDialog,
-    GoItem,
     Heard,
     Params,
     Resume,
-    Thrown,
     Unasked,
     thrown_outside,
 )
@@ -70,6 +67,7 @@ class Machine:
         self.inputs = Inputs(self)
         self.documents = Documents(self)
         self.items_of = Items(self)
+        self.questions = Questions(self)
         self.events = Events(self)
         self.units = Units(self)
         self.context: Context | None = None
@@ -103,7 +101,7 @@ class Machine:
 
     def send(self, service: str, values: Json, node: Node) -> None:
         """Send values to a service, without waiting for its answer."""
-        self.owner.send(service, {"params": values}, node)
+        self.owner.send(service, {"params": values}, source(node))
 
     def go(
         self,
@@ -115,10 +113,6 @@ class Machine:
     ) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""
         return self.documents.go(context, uri, node, request, base)
-
-    def find(self, context: Context, thrown: Thrown) -> Node | None:
-        """The handler of an event that has been counted (5.2.4)."""
-        return self.events.find(context, thrown)
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""
@@ -177,8 +171,7 @@ class Machine:
         owner = context.item if context.item is not None else context.form
         choices = owner.all("choice", "option") if owner is not None else []
         if owner is None or not choices or _holds_enumerate(node):
-            message = f"{source(node)}: there are no choices here to enumerate"
-            raise Thrown("error.semantic", message, source(node))
+            raise Thrown.at(node, "error.semantic", "there are no choices here to enumerate")
         keys = numbered(owner)
         if not node.content:
             speech.parts.append("; ".join(filter(None, map(words_of, choices))))
@@ -229,9 +222,8 @@ class Machine:
                     yield from self._enter(context, page, submitted)
                 node = page.dialog(dialog)
                 if node is None:
-                    where = source(page.root)
-                    message = f"{where}: the document has no dialog: add a <form> or <menu>"
-                    raise Thrown("error.badfetch", message, where)
+                    message = "the document has no dialog: add a <form> or <menu>"
+                    raise Thrown.at(page.root, "error.badfetch", message)
                 yield from self.dialog(context, node, heard)
                 raise GoOut
             except GoDialog as go:
@@ -270,7 +262,7 @@ class Machine:
         """Initialise, then select, collect, process (appendix C)."""
         self.owner.count_step(form, DIALOG_STEPS)
         context.form, context.item, context.unit = form, None, None
-        context.counters, context.prompts, context.visited = {}, {}, set()
+        context.counters, context.visited = Counters(), set()
         context.quiet = False
         wanted = ""
         try:
@@ -283,7 +275,7 @@ class Machine:
             try:
                 yield from self.items_of.process(context, heard)
             except GoItem as go:
-                wanted = go.name
+                wanted = go.item
             except (Thrown, ScriptError) as error:
                 wanted = yield from self._handled(context, error)
         yield from self.visit_all(context, wanted)
@@ -307,7 +299,7 @@ class Machine:
                 more = yield from self._visit_next(context, wanted)
                 wanted = ""
             except GoItem as go:
-                wanted = go.name
+                wanted = go.item
             except (Thrown, ScriptError) as error:
                 if self.units.left_by(context, error):
                     raise
@@ -334,7 +326,7 @@ class Machine:
         try:
             yield from self.events.handle(context, thrown_of(error))
         except GoItem as go:
-            return go.name
+            return go.item
         return ""
 
     def _initialise(self, context: Context, form: Node) -> Flow:
@@ -351,8 +343,8 @@ class Machine:
             elif node.tag in ITEMS or is_unit(node):
                 self._declare_item(context, node)
         for name in params.names:
-            message = f'{source(form)}: no variable of the form is the parameter "{name}"'
-            raise Unasked("error.semantic", message, source(form))
+            message = f'no variable of the form is the parameter "{name}"'
+            raise Unasked.at(form, "error.semantic", message)
 
     def _declare_item(self, context: Context, item: Node) -> None:
         """Give an item's variable its first value; one without a name is but visited or not."""
@@ -368,14 +360,13 @@ class Machine:
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
         items = self._next_to(context)
-        if wanted:
-            return next((item for item in items if holds(item, wanted)), None)
-        for item in items:
-            if item.tag == "menu":
-                return item
-            if not self.guarded(context, item) and self.content.holds(item, context, self.local()):
-                return item
-        return None
+        return select_item(items, wanted, holds, lambda one: self._is_open(context, one))
+
+    def _is_open(self, context: Context, item: Node) -> bool:
+        """Whether an item's guard is not set and its condition holds; a menu always is."""
+        if item.tag == "menu":
+            return True
+        return not self.guarded(context, item) and self._holds(context, item)
 
     def _next_to(self, context: Context) -> list[Node]:
         """The items that may be visited next: of the unit, or of the dialog with its units."""
@@ -412,28 +403,24 @@ class Machine:
                 yield from self.items_of.call(context, item)
             case "object":
                 name = item.get("classid") or "object"
-                message = f"{source(item)}: {name}"
-                raise Thrown("error.unsupported.objectname", message, source(item))
+                raise Thrown.at(item, "error.unsupported.objectname", name)
             case "transfer":
                 yield from self.items_of.calls.transfer(context, item)
             case _:
-                yield from self._listen(context, item)
+                yield from self.questions.ask(context, item)
 
     # Prompts --------------------------------------------------------------------------
 
     def _prompt(self, context: Context, item: Node) -> Flow:
         """Queue the prompts of an item that its counter has reached (4.1.6)."""
-        count = context.prompts[item.index] = context.prompts.get(item.index, 0) + 1
-        pieces = [
-            (_least(piece), piece)
-            for piece in item.content
-            if _is_spoken(piece) and _least(piece) <= count and self._holds(context, piece)
-        ]
-        highest = max((least for least, _ in pieces), default=0)
+        context.counters = context.counters.asked(item.index)
+        pieces = select_prompts(
+            ((_least(piece), piece) for piece in item.content if _is_spoken(piece)),
+            context.counters.prompts[item.index],
+            lambda piece: self._holds(context, piece),
+        )
         bare: list[Node | str] = []
-        for least, piece in pieces:
-            if least != highest:
-                continue
+        for piece in pieces:
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
@@ -450,11 +437,11 @@ class Machine:
     def play(self, context: Context) -> Flow:
         """Play what is queued and wait until it has been said."""
         del context
-        resume = yield from self._wait(self.queue)
+        resume = yield from self.wait(self.queue)
         if resume.event is not None:
             raise thrown_outside(resume)
 
-    def _wait(
+    def wait(
         self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
@@ -462,97 +449,6 @@ class Machine:
         if self.gone:
             raise GoOut(self.gone)
         return (yield from self.owner.wait(commands, open_to_answers))
-
-    def _listen(self, context: Context, item: Node) -> Flow:
-        """Play what is queued, then wait for the user (C4)."""
-        # A grammar that cannot be used is told before anything is said.
-        yield from gathered(self, lambda: self.inputs.activate(context))
-        if item.tag == "record":
-            self.items_of.recorder.check(item)
-        asked = take_last_said(self.queue)
-        question = self._question(context, item, asked)
-        if item.tag == "record":
-            self.items_of.recorder.prepare(item, question)
-        self.owner.heard = None
-        open_to_answers = [] if item.tag == "record" else self.open_to_answers(self.queue, question)
-        resume = yield from self._wait([*self.queue, question], open_to_answers)
-        yield from self._answered(context, item, resume)
-
-    @staticmethod
-    def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
-        """Of what is queued before a question that during which it may be answered (4.1.5).
-
-        Those are the last prompts: an answer ends the wait, and what may not be broken in on is
-        to be said before. They get the cues that an answer needs.
-        """
-        found: list[Command] = []
-        longest = tuple(cue for cue in question.cues if cue.kind == "longest")
-        for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
-            command = queue[index]
-            if isinstance(command, Arranged) or not command.hook:
-                break
-            marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
-            earlier = (Cue(0, "earlier"),) if marked else ()
-            command.cues = (*longest, *earlier, *command.cues)
-            found.append(command)
-        return found
-
-    def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
-        """The question that an item's last prompt is (4.1.5, 4.1.7)."""
-        prompt, self.asking = self.asking, None
-        timeout = prompt.get("timeout") if prompt is not None else ""
-        bargein = prompt.get("bargein") if prompt is not None else ""
-        args: dict[str, Json] = {
-            "timeout": f"{milliseconds(timeout or self.setting(context, 'timeout'), 5000)}ms",
-            "bargein": (bargein or self.setting(context, "bargein")) != "false",
-        }
-        own = item.get("xml:lang") if item.tag != "menu" else ""
-        lang = asked.lang if asked and asked.lang else own or context.page.lang
-        text = asked.text if asked else None
-        kind = prompt.get("bargeintype") if prompt is not None else ""
-        hotword = args["bargein"] and (kind or self.setting(context, "bargeintype")) == "hotword"
-        cues = self.content.question_cues(asked, self.queue, hotword)
-        longest = milliseconds(self.setting(context, "maxspeechtimeout"), 0)
-        spoken = item.tag != "record" and "voice" in self.inputs.modes(context)
-        if longest and spoken:  # a recording has its own maxtime
-            cues = (Cue(0, "longest", longest), *cues)
-        return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
-
-    def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
-        """Process what has ended the wait."""
-        if resume.event is not None:
-            if item.tag == "record":
-                self.items_of.recorder.broken_off(context, item, resume.event)
-            raise thrown_outside(resume)
-        outcome = str(resume.data.get("outcome", "noinput"))
-        heard = self.owner.heard
-        if outcome == "filled" and heard is not None:
-            heard.take_mark(resume.data)
-            if heard.owner is item and item.tag == "record":
-                yield from self.items_of.recorder.take(context, item, heard, resume.data)
-            else:
-                yield from self.items_of.process(context, heard)
-            return
-        if outcome == "nomatch":
-            self._not_taken(context, item, resume.data)
-        raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
-
-    def _not_taken(self, context: Context, item: Node, data: Data) -> None:
-        """Set ``application.lastresult$`` for what no grammar takes (5.1.5).
-
-        Raises:
-            Thrown: ``noinput``, if nobody listens to such input (6.3.6).
-        """
-        (text, sure), *others = Spoken(str(data.get("utterance", "")), data).hypotheses
-        noted = self.inputs.noted(context, text)
-        if noted is None:
-            raise Thrown("noinput", "", source(item))
-        said, mode = noted
-        further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
-        most = self.inputs.most_results(context)
-        heard = Heard(said, said, item, context.page, sure, mode, further[: most - 1])
-        heard.take_mark(data)
-        self.items_of.remember(context, heard)
 
 
 def _is_spoken(piece: Node | str) -> bool:
@@ -565,5 +461,4 @@ def _holds_enumerate(node: Node) -> bool:
 
 def _least(piece: Node | str) -> int:
     """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
-    count = "1" if isinstance(piece, str) else piece.get("count", "1")
-    return int(count) if count.isdecimal() else 1
+    return 1 if isinstance(piece, str) else handler_number(piece)

@@ -18,12 +18,12 @@ from prima.grammar import (
     load,
 )
 from prima.grammar.text import fold
-from prima.interpreter.content import source
+from prima.interpreter.places import source
+from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
-from prima.voicexml.state import Thrown
 
 KEYS = frozenset("0123456789*# ")
 """What may be typed on a telephone's keys: such an utterance is tried as DTMF first."""

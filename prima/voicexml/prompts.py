@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
-from prima.interpreter.content import MAX_REPEATS, MAX_TEXT, short, source
-from prima.interpreter.frame import GoOut
+from prima.interpreter.content import MAX_REPEATS, MAX_TEXT
+from prima.interpreter.places import short, source
+from prima.interpreter.transfers import Thrown, failure
 from prima.language.commands import TABLE_4_2
 from prima.language.values import shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
-from prima.script.evaluation import EngineLost, Scope, ScriptError, statement_place
+from prima.script.evaluation import Scope, ScriptError, statement_place
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
 from prima.voicexml.cues import (
     MAX_CUES,
@@ -27,7 +28,7 @@ from prima.voicexml.cues import (
 )
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
-from prima.voicexml.state import Context, Thrown
+from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 if TYPE_CHECKING:
@@ -130,12 +131,8 @@ class Speaker:
             and self.engine.lenient(node.get(attribute)) != node.get(attribute)
         ):
             line, column = statement_place(error)
-        where = short(node.code_place(attribute, line, column))
         code = node.get(attribute) if attribute else node.tag
-        message = f"{where}: {code.strip()[:80]}: {error}"
-        if isinstance(error, EngineLost):
-            raise GoOut(f"error.semantic: {message}", True, where)
-        return Thrown("error.semantic", message, where)
+        return failure(error, code, short(node.code_place(attribute, line, column)))
 
     def code(self, node: Node, attribute: str) -> str:
         """An attribute's expression; several statements, as other platforms take them, give one."""
@@ -202,8 +199,8 @@ class Speaker:
         """Refuse to declare a variable by a name that says its scope."""
         name = node.get(attribute)
         if "." in name:
-            message = f'{source(node)}: "{name}" names a scope; declare it there'
-            raise Thrown("error.semantic", message, source(node))
+            message = f'"{name}" names a scope; declare it there'
+            raise Thrown.at(node, "error.semantic", message)
 
     # Prompts ------------------------------------------------------------------------
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.interpreter.content import source
+from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
-from prima.voicexml.state import Context, Flow, Heard, Thrown
+from prima.voicexml.state import Context, Flow, Heard
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -48,8 +48,7 @@ class Recordings:
         """
         name = item.get("type").partition(";")[0].strip().lower()
         if name and name not in FORMATS:
-            message = f'{source(item)}: nothing is recorded as "{name}"'
-            raise Thrown("error.unsupported.format", message, source(item))
+            raise Thrown.at(item, "error.unsupported.format", f'nothing is recorded as "{name}"')
 
     def prepare(self, item: Node, question: Command) -> None:
         """Make a question ask for a recording: a beep at its end, and its bounds as cues."""

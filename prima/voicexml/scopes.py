@@ -6,13 +6,13 @@ from collections.abc import Generator
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
-from prima.interpreter.content import source
+from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
 from prima.markup.uris import legal
 from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import Request, load_page
-from prima.voicexml.state import Context, Flow, GoDialog, Resume, Thrown
+from prima.voicexml.state import Context, Flow, GoDialog, Resume
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -148,7 +148,7 @@ class Documents:
             Thrown: ``error.badfetch``.
         """
         if not uri:
-            raise Thrown("error.badfetch", f"{source(node)}: there is no URI", source(node))
+            raise Thrown.at(node, "error.badfetch", "there is no URI")
         target, fragment = urldefrag(legal(uri))
         page = None
         if target or request is not None:
@@ -160,6 +160,5 @@ class Documents:
                 page = yield from load_page(self.owner, whole, node, request)
         if (page or context.page).dialog(fragment) is None:
             where = f" in {page.uri}" if page else ""
-            message = f'{source(node)}: there is no dialog "{fragment}"{where}'
-            raise Thrown("error.badfetch", message, source(node))
+            raise Thrown.at(node, "error.badfetch", f'there is no dialog "{fragment}"{where}')
         return page, fragment

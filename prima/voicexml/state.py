@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
+from prima.interpreter.selection import Counters
+from prima.interpreter.transfers import Thrown, Transfer
 from prima.markup.tree import Node
 from prima.messages import Data, Event, Json
 from prima.script.evaluation import Scope
@@ -12,8 +14,6 @@ from prima.voicexml.document import Page
 
 SCOPES = ("session", "application", "document", "dialog", "anonymous")
 """Outermost first (5.1.2)."""
-MAX_DEPTH = 32
-"""Subdialogs inside each other, and events thrown while one is handled."""
 
 
 @dataclass(slots=True)
@@ -79,8 +79,8 @@ class Context:
     unit: Node | None = None
     """The ``p:iu`` around form items in which the dialog is (rule U5)."""
     item: Node | None = None
-    counters: dict[tuple[int, str], int] = field(default_factory=dict)
-    prompts: dict[int, int] = field(default_factory=dict)
+    counters: Counters = field(default_factory=Counters)
+    """Of events and prompts, by the index of an item; -1 for the dialog."""
     visited: set[int] = field(default_factory=set)
     """Items without a name that have been visited: their guards are set."""
     params: Params | None = None
@@ -91,22 +91,6 @@ class Context:
     def scopes(self, local: Scope) -> tuple[Scope, ...]:
         """All scopes of content, outermost first."""
         return (self.session, self.application, self.document, self.dialog, local)
-
-
-class Thrown(Exception):
-    """An event (5.2.1)."""
-
-    shared = False
-    """Whether it is of the robot or its surroundings, for every application: only handlers that
-    name it take it, as VoiceXML knows no such events (5.2)."""
-    outside = False
-    """Whether it has come from outside while the application waited for something else."""
-
-    def __init__(self, name: str, message: str = "", source: str = "") -> None:
-        super().__init__(name)
-        self.name = name
-        self.message = message
-        self.source = source
 
 
 class UnitOver(Thrown):
@@ -146,11 +130,7 @@ class Unasked(Thrown):
     """A parameter for which a subdialog has no variable: what it does not handle is its caller's."""
 
 
-class Leave(Exception):
-    """Control leaves what runs."""
-
-
-class GoDialog(Leave):
+class GoDialog(Transfer):
     """A goto or submit, or an utterance that another dialog's grammar has taken."""
 
     def __init__(
@@ -162,22 +142,3 @@ class GoDialog(Leave):
         self.page = page
         self.dialog = dialog
         self.heard = heard
-
-
-class GoItem(Leave):
-    """A goto nextitem."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(name)
-        self.name = name
-
-
-class GoBack(Leave):
-    """A return: values, or an event."""
-
-    def __init__(self, values: Scope | None, event: str = "", message: str = "") -> None:
-        super().__init__(event)
-        self.values = values
-        """The object that the subdialog's variable gets."""
-        self.event = event
-        self.message = message

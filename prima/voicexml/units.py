@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.interpreter.frame import GoOut
+from prima.interpreter.transfers import GoOut, Thrown, Transfer
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.script.evaluation import ScriptError
@@ -19,7 +19,7 @@ from prima.voicexml.content import ITEMS
 from prima.voicexml.document import Page
 from prima.voicexml.events import HANDLERS
 from prima.voicexml.sketch import Sketch
-from prima.voicexml.state import Context, Flow, HungUp, Leave, Thrown, UnitOver
+from prima.voicexml.state import Context, Flow, HungUp, UnitOver
 
 if TYPE_CHECKING:
     from prima.voicexml.machine import Machine
@@ -50,7 +50,7 @@ class Units:
         try:
             yield from self.owner.visit_all(context, wanted)
             items.mark(context, unit)  # a clear in it makes its items be visited again, not itself
-        except (Leave, GoOut) as way:
+        except Transfer as way:
             if not (isinstance(way, GoOut) and way.failed):
                 yield from self._say_rest(context)
             raise

@@ -47,8 +47,8 @@ from prima.interpreter.elements import (
     all_items,
     pauses_in,
 )
-from prima.interpreter.events import takes
 from prima.interpreter.rounds import leads_round, raised_in
+from prima.interpreter.selection import takes
 from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
 

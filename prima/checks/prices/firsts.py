@@ -27,8 +27,8 @@ from prima.interpreter.elements import (
     all_items,
     run_commands,
 )
-from prima.interpreter.events import takes
 from prima.interpreter.rounds import raised_in
+from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 
 

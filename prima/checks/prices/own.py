@@ -18,8 +18,8 @@ from prima.interpreter.elements import (
     Watch,
     all_acts,
 )
-from prima.interpreter.events import takes
 from prima.interpreter.rounds import leads_round, raised_in
+from prima.interpreter.selection import takes
 from prima.interpreter.sensors import sensors_of
 
 MOVED = ("human", "moving", "position")

@@ -17,7 +17,8 @@ from prima.interpreter.elements import (
     run_commands,
 )
 from prima.interpreter.elements import Unit as ItemUnit
-from prima.interpreter.events import handlers_of, takes
+from prima.interpreter.events import handlers_of
+from prima.interpreter.selection import takes
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import value_span

@@ -1,0 +1,117 @@
+"""Questions: what an item plays, waits for, and makes of the end of the wait (VoiceXML 2.0, 4.1)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from prima.interpreter.places import source
+from prima.interpreter.transfers import Thrown
+from prima.language.values import milliseconds
+from prima.markup.tree import Node
+from prima.messages import Command, Cue, Data, Json
+from prima.messages import Heard as Spoken
+from prima.voicexml.arranging import Arranged, Queued, take_last_said
+from prima.voicexml.fetching import gathered
+from prima.voicexml.state import Context, Flow, Heard, Resume, thrown_outside
+
+if TYPE_CHECKING:
+    from prima.voicexml.machine import Machine
+
+
+class Questions:
+    """Asks the questions of one application."""
+
+    def __init__(self, owner: Machine) -> None:
+        self.owner = owner
+
+    def ask(self, context: Context, item: Node) -> Flow:
+        """Play what is queued, then wait for the user (C4)."""
+        owner = self.owner
+        # A grammar that cannot be used is told before anything is said.
+        yield from gathered(owner, lambda: owner.inputs.activate(context))
+        if item.tag == "record":
+            owner.items_of.recorder.check(item)
+        asked = take_last_said(owner.queue)
+        question = self._question(context, item, asked)
+        if item.tag == "record":
+            owner.items_of.recorder.prepare(item, question)
+        owner.owner.heard = None
+        opened = [] if item.tag == "record" else open_to_answers(owner.queue, question)
+        resume = yield from owner.wait([*owner.queue, question], opened)
+        yield from self._answered(context, item, resume)
+
+    def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
+        """The question that an item's last prompt is (4.1.5, 4.1.7)."""
+        prompt, self.owner.asking = self.owner.asking, None
+
+        def setting(name: str) -> str:
+            own = prompt.get(name) if prompt is not None else ""
+            return own or self.owner.setting(context, name)
+
+        timeout, bargein = milliseconds(setting("timeout"), 5000), setting("bargein") != "false"
+        hotword = bargein and setting("bargeintype") == "hotword"
+        cues = self.owner.content.question_cues(asked, self.owner.queue, hotword)
+        longest = milliseconds(self.owner.setting(context, "maxspeechtimeout"), 0)
+        spoken = item.tag != "record" and "voice" in self.owner.inputs.modes(context)
+        if longest and spoken:  # a recording has its own maxtime
+            cues = (Cue(0, "longest", longest), *cues)
+        own = item.get("xml:lang") if item.tag != "menu" else ""
+        lang = asked.lang if asked and asked.lang else own or context.page.lang
+        args: dict[str, Json] = {"timeout": f"{timeout}ms", "bargein": bargein}
+        text = asked.text if asked else None
+        return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
+
+    def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
+        """Process what has ended the wait."""
+        if resume.event is not None:
+            if item.tag == "record":
+                self.owner.items_of.recorder.broken_off(context, item, resume.event)
+            raise thrown_outside(resume)
+        outcome = str(resume.data.get("outcome", "noinput"))
+        heard = self.owner.owner.heard
+        if outcome == "filled" and heard is not None:
+            heard.take_mark(resume.data)
+            if heard.owner is item and item.tag == "record":
+                yield from self.owner.items_of.recorder.take(context, item, heard, resume.data)
+            else:
+                yield from self.owner.items_of.process(context, heard)
+            return
+        if outcome == "nomatch":
+            self._not_taken(context, item, resume.data)
+        raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
+
+    def _not_taken(self, context: Context, item: Node, data: Data) -> None:
+        """Set ``application.lastresult$`` for what no grammar takes (5.1.5).
+
+        Raises:
+            Thrown: ``noinput``, if nobody listens to such input (6.3.6).
+        """
+        (text, sure), *others = Spoken(str(data.get("utterance", "")), data).hypotheses
+        noted = self.owner.inputs.noted(context, text)
+        if noted is None:
+            raise Thrown("noinput", "", source(item))
+        said, mode = noted
+        further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
+        most = self.owner.inputs.most_results(context)
+        heard = Heard(said, said, item, context.page, sure, mode, further[: most - 1])
+        heard.take_mark(data)
+        self.owner.items_of.remember(context, heard)
+
+
+def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
+    """Of what is queued before a question that during which it may be answered (4.1.5).
+
+    Those are the last prompts: an answer ends the wait, and what may not be broken in on is
+    to be said before. They get the cues that an answer needs.
+    """
+    found: list[Command] = []
+    longest = tuple(cue for cue in question.cues if cue.kind == "longest")
+    for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
+        command = queue[index]
+        if isinstance(command, Arranged) or not command.hook:
+            break
+        marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
+        earlier = (Cue(0, "earlier"),) if marked else ()
+        command.cues = (*longest, *earlier, *command.cues)
+        found.append(command)
+    return found
