@@ -5,7 +5,9 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from functools import partial
+from importlib import import_module
 from itertools import count
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -35,11 +37,14 @@ from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.policy import Policy, Ranked
 from prima.session import Session
-from tests import test_extensions, test_rules, test_rules_in_documents
 from tests.rebinding import rebind
 
 Patch = Callable[[pytest.MonkeyPatch], None]
-MODULES = (test_rules, test_rules_in_documents, test_extensions)
+MODULES = [
+    import_module(f"tests.scheduler.{path.stem}")
+    for path in sorted(Path(__file__).parent.glob("test_*.py"))
+    if path != Path(__file__)
+]
 
 
 def put(where: ModuleType | type, name: str, what: object) -> Patch:

@@ -1,0 +1,207 @@
+"""Extensions X4 to X6, and all together: the channel connected, motions composed, fewer restrictions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import pytest
+
+from prima.language.commands import TABLE_4_2, Argument, CommandType
+from prima.messages import Command, Step
+from tests.stage import Stage, ask, command, move, say, search
+
+EVENT, LATER = 7, 8
+ALL = "prima+all"
+
+
+def restartable(what: Command) -> Command:
+    return replace(what, restartable=True)
+
+
+def inserted(stage: Stage) -> list[tuple[str, str]]:
+    return [
+        (record["inserted"], record["command"])
+        for record in stage.phases("request")
+        if record.get("inserted")
+    ]
+
+
+def test_x4_the_robot_faces_the_user_before_the_first_word() -> None:
+    stage = Stage("prima+x4")
+    stage.request("fa", ask("What is it?"), cause=EVENT, connect=True)
+    assert stage.select() == ["fa#2"]
+    assert inserted(stage) == [("X4", "face-human")]
+    [asked] = [r for r in stage.phases("request") if r.get("inserted")]
+    assert asked["reactive"] and asked["cause"] == EVENT, "it is the reaction's first AB now"
+    assert stage.floor == ["fa:1"]
+    stage.at(700).end("fa#2")
+    assert stage.select() == ["fa#1"]
+
+
+def test_x4_nothing_is_put_in_where_the_camera_sees_the_user() -> None:
+    stage = Stage("prima+x4")
+    stage.mediator.sees_user(True)
+    stage.request("fa", ask("What is it?"), cause=EVENT, connect=True)
+    assert stage.select() == ["fa#1"]
+
+
+@pytest.mark.parametrize(("policy", "connect"), [("prima", True), ("prima+x4", False)])
+def test_x4_is_off_unless_run_and_document_ask_for_it(policy: str, connect: bool) -> None:
+    stage = Stage(policy)
+    stage.request("fa", ask("What is it?"), cause=EVENT, connect=connect)
+    assert stage.select() == ["fa#1"]
+
+
+def test_x4_a_robot_that_cannot_turn_to_the_user_speaks_without() -> None:
+    table = {name: row for name, row in TABLE_4_2.items() if name != "face-human"}
+    stage = Stage("prima+x4", table=table)
+    stage.request("fa", ask("What is it?"), connect=True)
+    assert stage.select() == ["fa#1"]
+
+
+def test_x4_with_x2_the_first_word_waits_for_the_turn_and_the_story_for_both() -> None:
+    stage = Stage("prima+x2+x4")
+    stage.request("ea", restartable(say("A long story.")))
+    stage.select()
+    stage.request("fa", ask("Yes?"), cause=EVENT, connect=True)
+    assert stage.select() == ["fa#2"]
+    assert stage.running == {"fa#2"}
+
+
+def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> None:
+    stage = Stage("prima+x4")
+    stage.request("fa", command("turn", angle=5))
+    stage.select()
+    branches = [Step(move()), Step(command("turn", angle=10))]
+    stage.request("fa", steps=branches, cause=EVENT, connect=True)
+    assert stage.select() == []
+    # The second branch has the higher priority, so that the robot turns for it first.
+    assert [r["before"] for r in stage.phases("request") if r.get("inserted")] == ["fa#3", "fa#2"]
+    stage.at(500).end("fa#1")
+    assert stage.select() == ["fa#5"]
+    assert stage.rule("fa#5") == "S2f", "the first branch was requested first"
+
+
+DANCE = CommandType(
+    "dance", "Dance", "", frozenset({"locomotion", "neck", "arm"}), motion="faithful"
+)
+
+
+DANCING = {**TABLE_4_2, "dance": DANCE}
+
+
+def dancing(policy: str) -> Stage:
+    stage = Stage(policy, table=DANCING)
+    stage.request("ea", move(), say("Here we are."))
+    stage.select()
+    stage.request("fa", Command("dance"), cause=EVENT)
+    return stage
+
+
+def test_x5_a_dance_goes_on_together_with_a_move() -> None:
+    stage = dancing("prima+x5")
+    assert stage.select() == ["fa#1"]
+    assert stage.running == {"ea#1.1", "fa#1"}
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"]
+    assert stage.rule("ea#1.2") == "X5"
+    stage.at(900).end("fa#1")
+    stage.select()
+    stage.request("fa", command("turn", angle=90), cause=LATER)
+    assert stage.select() == [], "the move has the locomotion for itself again"
+    stage.at(1000).end("ea#1.2", goal=False)
+    assert stage.select() == ["fa#2"]
+
+
+def test_x5_is_off_unless_it_is_asked_for() -> None:
+    stage = dancing("prima")
+    assert stage.select() == []
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1"]
+
+
+def test_x5_what_is_no_move_waits_for_the_dance() -> None:
+    stage = dancing("prima+x5")
+    stage.select()
+    stage.at(500).end("ea#1.1", goal=True)
+    assert stage.select() == [], "the arrival's words belong to a suspended stream"
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["ea#2"]
+
+
+def test_x5_a_dancer_who_talks_with_the_user_is_not_carried_away() -> None:
+    stage = Stage("prima+x5", table=DANCING)
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", command("face-human"), Command("dance"), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    stage.select()
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["fa#2"]
+    assert stage.holds("ea#1.1")[-1] == "K1"
+
+
+def laser_table() -> dict[str, CommandType]:
+    arguments = {
+        "angle": Argument("number", ""),
+        "toward": Argument("id", ""),
+    }
+    laser = CommandType(
+        "point-by-laser", "Laser", "", frozenset({"laser"}), arguments=MappingProxyType(arguments)
+    )
+    table = {**TABLE_4_2, laser.name: laser}
+    table["point-by-hand"] = replace(table["point-by-hand"], substitute=laser.name)
+    return table
+
+
+def test_x6_a_substitute_takes_the_place_of_what_the_robot_lacks() -> None:
+    stage = Stage("prima+x6", table=laser_table())
+    stage.request("ea", command("point-by-hand", toward="panel"))
+    assert stage.select() == ["ea#1"]
+    [record] = stage.phases("start")
+    assert (record["command"], record["devices"]) == ("point-by-laser", ["laser"])
+    [record] = stage.phases("substitute")
+    assert (record["command"], record["by"], record["rule"]) == (
+        "point-by-hand",
+        "point-by-laser",
+        "X6",
+    )
+
+
+def test_x6_without_it_the_application_is_told() -> None:
+    stage = Stage("prima", table=laser_table())
+    stage.request("ea", command("point-by-hand", toward="panel"))
+    assert stage.select() == []
+    assert stage.told("ea") == ["error.unsupported.point-by-hand"]
+
+
+def test_x6_three_applications_are_mediated_by_the_same_rules() -> None:
+    stage = Stage("prima", apps={"fa": "fa", "museum": "ea", "shop": "ea"})
+    stage.request("museum", say("A panel."), say("Another."))
+    stage.select()
+    stage.request("shop", say("A sale!"), cause=EVENT)
+    stage.request("fa", ask("Yes?"), cause=LATER)
+    stage.at(100).end("museum#1")
+    assert stage.select() == ["fa#1"]
+    assert stage.floor == ["fa:1"]
+    stage.at(200).end("fa#1")
+    assert stage.select() == ["shop#1"]
+    stage.at(300).end("shop#1")
+    assert stage.select() == ["museum#2"]
+
+
+def test_all_extensions_together_leave_a_plain_run_as_it_is() -> None:
+    runs = []
+    for policy in ("prima", ALL):
+        stage = Stage(policy)
+        stage.request("ea", say("Welcome."), move(), say("Here."))
+        stage.select()
+        stage.request("fa", ask("Yes?"), search(), cause=EVENT)
+        stage.at(100).end("ea#1")
+        stage.select()
+        stage.at(200).end("fa#1")
+        stage.select()
+        rests_on = {"restartable", "hold", "connect", "motion"}
+        runs.append([{k: v for k, v in r.items() if k not in rests_on} for r in stage.records])
+    assert runs[0] == runs[1]

@@ -1,0 +1,242 @@
+"""When things go wrong (rules E): failures, ends, bad Commands, starvation, emergencies.
+
+Each rule by its number, on the smallest case that shows it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.language.commands import TABLE_4_2
+from prima.messages import Command, Group
+from tests.stage import Stage, ask, chain, command, move, say
+
+EVENT = 7
+
+
+def test_e1_a_failing_device_ends_the_ab_and_the_rest_of_its_tree() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.request("fa", say("Me."))
+    stage.select()
+    stage.at(10).mediator.failed(min(stage.running), "speaker", "broken")
+    stage.settle()
+    assert "error.device.speaker" in stage.told("fa")
+    assert stage.select() == ["ea#1"]
+
+
+def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    due = stage.mediator.deadline()
+    assert due is not None
+    stage.at(due).mediator.expire()
+    stage.settle()
+    assert stage.told("ea") == ["error.device.speaker"]
+    assert stage.running == set()
+
+
+def test_e1_a_robot_without_the_command_says_so() -> None:
+    table = {name: row for name, row in TABLE_4_2.items() if name != "gesture"}
+    stage = Stage(table=table)
+    stage.request("ea", command("gesture", name="nod"))
+    stage.select()
+    assert stage.told("ea") == ["error.unsupported.gesture"]
+
+
+def test_e2_an_unloaded_application_gives_back_what_it_holds() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.mediator.unload("ea", "crash")
+    assert stage.select() == []
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+def test_e6_who_is_kept_from_the_speaker_has_a_turn_at_last() -> None:
+    stage = Stage(patience=5000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."), say("Two."))
+    stage.select()
+    for number in range(1, 20):
+        stage.at(1000 * number)
+        stage.end(f"ea#{number}", then=lambda: stage.request("ea", say("On.")))
+        if (started := stage.select()) != [f"ea#{number + 1}"]:
+            break
+    assert started == ["fa#1"] and stage.recorder.now == 6000
+    assert stage.rule("fa#1") == "E6" and stage.losers("fa#1") == ["ea#7"]
+    assert stage.floor == [], "no reaction, so that nobody is suspended"
+    assert [(r["time"], r["rule"]) for r in stage.phases("starve")] == [(6000, "E6")]
+    stage.at(7000).end("fa#1")
+    assert stage.select() == ["fa#2"], "its stream goes on (S2c)"
+    stage.at(8000).end("fa#2")
+    assert stage.select() == ["ea#7"], "and then the other one"
+
+
+@pytest.mark.parametrize(("patience", "turns"), [(0, []), (5000, ["fa#1"])])
+def test_e6_without_patience_it_waits_for_ever(patience: int, turns: list[str]) -> None:
+    stage = Stage(patience=patience)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    found: list[str] = []
+    for number in range(1, 9):
+        stage.at(1000 * number)
+        if f"ea#{number}" in stage.running:
+            stage.end(f"ea#{number}", then=lambda: stage.request("ea", say("On.")))
+        found += [one for one in stage.select() if one.startswith("fa")]
+    assert found == turns
+
+
+def test_e6_only_the_speaker_counts_and_no_floor() -> None:
+    """A reaction's stream has the floor (F2): who waits for that is not kept from the speaker."""
+    stage = Stage(patience=5000)
+    stage.request("ea", say("Yes?"), say("A"), say("long"), say("story."), cause=EVENT)
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    for number in range(1, 4):
+        stage.at(4000 * number).end(f"ea#{number}")
+        assert stage.select() == [f"ea#{number + 1}"]
+    assert [(r["rule"], r["by"]) for r in stage.phases("starve")] == [("F2", "ea:1")]
+    stage.at(16_000).end("ea#4", then=lambda: stage.request("ea", say("Next.")))
+    assert stage.select() == ["ea#5"]
+
+
+def test_e6_a_reaction_goes_first() -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).request("ea", say("Ouch."), cause=EVENT)
+    stage.end("ea#1")
+    assert stage.select() == ["ea#2"]
+
+
+@pytest.mark.parametrize(
+    ("then", "started"), [(say("Thank you."), ["ea#2"]), (ask("And why?"), ["fa#1"])]
+)
+def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
+    then: Command, started: list[str]
+) -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    stage.settle(lambda: stage.request("ea", then, say("More.")))
+    assert stage.select() == started
+    if started == ["ea#2"]:
+        stage.at(6000).end("ea#2")
+        assert stage.select() == ["fa#1"], "before its next sentence"
+
+
+def test_e6_holds_other_devices_back_as_well() -> None:
+    """Two devices that another application uses in turn are kept for it (S3)."""
+    stage = Stage(patience=1000)
+    stage.request("ea", Group(chain(say("One."), command("move-head", pan=1))))
+    stage.select()
+    stage.at(1).request("fa", Group(chain(say("Me."), command("move-head", pan=2))))
+    stage.select()
+    stage.at(500).end("ea#2")
+    stage.select()
+    stage.at(2000).end("ea#3")
+    assert stage.select() == ["fa#1", "fa#2"]
+
+
+def test_e6_k1_stands_above_it() -> None:
+    """What leaves the user waits for the conversation, however long that takes."""
+    stage = Stage(patience=1000)
+    stage.request("ea", ask(), ask(), ask())
+    stage.select()
+    stage.at(1).request("fa", move())
+    stage.select()
+    for number in range(1, 3):
+        stage.at(4000 * number).end(f"ea#{number}")
+        assert stage.select() == [f"ea#{number + 1}"]
+    assert [r["rule"] for r in stage.phases("starve")] == ["K1"]
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        Command("fly"),
+        Command("turn", {"angle": 1000}),
+        Command("turn", {"speed": 1}),
+        Command("turn"),
+        Command("speak"),
+        Command("speak", text="Hi", extra={"volume": 1}),
+        Command("turn", {"angle": float("nan")}),
+        Command("turn", {"angle": None}),
+    ],
+)
+def test_e3_a_bad_command_never_enters_memory(bad: Command) -> None:
+    stage = Stage()
+    stage.request("ea", say(), bad)
+    assert stage.select() == []
+    assert stage.told("ea") == ["error.semantic"]
+    assert stage.phases("fail")[0]["rule"] == "E3"
+
+
+def test_e4_starving_is_reported_and_can_be_bounded() -> None:
+    def loops(bound: int | None) -> int:
+        stage = Stage(bound=bound)
+        stage.request("fa", Command("tracking-human"))
+        stage.select()
+        stage.at(1).request("ea", command("turn", angle=3))
+        for loop in range(1, 60):
+            stage.at(500 * loop).end(f"fa#1.{loop}", goal=False)
+            if "ea#1" in stage.select():
+                return loop
+        assert [r["rule"] for r in stage.phases("starve")] == ["E4"]
+        return -1
+
+    assert loops(None) == -1
+    assert 0 < loops(30) <= 32
+
+
+def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.select()
+    assert stage.running == set()
+    stage.request("fa", say(), cause=EVENT)
+    assert stage.select() == []
+    stage.at(20).mediator.emergency(False, True, 9)
+    assert stage.select() == ["fa#1"]
+    stage.at(30).end("fa#1")
+    assert stage.select() == ["ea#1"], "what was cut is done again"
+
+
+def test_e5_only_what_returns_is_recorded_as_halted() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."))
+    stage.request("fa", command("move-head", pan=1))
+    stage.select()
+    stage.at(5).leave("ea")
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.select()
+    halted = {r["behavior"]: r["outcome"] for r in stage.phases("cancel")}
+    assert halted == {"ea#1": "running", "fa#1": "halted"}
+    assert [r["serial"] for r in stage.phases("emergency")] == [8]
+    stage.at(20).mediator.emergency(False, True, 9)
+    assert stage.select() == ["fa#1"]
+
+
+def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.at(20).mediator.emergency(False, False, 9)
+    assert stage.select() == []
+    assert stage.told("ea") == ["cancel.speak", "cancel.speak"]

@@ -1,0 +1,228 @@
+"""Floors (rules F): who may start while a reaction has taken the floor, and who speaks.
+
+Each rule by its number, on the smallest case that shows it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.messages import Command, Group, Step
+from tests.stage import Stage, ask, chain, command, move, say, search
+
+EVENT = 7
+
+
+def test_f1_a_reaction_suspends_the_others_whatever_devices_they_need() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == [], "nothing of the EA moves while the FA talks"
+    assert stage.holds("ea#1.1") == ["F2"]
+    assert [(r["tree"], r["by"]) for r in stage.phases("suspend")] == [("ea:1", "fa:1")]
+
+
+def test_f2_a_reaction_to_another_event_may_break_in_and_one_to_the_same_may_not() -> None:
+    stage = Stage()
+    stage.request("fa", say(), cause=1)
+    stage.select()
+    stage.request("ea", command("move-head", pan=1), cause=1)
+    assert stage.select() == []
+    stage.request("ea", command("point-by-hand", angle=1), cause=2)
+    assert "ea#2" in stage.select()
+
+
+def test_f2_a_higher_priority_than_all_of_the_floors_stream_may_start() -> None:
+    stage = Stage()
+    stage.request("fa", search())
+    stage.select()
+    stage.request("ea", say(), move(), cause=1)
+    stage.at(500).end("fa#1.1", goal=False)
+    assert stage.select() == ["ea#1"]
+    stage.at(900).end("ea#1")
+    assert stage.select() == ["fa#1.2"], "the search outranks the move (Figure 5.3, rows 15-16)"
+    assert stage.rule("fa#1.2") == "F2"
+    assert stage.floor == ["ea:1", "fa:1"]
+
+
+def test_f2_a_higher_priority_than_some_of_the_floors_stream_is_not_enough() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(move()), Step(say())], cause=1)
+    assert stage.select() == ["ea#2", "ea#1.1"]
+    stage.at(5).request("fa", command("gesture", name="bow"))
+    assert stage.select() == [], "it outranks the move, not the words"
+    assert stage.holds("fa#1") == ["F2"]
+    stage.at(10).end("ea#2")
+    assert stage.select() == ["fa#1"]
+
+
+def test_f3_the_floor_falls_back_when_its_holder_ends() -> None:
+    stage = Stage()
+    stage.request("fa", ask("1"), ask("2"), cause=1)
+    stage.select()
+    stage.request("ea", say(), cause=2)
+    stage.at(10).end("fa#1")
+    stage.select()
+    assert stage.floor == ["fa:1", "ea:1"]
+    stage.at(20).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    assert stage.floor == ["fa:1"]
+
+
+def test_f3_what_outranks_the_floor_takes_it_only_if_it_needs_its_devices() -> None:
+    for what, floor in ((command("turn", angle=10), "fa:1"), (say(), "ea:1")):
+        stage = Stage()
+        stage.request("ea", move(), cause=EVENT)
+        stage.select()
+        stage.at(5).request("fa", what)
+        stage.at(500).end("ea#1.1", goal=False)
+        stage.select()
+        assert stage.floor[-1] == floor, what
+        assert ("fa#1" in stage.running) and ("ea#1.2" in stage.running) is (floor == "ea:1")
+
+
+def test_f3_a_robot_that_guides_does_not_stop_for_every_sentence() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.select()
+    stage.at(5).request("fa", say("Once upon a time"), say("there was a robot."))
+    assert stage.select() == ["fa#1"]
+    assert stage.phases("suspend") == []
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"]
+
+
+def test_f6_a_topic_is_not_spoken_into() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert stage.holds("fa#1")[-1] == "F6"
+    stage.at(20).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(30).end("ea#3")
+    assert stage.select() == ["fa#1"]
+
+
+def test_f6_a_reaction_may_break_in() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("Ouch."), cause=EVENT)
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["fa#1", "ea#2"] or "fa#1" in stage.running
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        [command("move-head", pan=30), search(), say("forty two.")],  # it works in loops
+        [command("move-head", pan=30)],  # nothing is said behind it
+    ],
+)
+def test_f6_holds_only_between_two_utterances(between: list[Command]) -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), *between)
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert "fa#1" in stage.select()
+
+
+def test_f6_a_stream_that_has_not_spoken_is_no_topic_yet() -> None:
+    stage = Stage()
+    stage.request("ea", command("move-head", pan=30), say("Forty two."))
+    stage.at(1).request("fa", say("I like trains."))
+    assert stage.select() == ["ea#1", "fa#1"]
+
+
+def test_f6_who_holds_the_floor_may_speak_into_a_topic() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("gesture", name="bow"), say("forty two."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    stage.at(12).request("fa", command("face-human"), say("Ouch there."), cause=EVENT)
+    assert stage.select() == ["fa#1"], "the reaction takes the floor without a word"
+    stage.at(20).end("fa#1")
+    assert stage.select() == ["fa#2"], "what follows it is no reaction, but has the floor"
+
+
+def test_f6_a_topic_that_works_in_loops_may_be_spoken_into() -> None:
+    stage = Stage()
+    stage.request("ea", say("Follow me."), move(), say("Here we are."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2.1"]
+    stage.at(20).request("fa", say("I like trains."))
+    assert stage.select() == ["fa#1"]
+
+
+def test_f6_a_unit_keeps_its_own_speaker() -> None:
+    """Between two utterances in a unit it is the unit that others wait for, by S1."""
+    stage = Stage()
+    bow = command("gesture", name="bow")
+    stage.request("ea", Group(chain(say("The answer is"), bow, say("forty two."))))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    for part in ("ea#2", "ea#3", "ea#4"):
+        assert stage.select() == ([] if part == "ea#2" else [part])
+        stage.end(part)
+    assert stage.select() == ["fa#1"]
+    assert [(r["rule"], r["by"]) for r in stage.phases("hold")] == [("S1", "ea#1")]
+
+
+def test_f6_who_waits_too_long_for_a_unit_holds_its_devices_back() -> None:
+    """It waits by S1, so S3 and E6 apply: nobody whom it outranks takes the wheels from it."""
+    stage = Stage(patience=1000, apps={"fa": "fa", "ea": "ea", "guide": "ea"})
+    bow = command("gesture", name="bow")
+    stage.request("ea", Group(chain(say("The answer is"), bow, say("forty two."))))
+    stage.select()
+    stage.at(5).request("fa", Group(chain(say("Look."), command("turn", angle=10))))
+    stage.select()
+    stage.at(2000).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(2010).request("guide", command("turn", angle=20))
+    assert stage.select() == []
+    assert stage.holds("guide#1") == ["S3"]
+
+
+def test_f4_without_a_floor_only_devices_and_the_channel_count() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.request("fa", command("turn", angle=5))
+    assert sorted(stage.select()) == ["ea#1", "fa#1"]
+    assert stage.floor == []
+
+
+def test_f5_a_motion_that_gets_no_next_loop_is_stopped_for_certain() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", ask(), cause=EVENT)
+    stage.select()
+    stage.at(500).end("ea#1.1", goal=False)
+    stage.select()
+    assert [order.verb for order in stage.orders][-1] == "stop"
+    assert [r["rule"] for r in stage.phases("stop")] == ["F5"]
+
+
+def test_f5_no_stop_where_something_else_takes_the_wheels_or_the_goal_is_met() -> None:
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", command("turn", angle=9), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1"]
+    assert stage.phases("stop") == []
+    done = Stage()
+    done.request("ea", move())
+    done.select()
+    done.at(500).end("ea#1.1", goal=True)
+    done.select()
+    assert done.phases("stop") == []

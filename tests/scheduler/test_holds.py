@@ -1,0 +1,119 @@
+"""X3: a stream is held for an event, with the floor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tests.stage import Stage, ask, command, move, say
+
+EVENT, LATER = 7, 8
+
+
+def held(policy: str, hold: int | None = 5000) -> Stage:
+    """The FA has asked for something and waits for the answer; the EA would go on."""
+    stage = Stage(policy)
+    stage.request("ea", say("Welcome."), say("This way."))
+    stage.select()
+    stage.request("fa", say("Connecting."), cause=EVENT, hold=hold)
+    stage.at(100).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    return stage
+
+
+def test_x3_a_held_stream_keeps_the_floor_while_its_application_waits() -> None:
+    stage = held("prima+x3")
+    assert stage.select() == []
+    assert stage.floor == ["fa:1"]
+    stage.at(2000).request("fa", say("Done."), cause=LATER, state=1)
+    assert stage.select() == ["fa#2"]
+    assert [r["tree"] for r in stage.phases("start") if r["app"] == "fa"] == ["fa:1", "fa:1"]
+
+
+@pytest.mark.parametrize(("policy", "hold"), [("prima", 5000), ("prima+x3", None)])
+def test_x3_is_off_unless_run_and_document_ask_for_it(policy: str, hold: int | None) -> None:
+    assert held(policy, hold).select() == ["ea#2"]
+
+
+def test_x3_a_reaction_may_break_in() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.at(1500).request("ea", say("A message!"), cause=LATER)
+    assert stage.select() == ["ea#3"]
+    assert stage.floor == ["fa:1", "ea:2"]
+
+
+def test_x3_a_higher_priority_alone_does_not_break_in() -> None:
+    stage = Stage("prima+x3")
+    stage.request("fa", move(), hold=5000)
+    stage.select()
+    stage.at(500).end("fa#1.1")
+    stage.request("ea", say("Hello."))
+    assert stage.select() == []
+    assert stage.holds("ea#1") == ["F2"]
+
+
+def test_x3_it_ends_after_its_longest_time_which_runs_on_while_suspended() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    assert stage.mediator.deadline() == 6000
+    stage.at(5500).request("ea", say("A message!"), cause=LATER)
+    stage.select()
+    stage.at(6000).mediator.expire()
+    stage.select()
+    assert stage.floor == ["ea:2"]
+    outcomes = [r["outcome"] for r in stage.phases("held")]
+    assert outcomes == ["begun", "over"]
+
+
+def test_x3_it_ends_when_its_state_is_left() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.at(2000).leave("fa")
+    assert stage.select() == ["ea#2"]
+
+
+def test_x3_what_is_asked_for_on_leaving_joins_it() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.at(2000).leave("fa")
+    stage.request("fa", say("Done."), cause=LATER, state=2)
+    assert stage.select() == ["fa#2"]
+    assert stage.phases("start")[-1]["tree"] == "fa:1"
+    stage.at(3000).end("fa#2")
+    assert stage.select() == ["ea#2"]
+
+
+def test_x3_an_application_that_ends_holds_nothing() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.mediator.unload("fa", "exit")
+    assert stage.select() == ["ea#2"]
+
+
+def test_x3_a_held_conversation_keeps_the_channel() -> None:
+    stage = Stage("prima+x3")
+    stage.request("fa", ask("Well?"), hold=5000)
+    stage.select()
+    stage.at(100).end("fa#1")
+    stage.request("ea", move())
+    assert stage.select() == []
+    stage.at(5100).mediator.expire()
+    assert stage.select() == ["ea#1.1"]
+
+
+def test_x3_in_a_window_what_is_wanted_now_continues_what_it_cancels() -> None:
+    # O2: no event has come for which the first stream is held.
+    stage = Stage("prima+x3")
+    stage.request("ea", say("Connecting."), hold=5000)
+    stage.request("ea", command("turn", angle=10), cause=EVENT)
+    stage.request("ea", command("move-head", pan=10), cause=LATER)
+    assert stage.select() == ["ea#3", "ea#2", "ea#1"]
+    stage.at(100).end("ea#1")
+    stage.select()
+    urgent = replace(command("turn", angle=5), now=True)
+    stage.at(200).end("ea#3", then=lambda: stage.request("ea", urgent))
+    assert stage.select() == ["ea#4"]
+    assert stage.phases("start")[-1]["tree"] == "ea:2"

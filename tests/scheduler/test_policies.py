@@ -1,0 +1,66 @@
+"""Policies: the baselines that the thesis's policy is compared with.
+
+Each rule by its number, on the smallest case that shows it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.messages import Group, Step
+from tests.stage import Stage, ask, command, move, say
+
+EVENT = 7
+
+
+def test_fifo_is_the_order_of_requests() -> None:
+    stage = Stage("fifo")
+    stage.request("ea", move())
+    stage.at(1).request("fa", ask(), cause=EVENT)
+    stage.at(2).request("fa", command("turn", angle=3), cause=EVENT + 1)
+    assert stage.select() == ["ea#1.1", "fa#1"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"], "no reactivity"
+    assert stage.floor == []
+
+
+def test_fair_takes_turns() -> None:
+    stage = Stage("fair")
+    stage.request("ea", say("e1"), say("e2"))
+    stage.request("fa", say("f1"), say("f2"))
+    order = []
+    for time in range(1, 5):
+        order += stage.select()
+        stage.at(time).end(min(stage.running))
+    assert order == ["fa#1", "ea#1", "fa#2", "ea#2"]
+
+
+def test_fair_gives_the_other_its_turn_in_the_same_instant() -> None:
+    stage = Stage("fair")
+    facing = command("face-human-and-speak", "You.")
+    stage.request("fa", steps=[Step(command("turn", angle=3)), Step(facing)])
+    stage.request("ea", say())
+    assert stage.select() == ["fa#1", "ea#1"], "fa has had its turn: it holds nothing back from ea"
+
+
+@pytest.mark.parametrize(("policy", "first"), [("fixed", "fa#1"), ("fixed:ea", "ea#1")])
+def test_fixed_lets_one_application_always_go_first(policy: str, first: str) -> None:
+    stage = Stage(policy)
+    stage.request("ea", say())
+    stage.at(1).request("fa", say())
+    assert stage.select() == [first]
+
+
+def test_none_displaces_and_records_the_collision() -> None:
+    stage = Stage("none")
+    stage.request("ea", say())
+    stage.request("fa", say())
+    assert sorted(stage.select()) == ["ea#1", "fa#1"]
+    assert [r["device"] for r in stage.phases("collision")] == ["speaker"]
+
+
+def test_none_does_not_let_a_unit_collide_with_itself() -> None:
+    stage = Stage("none")
+    stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
+    stage.select()
+    assert stage.phases("collision") == []

@@ -1,0 +1,184 @@
+"""X1: the robot's state is restored when a stream resumes."""
+
+from __future__ import annotations
+
+from prima.messages import Command, Step
+from tests.stage import Stage, ask, command, move, say
+
+EVENT = 7
+
+
+def inserted(stage: Stage) -> list[tuple[str, str]]:
+    return [
+        (record["inserted"], record["command"])
+        for record in stage.phases("request")
+        if record.get("inserted")
+    ]
+
+
+def at_a_panel(policy: str, *then: Command) -> Stage:
+    """The EA has gone to a panel and explains it, when the FA takes the robot away."""
+    stage = Stage(policy)
+    stage.request("ea", move(), say("First."), *then)
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#2"]
+    stage.request("fa", command("tracking-human"), cause=EVENT)
+    stage.select()
+    stage.at(1000).end("ea#2")
+    return stage
+
+
+def test_x1_a_stream_that_resumes_stands_where_it_stood() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    assert stage.select() == []
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert inserted(stage) == []
+    assert stage.select() == ["ea#4.1"]
+    assert inserted(stage) == [("X1", "set-position")]
+    [made] = [r for r in stage.phases("request") if r.get("inserted")]
+    assert made["args"] == {"x": 4.0, "y": 1.0} and made["before"] == "ea#3"
+    stage.at(2000).end("ea#4.1", x=4.0, y=1.0, heading=10.0)
+    assert stage.select() == ["ea#3"]
+    assert stage.rule("ea#3") == "S1"
+
+
+def test_x1_who_waits_for_its_own_way_back_is_kept_waiting_by_nobody_else() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    assert stage.select() == []
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#4.1"]
+    stage.at(90_000).end("ea#4.1", x=4.0, y=1.0, heading=10.0)
+    assert stage.select() == ["ea#3"] and stage.phases("starve") == []
+
+
+def test_x1_is_off_unless_it_is_asked_for() -> None:
+    stage = at_a_panel("prima", say("Second."))
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#3"]
+
+
+def test_x1_nothing_is_restored_that_the_next_behaviour_does_itself() -> None:
+    stage = at_a_panel("prima+x1", move("hall"))
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#3.1"]
+
+
+def test_x1_nothing_is_restored_where_the_robot_has_not_moved() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=4.1, y=1.0, heading=92.0)
+    assert stage.select() == ["ea#3"]
+
+
+def test_x1_direction_and_head_are_restored() -> None:
+    stage = Stage("prima+x1")
+    stage.request(
+        "ea", command("set-direction", heading=90.0), command("move-head", pan=40.0), say(), say()
+    )
+    stage.select()
+    stage.at(100).end("ea#1", x=0.0, y=0.0, heading=90.0)
+    stage.select()
+    stage.at(200).end("ea#2")
+    stage.select()
+    stage.request("fa", command("turn", angle=180), command("move-head"), cause=EVENT)
+    stage.select()
+    stage.at(300).end("fa#1", x=0.0, y=0.0, heading=270.0)
+    stage.end("ea#3")
+    stage.select()
+    stage.at(400).end("fa#2")
+    stage.select()
+    assert inserted(stage) == [("X1", "set-direction"), ("X1", "move-head")]
+    assert stage.running == {"ea#5"}
+    stage.at(500).end("ea#5", x=0.0, y=0.0, heading=90.0)
+    assert stage.select() == ["ea#6"]
+    stage.at(600).end("ea#6")
+    assert stage.select() == ["ea#4"]
+
+
+def test_x1_what_was_turned_to_the_human_turns_to_him_again() -> None:
+    stage = Stage("prima+x1")
+    stage.request("ea", command("face-human"), say("One."), say("Two."))
+    stage.select()
+    stage.at(100).end("ea#1", x=0.0, y=0.0, heading=90.0)
+    stage.select()
+    stage.request("fa", command("turn", angle=180), cause=EVENT)
+    stage.select()
+    stage.at(300).end("fa#1", x=0.0, y=0.0, heading=270.0)
+    stage.end("ea#2")
+    stage.select()
+    assert inserted(stage) == [("X1", "face-human")]
+
+
+def test_x1_a_way_back_that_is_blocked_is_done_without() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    stage.select()
+    stage.at(2000)
+    stage.mediator.failed("ea#4.1", "locomotion", "the way is blocked")
+    assert stage.select() == ["ea#3"]
+    assert stage.told("ea") == ["ended", "ended"], "the way back is not the application's"
+
+
+def test_x1_the_way_back_waits_while_another_talks_with_the_user() -> None:
+    stage = at_a_panel("prima+x1", say("Second."))
+    stage.leave("fa")
+    stage.request("fa", ask("Are you well?"))
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["fa#2"]
+
+
+def test_x1_whatever_waits_in_the_stream_waits_for_the_way_back() -> None:
+    # The head was to move once the robot had turned to the user (X4), when the way back came in.
+    stage = Stage("prima+x1+x4")
+    stage.request("ea", move())
+    stage.select()
+    branches = [Step(say("First.")), Step(command("move-head", pan=10))]
+    stage.at(500).end(
+        "ea#1.1",
+        x=4.0,
+        y=1.0,
+        heading=90.0,
+        then=lambda: stage.request("ea", steps=branches, connect=True),
+    )
+    assert stage.select() == ["ea#4"]
+    stage.request("fa", command("turn", angle=10), cause=EVENT)
+    stage.at(1000).end("ea#4", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["fa#1"]
+    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#5"]
+    assert inserted(stage)[-2:] == [("X1", "set-position"), ("X1", "face-human")]
+    stage.at(2000).end("ea#5", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#6.1"], "nothing of the stream goes before the way back"
+    stage.at(2500).end("ea#6.1", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#7"]
+    stage.at(3000).end("ea#7", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#2", "ea#3"]
+
+
+def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:
+    # fa would wait to drive back until ea no longer engages the user, ea for fa's floor.
+    stage = Stage("prima+x1", apps={"fa": "fa", "ea": "ea", "xa": "ea"})
+    stage.request("fa", command("set-position", x=2, y=0), say("a"))
+    stage.select()
+    stage.at(100).end("fa#1.1", x=2.0, y=0.0, heading=0.0)
+    stage.request("ea", command("tracking-human"))
+    assert stage.select() == ["fa#2", "ea#1.1"]
+    stage.at(200).leave("fa")
+    stage.request("fa", say("b"), say("c"), state=2, cause=1)
+    stage.at(300).end("fa#2")
+    assert stage.select() == ["fa#3"]
+    stage.request("xa", command("turn", angle=10), cause=2)
+    stage.at(500).end("ea#1.1", goal=False, x=2.0, y=0.0, heading=0.0)
+    assert stage.select() == ["xa#1"]
+    stage.at(600).end("fa#3")
+    stage.select()
+    stage.at(700).end("xa#1", x=5.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#1.2"]
+    assert [r["behavior"] for r in stage.phases("request") if r.get("inserted")] == ["fa#5"]
+    assert stage.floor == ["fa:1", "ea:1"], "the way back waits for the wheels that ea takes (F3)"
