@@ -1,4 +1,4 @@
-# Verbs: demo test check bench schemas build lock. Each sets up what it needs in .venv, from the
+# Verbs: demo test check mutants bench schemas build lock. Each sets up what it needs in .venv, from the
 # versions and hashes of release/*.txt.
 PYTHON ?= python3
 VENV := .venv
@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 
-.PHONY: demo test check bench attack schemas build lock clean
+.PHONY: demo test check mutants bench attack schemas build lock clean
 
 demo: $(VENV)/.runtime
 	@mkdir -p build
@@ -26,6 +26,10 @@ check: $(VENV)/.dev
 	$(BIN)/python -m tools.reference --check
 	$(BIN)/python -m tools.pictures --check
 	$(BIN)/python -m release.licences --check
+
+# Each small change to the scheduler, or to FILE=rules.py of it, must make a test fail.
+mutants: $(VENV)/.dev
+	$(BIN)/python -m tools.mutants $(FILE)
 
 bench: $(VENV)/.dev
 	$(BIN)/python -m bench.peers
