@@ -155,7 +155,7 @@ def _conditions(parent: ast.AST, field: str, node: ast.AST) -> Iterator[ast.AST]
     if isinstance(parent, ast.comprehension) and field == "ifs":
         yield ast.Constant(True)
     elif field == "test" and isinstance(node, ast.Name | ast.Attribute | ast.Call):
-        yield ast.UnaryOp(ast.Not(), node)  # type: ignore[arg-type]
+        yield ast.UnaryOp(ast.Not(), node)
 
 
 def _variants(node: ast.AST) -> Iterator[ast.AST]:

@@ -105,18 +105,17 @@ def f2(ab: Behavior, memory: Memory) -> Refusal | None:
     return None if outranks(priority, holder, memory) else ("F2", holder.name)
 
 
-def f3(ab: Behavior, reacts: bool, memory: Memory) -> bool:
-    """Whether what starts while another application holds the floor takes it.
+def f3(ab: Behavior, memory: Memory) -> bool:
+    """Whether what starts by its priority while another application holds the floor takes it.
 
-    A reaction does. What starts by its priority alone does if it needs a device of what
-    runs or waits of the floor's stream, or of what something was put in for (X1, X4); else
-    it runs beside it.
+    It does if it needs a device of what runs or waits of the floor's stream, or of what
+    something was put in for (X1, X4); else it runs beside it.
     """
     holder = memory.holder
     if holder is None or holder.app is ab.app:
         return False
     own = (*holder.contending(), *holder.present())
-    return reacts or any(ab.devices & other.devices for other in own)
+    return any(ab.devices & other.devices for other in own)
 
 
 def f6(ab: Behavior, memory: Memory) -> Refusal | None:

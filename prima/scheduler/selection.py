@@ -146,7 +146,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction = ab.reaction, None
     ab.reacted = -1 if reaction is None else reaction
-    beside = composed or not rules.f3(ab, reaction is not None, memory)
+    beside = composed or not rules.f3(ab, memory)
     run(mediation, ab)
     changed = f1(mediation, ab, reaction, beside)
     losers = _outdone(mediation, rivals, ab, lower, held)

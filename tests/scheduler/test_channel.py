@@ -12,7 +12,7 @@ import pytest
 from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Step
 from prima.scheduler import rules
-from tests.stage import Stage, ask, command, move, say
+from tests.stage import Stage, ask, command, move, say, search
 
 EVENT = 7
 
@@ -98,6 +98,16 @@ def test_k1_a_stream_that_searches_engages_whom_it_looks_for(kind: str, engages:
     memory = stage.mediator.memory
     memory.absent = True
     assert rules.engages(memory.streams["ea:1"], memory) is engages
+
+
+@pytest.mark.parametrize("searches", [True, False])
+def test_k1_one_part_that_searches_is_enough(searches: bool) -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(ask("Hello?")), Step(search() if searches else move())])
+    assert stage.select() == ["ea#1", "ea#2.1"]
+    memory = stage.mediator.memory
+    memory.absent = True
+    assert rules.engages(memory.streams["ea:1"], memory) is searches
 
 
 def test_k2_leaving_commands_have_low_priority() -> None:

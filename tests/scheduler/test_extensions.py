@@ -114,6 +114,15 @@ def test_x5_a_dance_goes_on_together_with_a_move() -> None:
     assert stage.select() == ["fa#2"]
 
 
+def test_x5_when_the_dance_ends_the_move_keeps_the_wheels() -> None:
+    stage = dancing("prima+x5")
+    assert stage.select() == ["fa#1"]
+    stage.at(400).end("fa#1")
+    stage.select()
+    stage.request("fa", command("turn", angle=90), cause=LATER)
+    assert stage.select() == [] and stage.running == {"ea#1.1"}
+
+
 def test_x5_is_off_unless_it_is_asked_for() -> None:
     stage = dancing("prima")
     assert stage.select() == []
@@ -128,6 +137,17 @@ def test_x5_what_is_no_move_waits_for_the_dance() -> None:
     assert stage.select() == [], "the arrival's words belong to a suspended stream"
     stage.at(900).end("fa#1")
     assert stage.select() == ["ea#2"]
+
+
+def test_x5_a_dance_that_tells_something_as_well_carries_nobody() -> None:
+    stage = Stage("prima+x5", table=DANCING)
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", steps=[Step(Command("dance")), Step(say("La."))], cause=EVENT)
+    assert stage.select() == ["fa#1", "fa#2"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == []
+    assert stage.holds("ea#1.1")[-1] == "F2"
 
 
 def test_x5_a_dancer_who_talks_with_the_user_is_not_carried_away() -> None:

@@ -120,7 +120,12 @@ def test_e6_a_reaction_goes_first() -> None:
 
 
 @pytest.mark.parametrize(
-    ("then", "started"), [(say("Thank you."), ["ea#2"]), (ask("And why?"), ["fa#1"])]
+    ("then", "started"),
+    [
+        (say("Thank you."), ["ea#2"]),
+        (ask("And why?"), ["fa#1"]),
+        (command("move-head", pan=1), ["fa#1", "ea#2"]),
+    ],
 )
 def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
     then: Command, started: list[str]

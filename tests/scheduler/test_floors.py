@@ -109,6 +109,28 @@ def test_f6_a_topic_is_not_spoken_into() -> None:
     assert stage.select() == ["fa#1"]
 
 
+def test_f6_a_topic_goes_on_through_all_that_is_silent() -> None:
+    stage = Stage()
+    bow = command("gesture", name="bow")
+    stage.request("ea", say("The answer is"), command("turn", angle=30), bow, say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert stage.holds("fa#1")[-1] == "F6"
+
+
+def test_f6_a_topic_whose_end_was_deleted_may_be_spoken_into() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    stage.leave("ea")
+    stage.at(12).request("fa", say("I like trains."))
+    assert stage.select() == ["fa#1"] and "ea#2" in stage.running
+
+
 def test_f6_a_reaction_may_break_in() -> None:
     stage = Stage()
     stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
@@ -123,6 +145,7 @@ def test_f6_a_reaction_may_break_in() -> None:
     [
         [command("move-head", pan=30), search(), say("forty two.")],  # it works in loops
         [command("move-head", pan=30)],  # nothing is said behind it
+        [command("move-head", pan=30), command("gesture", name="bow")],  # nor further behind
     ],
 )
 def test_f6_holds_only_between_two_utterances(between: list[Command]) -> None:

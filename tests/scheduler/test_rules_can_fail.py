@@ -200,8 +200,8 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         put(rules, "outranks", lambda priority, stream, memory: False),
     ),
     ("f2", "above any", reworded(rules, "outranks", "all(priority", "any(priority")),
-    ("f3", "never", put(rules, "f3", lambda ab, reacts, memory: False)),
-    ("f3", "always", put(rules, "f3", lambda ab, reacts, memory: True)),
+    ("f3", "never", put(rules, "f3", lambda ab, memory: False)),
+    ("f3", "always", put(rules, "f3", lambda ab, memory: True)),
     ("f5", "dropped", put(selection, "f5", nothing)),
     ("f6", "dropped", put(rules, "f6", nothing)),
     (
