@@ -39,6 +39,8 @@ TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
+MOST_REPEATED = 999
+"""The greatest number of ``repeat``."""
 BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')
 
 
@@ -130,11 +132,17 @@ class _Reader:
         return None
 
     def _repeated(self, node: Node, part: Part) -> Part:
+        text = node.get("repeat")
         try:
-            return Repeat(part, *repeat(node.get("repeat")))
+            low, high = repeat(text)
         except ValueError as error:
             self.note(BAD_REPEAT, node, "repeat", wrong=str(error))
             return part
+        if max(low, high or 0) > MOST_REPEATED:
+            wrong = f'repeat "{text[:40]}" has a number above {MOST_REPEATED}.'
+            self.note(BAD_REPEAT, node, "repeat", wrong=wrong)
+            return part
+        return Repeat(part, low, high)
 
 
 def _named(node: Node) -> str:
