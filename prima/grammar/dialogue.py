@@ -139,7 +139,8 @@ class _Reader:
             self.note(BAD_REPEAT, node, "repeat", wrong=str(error))
             return part
         if max(low, high or 0) > MOST_REPEATED:
-            wrong = f'repeat "{text[:40]}" has a number above {MOST_REPEATED}.'
+            form = f"2, 0-1 or 1-, with numbers up to {MOST_REPEATED}"
+            wrong = f'repeat "{text[:40]}" is not of the form {form}.'
             self.note(BAD_REPEAT, node, "repeat", wrong=wrong)
             return part
         return Repeat(part, low, high)
