@@ -98,7 +98,7 @@ def test_a_link_listens_by_a_file(folder: Path) -> None:
         ('src="rootless.grxml"', "a.xml", "no-root", "names no root rule"),
         ('src="sizes.grxml" root="size"', "a.xml", "exclusive", "src names a file"),
         ('src="keys.abnf"', "a.xml", "bad-value", "grammar of keys"),
-        ('src="builtin:grammar/boolean"', "a.xml", "bad-value", "no built-in type"),
+        ('src="builtin:grammar/boolean"', "a.xml", "bad-value", "not a built-in type"),
         ('src=""', "a.xml", "bad-value", "src names no file"),
         ('src="#size"', "a.xml", "bad-value", "src names no file"),
         ('src="some.txt"', "some.txt", "not-xml", "not an SRGS grammar"),
