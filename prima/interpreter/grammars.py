@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
-from prima.grammar import GrammarError, load
 from prima.grammar.dialogue import read_grammar
 from prima.markup.tree import Node
 
@@ -39,6 +38,8 @@ def grammar_of(
         return read_grammar(note, node)
     if _contradicts(note, node):
         return None
+    from prima.grammar import GrammarError, load  # few documents name files
+
     try:
         grammar = load(node, base=_base(node), lang=lang, fetch=fetch, lenient=True)
     except GrammarError as error:
