@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.errors import UsageError
 from prima.interpreter.reader import read_document
 from tests.robot import document, xml
 
@@ -140,3 +141,14 @@ def test_a_long_chain_of_rules_can_be_pickled() -> None:
     made = document(ASK.format(f'<grammar>{rules}<rule id="r{depth}">yes</rule></grammar>'))
     again = pickle.loads(pickle.dumps(made.forms["f"].items[0]))
     assert again.answers.match("Yes") == "Yes"
+
+
+def test_a_transcript_tells_which_grammars_its_run_was_made_with(folder: Path) -> None:
+    path = str(written(folder, '<grammar src="sizes.grxml"/>'))
+    made = api.rehearse(api.stage([], [path], ["a small"]))
+    named = [name for name in made.records[0]["data"]["files"] if name.endswith("sizes.grxml")]
+    assert len(named) == 1
+    assert api.replay(made, api.stage([], [path], ["a small"])).records == made.records
+    (folder / "sizes.grxml").write_text(SIZES + "<!-- another -->", "utf-8")
+    with pytest.raises(UsageError, match=r"sizes\.grxml is not the file"):
+        api.replay(made, api.stage([], [path], ["a small"]))

@@ -68,19 +68,29 @@ if TYPE_CHECKING:
 # What one use needs and another does not is imported where it is used: most commands are short.
 
 
+Taken = Callable[[str, bytes], object]
+"""Is told the name and the bytes of each file that a document takes in."""
+
+
 def read_application(
-    path: str, data: bytes, name: str = "", kind: str = "", site: Site | None = None
+    path: str,
+    data: bytes,
+    name: str = "",
+    kind: str = "",
+    site: Site | None = None,
+    taken: Taken | None = None,
 ) -> tuple[AnyDocument, list[Problem]]:
     """Read an application of either language; a VoiceXML document is named after its file.
 
     ``kind`` is ``fa`` or ``ea`` where the run says so; it counts, whatever the document says.
-    ``site`` says where a VoiceXML document and its folder are served.
+    ``site`` says where a VoiceXML document and its folder are served. ``taken`` is told of the
+    grammars that a document of PRIMA's own language names.
 
     Raises:
         DocumentError: no document at all can be given.
     """
     if not is_voicexml(data):
-        native, problems = _read_native(path, data)
+        native, problems = _read_native(path, data, taken)
         if kind and native.kind != kind:
             from dataclasses import replace
 
@@ -97,9 +107,18 @@ def read_application(
     ), page.problems
 
 
-def _read_native(path: str, data: bytes) -> tuple[Document, list[Problem]]:
+def _read_native(
+    path: str, data: bytes, taken: Taken | None = None
+) -> tuple[Document, list[Problem]]:
     """An application in PRIMA's own language, with the grammars of its folder that it names."""
-    return read_document(path, data, lambda uri: _fetcher(path_of(path).parent)(uri))
+
+    def fetch(uri: str) -> bytes:
+        found = _fetcher(path_of(path).parent)(uri)
+        if taken is not None:
+            taken(uri, found)
+        return found
+
+    return read_document(path, data, fetch)
 
 
 VOICEXML = re.compile(rb"<(?:[\w.-]+:)?vxml[\s>/]")
@@ -639,8 +658,12 @@ class _Reading:
         own = (node.get("id") if node is not None else "", said or "ea")
         site = self.site(src, node) if node is not None else None
 
+        def take(uri: str, data: bytes) -> None:
+            beside = posixpath.join(posixpath.dirname(src), uri)
+            self.files[posixpath.normpath(beside)] = _digest(data)
+
         def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
-            document, problems = read_application(path, data, *own, site)
+            document, problems = read_application(path, data, *own, site, take)
             further: Iterable[Problem] = ()
             if self.whole and is_voicexml(data):
                 further = _voicexml_problems(path, data, site, self.answered)
