@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from prima.errors import UsageError
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import (
+    Delayed,
     Emergency,
     Ended,
     Failed,
@@ -18,6 +19,7 @@ from prima.messages import (
     Loaded,
     Narrated,
     Occurred,
+    Presence,
     Record,
     Sensed,
     Transferred,
@@ -42,6 +44,12 @@ def inbound_of(record: Record) -> Inbound | None:
             return Listening(record["behavior"])
         case "fail":
             return Failed(record["behavior"], record["device"], record["message"])
+        case "delayed":
+            waited = round(data["waited"] * 1000)
+            return Delayed(record["behavior"], record["device"], waited)
+        case "device":
+            there = record["outcome"] == "back"
+            return Presence(record["device"], there, record.get("message", ""))
         case "event" if record["event"] == "speech" and record["actor"] == "user":
             return Heard(record["text"], data)
         case "event":

@@ -255,6 +255,25 @@ class Failed:
     reason: str
 
 
+@dataclass(slots=True)
+class Delayed:
+    """What begins on a device was held back until the device had stopped what it did before."""
+
+    behavior: str
+    device: str
+    waited: int
+    """How long (ms)."""
+
+
+@dataclass(slots=True)
+class Presence:
+    """A device is missing from now on, or there again."""
+
+    device: str
+    there: bool
+    reason: str = ""
+
+
 class Hypothesis(NamedTuple):
     """What a recogniser takes an utterance for, and how sure it is (0 to 1)."""
 
@@ -396,6 +415,8 @@ Inbound = (
     | Listening
     | Halted
     | Failed
+    | Delayed
+    | Presence
     | Heard
     | Occurred
     | Fetched

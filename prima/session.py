@@ -28,6 +28,7 @@ from prima.messages import (
     CloseUnit,
     Command,
     Data,
+    Delayed,
     Emergency,
     Ended,
     Event,
@@ -46,6 +47,7 @@ from prima.messages import (
     Occurred,
     OpenUnit,
     Order,
+    Presence,
     Promote,
     Quit,
     Raise,
@@ -269,6 +271,22 @@ class Session:
                 self._answered(value)
             case Sensed():
                 self._sensed(value)
+            case Delayed():
+                self._record(
+                    "delayed",
+                    "robot",
+                    behavior=value.behavior,
+                    device=value.device,
+                    data={"waited": value.waited / 1000},
+                )
+            case Presence():
+                self._record(
+                    "device",
+                    "environment",
+                    device=value.device,
+                    outcome="back" if value.there else "missing",
+                    message=value.reason or None,
+                )
             case Narrated():
                 self._record("note", value.actor, text=value.text)
             case Emergency():

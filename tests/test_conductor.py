@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from prima.devices.conductor import Conductor, Limits
+from prima.devices.conductor import Conductor
 from prima.devices.goals import (
     LISTEN,
     SAY,
@@ -36,10 +36,12 @@ from prima.devices.goals import (
 )
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
+from prima.devices.settings import Limits
 from prima.interpreter.reader import read_document
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
+    Delayed,
     Ended,
     Failed,
     Halted,
@@ -48,6 +50,7 @@ from prima.messages import (
     Listening,
     Loaded,
     Order,
+    Presence,
     Record,
 )
 from prima.scheduler.policy import policy_named
@@ -68,7 +71,9 @@ class Adversary:
 
     def __init__(self, play: Play, seed: int) -> None:
         profile = Profile("any", commands=dict(play.world.table), devices=DEVICES)
-        self.conductor = Conductor(profile, lambda: {"x": 0.0, "y": 0.0, "heading": 0.0}, LIMITS)
+        self.conductor = Conductor(
+            profile, lambda: {"x": 0.0, "y": 0.0, "heading": 0.0}, lambda _: LIMITS
+        )
         self.dice = Random(seed)
         self.agenda: list[tuple[int, int, Report | Inbound]] = []
         self.at: dict[str, Begin] = {}
@@ -210,7 +215,9 @@ class Desk:
 
     def __init__(self, limits: Limits = LIMITS) -> None:
         profile = Profile("any", commands=dict(TABLE_4_2), devices=DEVICES)
-        self.conductor = Conductor(profile, lambda: {"x": 1.0, "y": 2.0, "heading": 0.0}, limits)
+        self.conductor = Conductor(
+            profile, lambda: {"x": 1.0, "y": 2.0, "heading": 0.0}, lambda _: limits
+        )
         self.now = 0
 
     def order(self, verb: str, name: str, *command: object, loop: int = 0) -> list[Call]:
@@ -246,6 +253,7 @@ def test_a_start_waits_until_what_was_cancelled_has_stopped() -> None:
     (second,) = desk.report(Stopped(first.key))  # type: ignore[union-attr]
     assert isinstance(second, Begin)
     assert second.kind == SAY
+    assert desk.at(31) == [Delayed("b#1", "speaker", 30)]
 
 
 def test_a_cancelled_start_that_was_held_back_never_begins() -> None:
@@ -324,12 +332,13 @@ def test_a_device_that_does_not_stop_is_made_safe_and_given_up() -> None:
     desk.report(Accepted(goal.key))  # type: ignore[union-attr]
     desk.order("abort", "a#1")
     desk.order("start", "b#1", SPEAK)
-    (failed,) = desk.at(2000)
-    assert failed == Failed("b#1", "speaker", "the device does not stop")
+    why = "the device does not stop"
+    assert desk.at(2000) == [Presence("speaker", False, why), Failed("b#1", "speaker", why)]
     assert [type(call) for call in desk.conductor.drain()][:1] == [Safe]
     assert desk.order("start", "c#1", SPEAK) == [], "it is missing until it is back"
     assert desk.at(2001) == [Failed("c#1", "speaker", "the device does not stop")]
     desk.report(Back(frozenset({"speaker"})))
+    assert desk.at(2002) == [Presence("speaker", True)]
     (again,) = desk.order("start", "c#2", SPEAK)
     assert isinstance(again, Begin)
 
@@ -340,7 +349,8 @@ def test_what_was_held_back_does_not_begin_on_a_device_that_is_lost() -> None:
     desk.order("abort", "a#1")
     desk.order("start", "b#1", SPEAK)
     assert desk.report(Lost(frozenset({"speaker"}), "the link is down")) == []
-    assert desk.at(1) == [Failed("b#1", "speaker", "the link is down")]
+    why = "the link is down"
+    assert desk.at(1) == [Presence("speaker", False, why), Failed("b#1", "speaker", why)]
     assert desk.report(Stopped(first.key)) == []  # type: ignore[union-attr]
 
 
@@ -363,7 +373,8 @@ def test_a_lost_driver_fails_what_runs_on_it_alone() -> None:
     desk.order("start", "a#1", SPEAK)
     desk.order("start", "b#1", TURN)
     desk.report(Lost(frozenset({"speaker"}), "the link is down"))
-    assert desk.at(1) == [Failed("a#1", "speaker", "the link is down")]
+    why = "the link is down"
+    assert desk.at(1) == [Presence("speaker", False, why), Failed("a#1", "speaker", why)]
 
 
 def test_one_part_that_breaks_takes_the_other_with_it() -> None:

@@ -24,6 +24,7 @@ LAYERS = [
     {"session"},
     {"devices", "journal"},
     {"sim"},
+    {"live"},
     {"checks"},
     {"exports", "loading", "pool"},
     {"api"},
@@ -136,6 +137,7 @@ INSIDE = {
     ],
     "devices": [
         {"ear", "goals", "protocol", "reading", "senses", "vocabulary", "voice"},
+        {"settings"},
         {"loop", "profile", "speech"},
         {"conductor"},
         {"__init__"},

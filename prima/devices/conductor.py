@@ -33,23 +33,22 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.devices.senses import Sensors, Sight
+from prima.devices.settings import FOREVER, Limits
 from prima.devices.speech import Marks, Utterance
-from prima.messages import Command, Data, Ended, Failed, Halted, Inbound, Json, Listening, Order
+from prima.messages import (
+    Command,
+    Data,
+    Delayed,
+    Ended,
+    Failed,
+    Halted,
+    Inbound,
+    Json,
+    Listening,
+    Order,
+    Presence,
+)
 
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How long (ms) a driver may take before it is given up; None for as long as it likes."""
-
-    accept: int | None = None
-    """To begin a goal."""
-    progress: int | None = None
-    """To report of a goal again."""
-    cancel: int | None = None
-    """To confirm that a goal has stopped."""
-
-
-FOREVER = Limits()
 SEARCH = "active-sensing-human"
 """The Command that reports by itself whom it finds."""
 
@@ -67,6 +66,8 @@ class Goal:
     """Whether it was told to stop."""
     since: int = 0
     """When the driver was told something, or reported, last (ms)."""
+    held: tuple[int, str] | None = None
+    """Since when (ms) it is held back, and by which device that is still stopping."""
 
     def late(self, limits: Limits) -> int | None:
         """When it will have taken too long (ms), if ever."""
@@ -121,7 +122,7 @@ class Conductor:
     Args:
         profile: the robot.
         pose: the robot's pose as it is known now, for what Commands that move it tell.
-        limits: how long drivers may take.
+        limits: how long drivers may take over a goal.
         exclusive: whether a device does one thing at a time. Without a mediator it does not:
             whoever begins takes it.
     """
@@ -130,7 +131,7 @@ class Conductor:
         self,
         profile: Profile,
         pose: Callable[[], dict[str, float]],
-        limits: Limits = FOREVER,
+        limits: Callable[[Begin], Limits] = lambda _: FOREVER,
         exclusive: bool = True,
     ) -> None:
         self.profile = profile
@@ -252,9 +253,20 @@ class Conductor:
         devices = goal.begin.devices
         if devices & self._missing.keys():
             return
-        if not any(one.cancelled and one.begin.devices & devices for one in self._goals.values()):
-            goal.begun, goal.since = True, self._now
-            self._calls.append(goal.begin)
+        stopping = {
+            name
+            for one in self._goals.values()
+            if one.cancelled
+            for name in one.begin.devices & devices
+        }
+        if stopping:
+            goal.held = goal.held or (self._now, min(stopping))
+            return
+        if goal.held is not None and goal.held[0] < self._now:
+            since, device = goal.held
+            self._inbound.append(Delayed(goal.task.id, device, self._now - since))
+        goal.begun, goal.since = True, self._now
+        self._calls.append(goal.begin)
 
     def _cancel(self, task: Task) -> None:
         """Let the goals of an AB end as soon as they can."""
@@ -294,8 +306,9 @@ class Conductor:
             case Lost():
                 self._lose(report)
             case Back():
-                for device in report.devices:
-                    self._missing.pop(device, None)
+                for device in sorted(report.devices & self._missing.keys()):
+                    del self._missing[device]
+                    self._inbound.append(Presence(device, True))
             case _ if (goal := self._goals.get(report.key)) is not None and goal.begun:
                 self._hear(goal, report)
 
@@ -331,7 +344,9 @@ class Conductor:
 
     def _lose(self, lost: Lost) -> None:
         """Devices are gone: what ran on them fails, what was stopping has stopped."""
-        self._missing.update(dict.fromkeys(lost.devices, lost.reason))
+        for device in sorted(lost.devices - self._missing.keys()):
+            self._missing[device] = lost.reason
+            self._inbound.append(Presence(device, False, lost.reason))
         for goal in list(self._goals.values()):
             gone = sorted(goal.begin.devices & lost.devices)
             if gone and goal.begin.key in self._goals:
@@ -367,7 +382,7 @@ class Conductor:
         """The next instant at which something is to be reported, if one is known (ms)."""
         now = self._now
         due = [task.ends for task in self.tasks.values() if task.ends and task.ends > now]
-        late = (goal.late(self._limits) for goal in self._goals.values())
+        late = (goal.late(self._limits(goal.begin)) for goal in self._goals.values())
         times = (self.sight.due(now, visible), self.ear.due(), *late)
         due += [time for time in times if time is not None]
         if self._inbound or any(task.failed for task in self.tasks.values()):
@@ -449,7 +464,7 @@ class Conductor:
     def _give_up_late(self) -> None:
         """Give up goals whose drivers take too long; one that does not stop is not safe."""
         for goal in list(self._goals.values()):
-            late = goal.late(self._limits)
+            late = goal.late(self._limits(goal.begin))
             if late is None or late > self._now or goal.begin.key not in self._goals:
                 continue
             if goal.cancelled:

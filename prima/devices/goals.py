@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
-from prima.messages import Command, Data
+from prima.messages import Command, Data, Emergency, Heard, Narrated, Occurred, Sensed
 
 SAY: Final = "say"
 """The goal of saying a Command's text."""
@@ -121,3 +121,39 @@ class Back:
 
 
 Report = Accepted | Progress | Done | Stopped | Broke | Lost | Back
+
+
+# What drivers tell besides ----------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    """Where the robot is: metres, and degrees to the left of the x axis, in the map's frame."""
+
+    x: float
+    y: float
+    heading: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sees:
+    """Whether the camera sees the user; of a user who is seen, m away and degrees to the left."""
+
+    visible: bool
+    distance: float | None = None
+    angle: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Speaks:
+    """The user begins to speak, or has fallen silent.
+
+    A recogniser that tells of the beginning tells of the end as well: by :class:`Heard`, which
+    is one, or by this.
+    """
+
+    begins: bool
+
+
+News = At | Sees | Speaks | Heard | Occurred | Sensed | Emergency | Narrated
+"""What a driver may tell at any time."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from prima.devices.goals import LISTEN, SAY
 from prima.devices.reading import Reader
+from prima.devices.settings import DriverSettings, read_driver, share_devices
 from prima.devices.vocabulary import ROBOT
 from prima.errors import Problem, meant, suggestion
 from prima.interpreter.events import near
@@ -37,6 +39,7 @@ class Profile:
     commands: dict[str, CommandType] = field(default_factory=dict)
     durations: dict[str, int] = field(default_factory=dict)
     motions: dict[str, Motion] = field(default_factory=dict)
+    drivers: list[DriverSettings] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
     """What is odd in its document, and no error."""
 
@@ -97,9 +100,35 @@ def read_robot(file: str, data: bytes) -> Profile:
     profile.commands = {name: row for name, row in rows.items() if row.devices <= profile.devices}
     for node in root.all("substitute"):
         _substitute(reader, node, rows, profile)
+    _read_drivers(reader, profile)
     reader.finish()
     profile.warnings = reader.problems
     return profile
+
+
+def _read_drivers(reader: Reader, profile: Profile) -> None:
+    """The drivers, whose devices, Commands and gestures the robot has."""
+    seen: dict[str, str] = {}
+    for node in reader.root.all("driver"):
+        for device in node.get("devices").split():
+            if device in seen:
+                message = f'Two drivers carry the device "{device}".'
+                reader.problem(node, "duplicate-name", message, "devices", "Name it in one.")
+            elif device not in profile.devices:
+                message = f'The robot has no device "{device}".'
+                remedy = (
+                    suggestion(device, profile.devices, *value_span(node, "devices", device))
+                    or f'Add <device name="{device}"/>.'
+                )
+                reader.problem(node, "no-such-name", message, "devices", remedy)
+            seen[device] = node.get("kind")
+        for does in node.all("does"):
+            if does.get("command"):
+                reader.known(does, "command", {*profile.commands, SAY, LISTEN}, "Command")
+            if does.get("gesture"):
+                reader.known(does, "gesture", profile.gestures, "gesture")
+        profile.drivers.append(read_driver(reader, node))
+    share_devices(profile.drivers, profile.devices)
 
 
 def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:

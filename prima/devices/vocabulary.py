@@ -8,6 +8,12 @@ from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
 ID = attribute("id", "id", "its name", "required")
 TITLE = attribute("title", "text", "what people call it")
+LIMITS = (
+    attribute("accept", "duration", "how long the robot may take to begin", low=1),
+    attribute("progress", "duration", "how long it may go on without a report", low=1),
+    attribute("cancel", "duration", "how long it may take to stop", low=1),
+)
+"""How long a driver may take before it is given up."""
 ROBOT = Vocabulary(
     "urn:prima:robot:1",
     "robot",
@@ -45,7 +51,10 @@ ROBOT = Vocabulary(
                     default="20s",
                 ),
             ),
-            ("device", "camera", "voice", "touch", "gesture", "adds", "allows", "substitute"),
+            (
+                *("device", "camera", "voice", "touch", "gesture"),
+                *("adds", "allows", "substitute", "driver"),
+            ),
         ),
         Element(
             "device",
@@ -161,6 +170,108 @@ ROBOT = Vocabulary(
             (
                 attribute("command", "id", "the Command", "required"),
                 attribute("argument", "id", "the argument's name", "required"),
+            ),
+        ),
+        Element(
+            "driver",
+            "What carries out Commands on the real robot, and tells what its sensors say.",
+            (
+                attribute("kind", "id", "which driver, as `sim` or `ros2`", "required"),
+                attribute("address", "text", "where it reaches the robot: a URL, a host, a port"),
+                attribute(
+                    "devices",
+                    "text",
+                    "the devices that are its, separated by spaces; by default all that no other"
+                    " driver names",
+                ),
+                attribute(
+                    "open", "duration", "how long it may take to connect", default="10s", low=1
+                ),
+                attribute(
+                    "heartbeat",
+                    "duration",
+                    "how often it is asked whether the robot is still there",
+                    default="2s",
+                    low=100,
+                ),
+                *LIMITS,
+            ),
+            ("does", "senses", "place", "option"),
+        ),
+        Element(
+            "does",
+            "How the driver carries out a Command or a gesture.",
+            (
+                attribute("command", "id", "the Command; `say` for what any Command says"),
+                attribute("gesture", "id", "the gesture, where the Command is `gesture`"),
+                attribute("by", "text", "the robot's action, service, topic, method or move"),
+                attribute("type", "text", "the type of its messages"),
+                attribute(
+                    "as",
+                    "text",
+                    "the kind of interface that `by` names",
+                    choices=("action", "service", "topic"),
+                ),
+                *LIMITS,
+            ),
+            ("set",),
+        ),
+        Element(
+            "set",
+            "An argument of the robot's interface, or a field of its message.",
+            (
+                attribute("name", "text", "its name; dots lead into a message", "required"),
+                attribute(
+                    "value",
+                    "text",
+                    "its value; {NAME} stands for an argument of the Command, its {text} or {lang},"
+                    " or the {x}, {y} and {heading} of the place it names",
+                    "required",
+                ),
+            ),
+        ),
+        Element(
+            "senses",
+            "What the driver tells of by itself: an event, a sensor's value, or what users say.",
+            (
+                attribute("event", "id", "the event that is raised"),
+                attribute("sensor", "id", "the sensor whose value it is"),
+                attribute(
+                    "as",
+                    "text",
+                    "what else it is: what a user says, the robot's pose, whether the user is seen,"
+                    " or the emergency stop",
+                    choices=("heard", "pose", "human", "emergency"),
+                ),
+                attribute("by", "text", "the robot's topic, event or memory key", "required"),
+                attribute("type", "text", "the type of its messages"),
+                attribute("field", "text", "the part of the message; dots lead into it"),
+                attribute("when", "text", "the value at which the event is raised; any by default"),
+                attribute(
+                    "actor",
+                    "text",
+                    "whose doing the event is",
+                    default="user",
+                    choices=("user", "environment", "robot"),
+                ),
+            ),
+        ),
+        Element(
+            "place",
+            "Where a place of the site is on the robot's own map.",
+            (
+                attribute("name", "id", "its name, as Commands have it", "required"),
+                attribute("x", "number", "metres", "required"),
+                attribute("y", "number", "metres", "required"),
+                attribute("heading", "number", "degrees to the left of the x axis", default="0"),
+            ),
+        ),
+        Element(
+            "option",
+            "A setting of the driver's own.",
+            (
+                attribute("name", "id", "its name", "required"),
+                attribute("value", "text", "its value", "required"),
             ),
         ),
     ),

@@ -157,6 +157,16 @@ PHASES = {
         "were `passed`",
         ("behavior",),
     ),
+    "delayed": Phase(
+        "what an AB begins was held back until a device had stopped what it did before",
+        "`behavior`, `device`, `data`: `waited` (s)",
+        ("behavior", "device", "data"),
+    ),
+    "device": Phase(
+        "a device is missing from here on, or there again",
+        "`device`, `outcome`: `missing` or `back`; `message`: why",
+        ("device", "outcome"),
+    ),
     "substitute": Phase(
         "another Command takes the place of one that the robot lacks (x6)",
         "`command`, `by`",

@@ -1,0 +1,230 @@
+"""What a robot's document says of its drivers, as values."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from prima.devices.reading import Reader
+from prima.errors import Place
+from prima.markup.tree import Node
+from prima.messages import Json
+
+SLOT = re.compile(r"\{([a-z][a-z-]*)\}")
+"""Where a value of a Command is put in."""
+SENSES = ("event", "sensor", "as")
+DOES = ("command", "gesture")
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How long (ms) a driver may take before it is given up; None for as long as it likes."""
+
+    accept: int | None = None
+    """To begin a goal."""
+    progress: int | None = None
+    """To report of a goal again."""
+    cancel: int | None = None
+    """To confirm that a goal has stopped."""
+
+    def over(self, others: Limits) -> Limits:
+        """These where they are given, else the others."""
+        return Limits(
+            others.accept if self.accept is None else self.accept,
+            others.progress if self.progress is None else self.progress,
+            others.cancel if self.cancel is None else self.cancel,
+        )
+
+
+FOREVER = Limits()
+USUAL = Limits(accept=5_000, cancel=5_000)
+"""What a driver has by default. Whether it has to report while a goal goes on is its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Does:
+    """How a Command, or a gesture, is carried out."""
+
+    command: str
+    gesture: str
+    by: str
+    type: str
+    kind: str
+    """``action``, ``service`` or ``topic``, where that has to be said."""
+    limits: Limits
+    values: tuple[tuple[str, str], ...]
+    """Names and values of the interface's arguments, as written."""
+    place: Place
+
+    def filled(self, given: Mapping[str, Json]) -> dict[str, Json]:
+        """The arguments as values within values, with what a Command gives put in.
+
+        A value that is one slot keeps its type; one without a slot is read as JSON, if it is.
+        A slot for which nothing is given leaves its argument out.
+        """
+        filled: dict[str, Json] = {}
+        for name, written in self.values:
+            value = _fill(written, given)
+            if value is not None:
+                _put(filled, name.split("."), value)
+        return filled
+
+
+def _fill(written: str, given: Mapping[str, Json]) -> Json:
+    whole = SLOT.fullmatch(written)
+    if whole:
+        return given.get(whole[1])
+    if SLOT.search(written):
+        return SLOT.sub(lambda slot: str(given.get(slot[1], "")), written)
+    try:
+        return json.loads(written)
+    except ValueError:
+        return written
+
+
+def _put(values: dict[str, Json], path: list[str], value: Json) -> None:
+    for name in path[:-1]:
+        inner = values.setdefault(name, {})
+        values = inner if isinstance(inner, dict) else {}
+    values[path[-1]] = value
+
+
+@dataclass(frozen=True, slots=True)
+class Senses:
+    """Something that a driver tells of by itself."""
+
+    what: str
+    """``event``, ``sensor``, or what ``as`` says: ``heard``, ``pose``, ``human``, ``emergency``."""
+    name: str
+    """The event's or sensor's."""
+    by: str
+    type: str
+    field: str
+    when: str
+    actor: Any
+    place: Place
+
+    def value(self, message: Json) -> Json:
+        """The part of a message that counts; None where the message lacks it."""
+        for name in self.field.split(".") if self.field else ():
+            if not isinstance(message, dict) or name not in message:
+                return None
+            message = message[name]
+        return message
+
+    def holds(self, value: Json) -> bool:
+        """Whether an event is raised at a value."""
+        if not self.when:
+            return value is not None
+        return value == _fill(self.when, {}) or str(value) == self.when
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A place: metres, and degrees to the left of the x axis."""
+
+    x: float
+    y: float
+    heading: float
+
+
+@dataclass(slots=True)
+class DriverSettings:
+    """A ``driver`` element. Times are ms."""
+
+    kind: str
+    address: str
+    devices: frozenset[str]
+    """The devices that it carries; empty until :func:`share_devices` has given it the rest."""
+    open: int
+    heartbeat: int
+    limits: Limits
+    does: list[Does]
+    senses: list[Senses]
+    place: Place
+    places: dict[str, Pose] = field(default_factory=dict)
+    options: dict[str, str] = field(default_factory=dict)
+
+    def how(self, command: str, gesture: str = "") -> Does | None:
+        """How a Command is carried out, if the document says so: a gesture's own first."""
+        said = [one for one in self.does if one.command == command]
+        own = (one for one in said if gesture and one.gesture == gesture)
+        return next(own, None) or next((one for one in said if not one.gesture), None)
+
+
+def read_driver(reader: Reader, node: Node) -> DriverSettings:
+    """Read a ``driver`` element."""
+    return DriverSettings(
+        kind=node.get("kind"),
+        address=node.get("address"),
+        devices=frozenset(node.get("devices").split()),
+        open=reader.get(node, "open"),
+        heartbeat=reader.get(node, "heartbeat"),
+        limits=_limits(reader, node).over(USUAL),
+        does=[_does(reader, child) for child in node.all("does")],
+        senses=[_senses(reader, child) for child in node.all("senses")],
+        place=node.place,
+        places={
+            child.get("name"): Pose(
+                reader.get(child, "x") or 0.0,
+                reader.get(child, "y") or 0.0,
+                reader.get(child, "heading") or 0.0,
+            )
+            for child in node.all("place")
+        },
+        options={child.get("name"): child.get("value") for child in node.all("option")},
+    )
+
+
+def _limits(reader: Reader, node: Node) -> Limits:
+    return Limits(*(reader.get(node, name) for name in ("accept", "progress", "cancel")))
+
+
+def _does(reader: Reader, node: Node) -> Does:
+    if not any(name in node.attributes for name in DOES):
+        message = "<does> needs a command or a gesture."
+        reader.problem(node, "missing-attribute", message, "", 'Write command="...".')
+    command = node.get("command") or ("gesture" if node.get("gesture") else "")
+    values = tuple((child.get("name"), child.get("value")) for child in node.all("set"))
+    return Does(
+        command,
+        node.get("gesture"),
+        node.get("by"),
+        node.get("type"),
+        node.get("as"),
+        _limits(reader, node),
+        values,
+        node.place,
+    )
+
+
+def _senses(reader: Reader, node: Node) -> Senses:
+    given = [name for name in SENSES if name in node.attributes]
+    if len(given) != 1:
+        message = "<senses> needs exactly one of event, sensor, as."
+        if given:
+            reader.problem(node, "exclusive", message, given[1], "Write a <senses> for each.")
+        else:
+            remedy = 'Write event="...", sensor="..." or as="heard".'
+            reader.problem(node, "missing-attribute", message, "", remedy)
+    what = given[0] if given else "event"
+    return Senses(
+        node.get("as") if what == "as" else what,
+        "" if what == "as" else node.get(what),
+        node.get("by"),
+        node.get("type"),
+        node.get("field"),
+        node.get("when"),
+        node.get("actor", "user"),
+        node.place,
+    )
+
+
+def share_devices(drivers: list[DriverSettings], devices: frozenset[str]) -> None:
+    """Give the drivers that name no devices all those that no other driver names."""
+    left = devices - {name for one in drivers for name in one.devices}
+    for driver in drivers:
+        driver.devices = driver.devices or left

@@ -1,0 +1,1 @@
+"""Runs on real robots: drivers, the clock, the journal, services."""

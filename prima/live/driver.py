@@ -1,0 +1,230 @@
+"""Drivers: what carries goals out on a robot, and tells what its sensors say.
+
+A driver knows no rule of mediation. :class:`Driver` is the plain interface;
+:class:`TaskDriver` is what most robots need: one coroutine for each goal.
+All methods are called in the event loop of the run; a thread reports with
+:meth:`Driver.post`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import ClassVar
+
+from prima.devices.goals import (
+    SAY,
+    Accepted,
+    Begin,
+    Broke,
+    Done,
+    Lost,
+    News,
+    Progress,
+    Report,
+    Stopped,
+)
+from prima.devices.profile import Profile
+from prima.devices.settings import Does, DriverSettings, Limits, Pose
+from prima.errors import PrimaError
+from prima.messages import Data, Json, Record
+
+Tell = Callable[[Report | News], None]
+
+
+class Unreachable(PrimaError):
+    """The robot, or the program that drives it, is not there."""
+
+
+class Refused(Exception):
+    """A goal is not reached: the robot refuses it, or has failed at it.
+
+    Args:
+        reason: why, for people.
+        device: the device that failed; by default the goal's first.
+    """
+
+    def __init__(self, reason: str, device: str = "") -> None:
+        super().__init__(reason)
+        self.device = device
+
+
+class Driver:
+    """One connection to a robot. Times are ms.
+
+    Args:
+        settings: its ``driver`` element.
+        profile: the robot.
+    """
+
+    kind: ClassVar[str] = ""
+    """Its name in robots' documents."""
+    mapped: ClassVar[bool] = False
+    """Whether a Command needs a ``does`` to be carried out."""
+    own: ClassVar[frozenset[str]] = frozenset()
+    """The Commands (and ``say``, ``listen``) that it carries out without one."""
+    progress: ClassVar[Limits] = Limits()
+    """How long it takes at most by its own nature, where the document says nothing."""
+
+    def __init__(self, settings: DriverSettings, profile: Profile) -> None:
+        self.settings = settings
+        self.profile = profile
+        self._tell: Tell = lambda _: None
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    # What a driver implements -----------------------------------------------------------
+
+    async def open(self) -> None:
+        """Connect to the robot; called again after the connection was lost.
+
+        Raises:
+            Unreachable: it is not there; the message says what to do.
+        """
+
+    def start(self, goal: Begin) -> None:
+        """Begin a goal. Reports of it follow, now or later: accepted, then one of its ends."""
+        raise NotImplementedError
+
+    def cancel(self, key: str) -> None:
+        """End a goal as soon as possible; :class:`Stopped` follows when it has ended."""
+        raise NotImplementedError
+
+    def again(self, key: str) -> None:
+        """A feedback Command makes another loop: its goal simply goes on."""
+
+    def stand(self) -> None:
+        """Stop the wheels where the body rolls on after a Command (rule F5)."""
+
+    async def safe(self) -> None:
+        """Stop everything at once, whatever runs. Called more than once, and after a loss."""
+
+    async def ping(self) -> None:
+        """Ask whether the robot is still there, within the heartbeat.
+
+        Raises:
+            Unreachable: it is not.
+        """
+
+    async def close(self) -> None:
+        """Give back the connection; the run is over."""
+
+    def due(self) -> int | None:
+        """When it has something to tell by itself (ms of the run): a simulated robot's clock."""
+        return None
+
+    def sample(self, now: int) -> None:
+        """Tell what has to be known at this instant, as where the robot is. Must not block."""
+
+    def observe(self, now: int, records: list[Record]) -> None:
+        """See what the run has made of an instant."""
+
+    # What a driver uses -----------------------------------------------------------------
+
+    def attach(self, tell: Tell) -> None:
+        """Connect it with a run, in whose event loop this is called."""
+        self._tell = tell
+        self._loop = asyncio.get_running_loop()
+
+    def tell(self, report: Report | News) -> None:
+        """Tell the run something, from its event loop."""
+        self._tell(report)
+
+    def post(self, report: Report | News) -> None:
+        """Tell the run something, from another thread. After the run's end it is dropped."""
+        loop = self._loop
+        if loop is not None and not loop.is_closed():
+            loop.call_soon_threadsafe(self._tell, report)
+
+    def lose(self, reason: str) -> None:
+        """Tell that the connection is gone: what runs fails, and :meth:`open` is called again."""
+        self.tell(Lost(self.settings.devices, reason))
+
+    def does(self, goal: Begin) -> Does | None:
+        """How a goal is carried out, by the robot's document."""
+        gesture = str(goal.command.args.get("name", "")) if goal.kind == "gesture" else ""
+        return self.settings.how(goal.kind, gesture)
+
+    def values(self, goal: Begin) -> dict[str, Json]:
+        """What a goal gives to be put into arguments: see ``set`` in the robot's document."""
+        command = goal.command
+        values: dict[str, Json] = {**command.args, "lang": command.lang or "en"}
+        if command.text is not None:
+            values["text"] = command.text.strip()
+        if pose := self.place(goal):
+            values |= {"x": pose.x, "y": pose.y, "heading": pose.heading}
+        return values
+
+    def place(self, goal: Begin) -> Pose | None:
+        """The place that a goal names, on the robot's own map; None if it names none."""
+        args = goal.command.args
+        return self.settings.places.get(str(args.get("to", args.get("toward", ""))))
+
+
+class TaskDriver(Driver):
+    """A driver that has one coroutine for each goal.
+
+    A goal is done when :meth:`perform` returns, fails when it raises, and has stopped when it
+    has ended after being cancelled: stop the robot where :class:`asyncio.CancelledError` arrives.
+    """
+
+    confirms: ClassVar[bool] = False
+    """Whether :meth:`perform` calls :meth:`accept` itself, when the robot has accepted a goal."""
+
+    def __init__(self, settings: DriverSettings, profile: Profile) -> None:
+        super().__init__(settings, profile)
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+
+    async def perform(self, goal: Begin) -> Data:
+        """Carry out a goal to its end; gives what the device tells then.
+
+        Raises:
+            Refused: the robot does not do it.
+            Unreachable: it is not there any more.
+        """
+        raise NotImplementedError
+
+    def accept(self, goal: Begin) -> None:
+        """The robot has begun a goal."""
+        self.tell(Accepted(goal.key))
+
+    def report(self, goal: Begin) -> None:
+        """The robot is on with a goal."""
+        self.tell(Progress(goal.key))
+
+    def start(self, goal: Begin) -> None:
+        """Begin the coroutine of a goal."""
+        self._tasks[goal.key] = asyncio.ensure_future(self._run(goal))
+        if not self.confirms:
+            self.accept(goal)
+
+    def cancel(self, key: str) -> None:
+        """Cancel the coroutine of a goal; one that is over has told its end already."""
+        if task := self._tasks.get(key):
+            task.cancel()
+
+    async def close(self) -> None:
+        """Cancel what still runs, and wait for it to end."""
+        tasks = list(self._tasks.values())
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _run(self, goal: Begin) -> None:
+        try:
+            report: Report = Done(goal.key, await self.perform(goal))
+        except asyncio.CancelledError:
+            report = Stopped(goal.key)
+        except Unreachable as error:
+            self.lose(str(error))
+            return
+        except Exception as error:
+            device = getattr(error, "device", "") or min(goal.devices, default="none")
+            report = Broke(goal.key, device, str(error) or type(error).__name__)
+        finally:
+            self._tasks.pop(goal.key, None)
+        self.tell(report)
+
+
+def speaks(goal: Begin) -> str:
+    """The text that a goal has to say, with spaces at its ends cut off; nothing for others."""
+    return (goal.command.text or "").strip() if goal.kind == SAY else ""
