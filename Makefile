@@ -1,4 +1,4 @@
-# Verbs: demo test check mutants bench schemas build lock. Each sets up what it needs in .venv, from the
+# Verbs: demo test test-live check mutants bench schemas build lock. Each sets up what it needs in .venv, from the
 # versions and hashes of release/*.txt.
 PYTHON ?= python3
 VENV := .venv
@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 
-.PHONY: demo test check mutants bench attack schemas build lock clean
+.PHONY: demo test test-live check mutants bench attack schemas build lock clean
 
 demo: $(VENV)/.runtime
 	@mkdir -p build
@@ -18,6 +18,11 @@ demo: $(VENV)/.runtime
 
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto
+
+# Drivers against the second parties of tests/parties, each in an environment of its own.
+test-live: $(VENV)/.dev
+	$(BIN)/python -m tools.environments
+	$(BIN)/python -m pytest tests/parties
 
 check: $(VENV)/.dev
 	$(BIN)/ruff format --check .
@@ -53,7 +58,7 @@ lock: $(VENV)/.dev
 	$(BIN)/python -m release.licences
 
 clean:
-	rm -rf $(VENV) dist build
+	rm -rf $(VENV) .environments dist build
 
 $(BIN)/python:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "PRIMA needs Python 3.11 or newer")'
