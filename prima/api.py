@@ -15,18 +15,16 @@ from typing import IO, TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, RunError, UsageError, did_you_mean
 from prima.interpreter.elements import Document
-from prima.language.commands import ABSENCE_MS, PATIENCE_MS
 from prima.language.values import LONGEST_MS
 from prima.loading import (
-    FAVOURITE,
     Loaded,
     documents_folder,
-    favourite_problem,
     load,
     load_scenario,
     stage,
     validate,
 )
+from prima.loading.heads import VERSION, check_files, chosen_policy, run_record
 from prima.messages import Record
 
 if TYPE_CHECKING:
@@ -42,8 +40,6 @@ if TYPE_CHECKING:
     from prima.transcript.table import Row
 
 # What one use needs and another does not is imported where it is used: most commands are short.
-
-VERSION = "1.0.0"
 
 
 @dataclass(slots=True)
@@ -178,7 +174,6 @@ def rehearse(
         DocumentError: documents are wrong.
         UsageError: no such policy or file, or no host's name.
     """
-    from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
@@ -186,34 +181,13 @@ def rehearse(
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
-    absence = cast.robot.absence
     name = cast.scenario.policy if policy is None else policy
-    try:
-        chosen = policy_named(name)
-    except UsageError as error:
-        raise UsageError(f"{error} {FAVOURITE}") from None
-    if problem := favourite_problem(name, cast.documents):
-        raise UsageError(f"{problem[0]} {problem[1].text}")
+    chosen = chosen_policy(name, loaded)
     if patience is None:
         patience = cast.scenario.patience
     web = fetcher(list(hosts), len(cast.documents))
     rehearsal = Rehearsal(cast, chosen, bound, web, isolate, patience)
-    head: Record = {
-        "time": 0,
-        "phase": "run",
-        "actor": "mediator",
-        "data": {
-            "version": VERSION,
-            "scenario": cast.scenario.id,
-            "policy": name,
-            "bound": bound,
-            **({} if absence == ABSENCE_MS else {"absence": absence / 1000}),
-            **({} if patience == PATIENCE_MS else {"patience": patience / 1000}),
-            "date": cast.scenario.date,
-            "applications": [doc.id for doc in cast.documents],
-            "files": loaded.files,
-        },
-    }
+    head = run_record(loaded, name, bound, patience)
     measure = Measure()
     made = Transcript([], cast.scenario.id, measure=measure)
     for records in chain([[head]], rehearsal.run()):
@@ -379,8 +353,12 @@ def export(
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 
 
-def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
+def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) -> Transcript:
     """Run a transcript's inbound records again, without a world: the result is the same.
+
+    Args:
+        transcript: of a rehearsal, or the journal of a live run.
+        scenario: the rehearsal's; a live run needs none, as its journal says what was run.
 
     Raises:
         UsageError: the scenario's files are not those of the transcript.
@@ -389,20 +367,17 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded) -> Transcript:
     from prima.journal import replay_records
     from prima.transcript.lines import finished
 
-    loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
-    cast = loaded.cast
     head = transcript.records[0]
     if head["phase"] != "run":
         raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
-    files = head["data"].get("files", {})
-    if not isinstance(files, dict):
-        raise UsageError(f"{transcript.name}: the run record's files are none.")
-    for name, digest in files.items():
-        if name in loaded.files and loaded.files[name] != digest:
-            raise UsageError(f"{name} is not the file that the transcript was made with.")
-        if name not in loaded.files and digest not in loaded.files.values():
-            message = f'it was made with "{name}", which is no file of this scenario.'
-            raise UsageError(f"{transcript.name}: {message}")
+    if scenario is None:
+        from prima.live.visit import reloaded
+
+        loaded = reloaded(head, transcript.name)
+    else:
+        loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
+    cast = loaded.cast
+    check_files(head, loaded, transcript.name)
     if transcript.records[-1]["time"] > LONGEST_MS / 1000:
         raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
     try:

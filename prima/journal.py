@@ -93,24 +93,41 @@ def replay_records(
         round(settings.get("patience", PATIENCE_MS / 1000) * 1000),
     )
     session = Session(documents, policy, commands, bound, date, absence=absence, patience=patience)
+    try:
+        yield from replay_instants(session, held)
+    finally:
+        session.close()
+    if (last := held[-1])["phase"] == "over":
+        yield {**last, "time": round(last["time"] * 1000)}
+
+
+def replay_instants(session: Session, records: list[Record]) -> Iterator[Record]:
+    """Feed a transcript's inbound records to a session; gives the records that it makes.
+
+    Args:
+        session: a new one.
+        records: the transcript's, times in s. Those of the session are in ms.
+
+    Raises:
+        UsageError: the transcript names an application that is not there.
+    """
     batches: dict[int, list[Inbound]] = {}
-    for record in held:
+    for record in records:
         value = inbound_of(record)
         if value is not None:
             if isinstance(value, Loaded) and value.app not in session.apps:
                 raise UsageError(f'The transcript loads "{value.app}", which is not there.')
             batches.setdefault(round(record["time"] * 1000), []).append(value)
-    last = held[-1]
-    end = round(last["time"] * 1000)
+    end = round(records[-1]["time"] * 1000)
     for now, batch in sorted(batches.items()):
-        while (due := session.deadline()) is not None and due < now:
-            session.step(due, ())
+        yield from _time_out(session, now - 1)
         session.step(now, batch)
         yield from session.drain()
-    while (due := session.deadline()) is not None and due <= end and last["phase"] == "over":
+    yield from _time_out(session, end)
+
+
+def _time_out(session: Session, until: int) -> Iterator[Record]:
+    """Carry out what the session does by itself up to a time."""
+    while (due := session.deadline()) is not None and due <= until:
         session.step(due, ())
         yield from session.drain()
-    yield from session.drain()
-    session.close()
-    if last["phase"] == "over":
-        yield {**last, "time": end}

@@ -23,6 +23,7 @@ COMMANDS = {
     "validate": "Check documents; certify what one can do to another.",
     "run": "Run a scenario in simulation and print its transcript.",
     "talk": "Play the user of a run in the terminal.",
+    "live": "Run applications on a robot, in real time.",
     "test": "Check what scenarios expect; cover documents.",
     "show": "Print a transcript as a table.",
     "diff": "Compare two runs by behaviour.",

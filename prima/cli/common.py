@@ -75,6 +75,24 @@ why_option = click.option(
 )
 
 
+PATIENCE = "Let no application keep another from the speaker for longer, 60s by default (rule E6)."
+"""What ``--patience`` is for."""
+
+
+def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
+    """An option whose value is a time as documents write it; it is given in ms."""
+
+    def read(_context: click.Context, _option: click.Parameter, text: str | None) -> int | None:
+        from prima.language.values import read_value
+
+        try:
+            return None if text is None else int(read_value("duration", text))
+        except ValueError as error:
+            raise UsageError(f'{name} "{text}" {error}') from None
+
+    return click.option(name, metavar="TIME", callback=read, help=meaning)
+
+
 def coloured() -> bool:
     """Whether to colour what goes to stdout."""
     return sys.stdout.isatty() and "NO_COLOR" not in os.environ

@@ -12,19 +12,22 @@ from prima.cli.common import check_output, tell, write_for_programs
 
 @click.command()
 @click.argument("transcript", type=click.Path())
-@click.argument("scenario", type=click.Path())
+@click.argument("scenario", type=click.Path(), required=False)
 @click.option("-o", "--output", type=click.Path(), help="Write the replayed transcript here.")
-def replay(transcript: str, scenario: str, output: str | None) -> None:
+def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     """Run a transcript's inbound events again and check that the same comes out.
+
+    The journal of a live run names what it was made with; other transcripts need their scenario.
 
     \b
     prima replay mediated.jsonl documents/scenarios/follow-during-navigation.xml
+    prima replay visit.jsonl
     """
     from prima import api
     from prima.loading.writing import write_whole
 
     if output not in (None, "-"):
-        check_output(output, "replay", transcript, scenario)
+        check_output(output, "replay", transcript, *([scenario] if scenario else []))
     original = api.read(transcript)
     again = api.replay(original, scenario)
     if output == "-":

@@ -11,8 +11,10 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     MAPS,
+    PATIENCE,
     check_output,
     columns,
+    duration_option,
     format_option,
     limit_option,
     map_option,
@@ -58,12 +60,7 @@ ENDS_OF_FOLDERS = ("/", os.sep)
 @click.option(
     "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
 )
-@click.option(
-    "--patience",
-    metavar="TIME",
-    callback=lambda context, option, text: _milliseconds(text),
-    help="Let no application keep another from the speaker for longer, 60s by default (rule E6).",
-)
+@duration_option("--patience", PATIENCE)
 @why_option
 @click.option(
     "--allow-host",
@@ -187,20 +184,6 @@ def run(
         form,
         maps,
     )
-
-
-def _milliseconds(text: str | None) -> int | None:
-    """A time as documents write it.
-
-    Raises:
-        UsageError: it is none.
-    """
-    from prima.language.values import read_value
-
-    try:
-        return None if text is None else int(read_value("duration", text))
-    except ValueError as error:
-        raise UsageError(f'--patience "{text}" {error}') from None
 
 
 def _run_one(

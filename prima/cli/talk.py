@@ -167,7 +167,7 @@ def _write(records: list[Record]) -> None:
 
 def _head(game: Game, loaded: Loaded) -> Record:
     """The first record: without the scenario's digest, as its user is another one."""
-    from prima.api import VERSION
+    from prima.loading.heads import VERSION
 
     scenario = game.cast.scenario
     own = os.path.basename(loaded.cast.scenario.node.source.file)

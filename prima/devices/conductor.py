@@ -125,6 +125,7 @@ class Conductor:
         limits: how long drivers may take over a goal.
         exclusive: whether a device does one thing at a time. Without a mediator it does not:
             whoever begins takes it.
+        start: when the run begins, or goes on (ms).
     """
 
     def __init__(
@@ -133,6 +134,7 @@ class Conductor:
         pose: Callable[[], dict[str, float]],
         limits: Callable[[Begin], Limits] = lambda _: FOREVER,
         exclusive: bool = True,
+        start: int = 0,
     ) -> None:
         self.profile = profile
         self.ear = Ear()
@@ -153,7 +155,7 @@ class Conductor:
         self._missing: dict[str, str] = {}
         """Devices that are lost, and why."""
         self._serial = 0
-        self._now = 0
+        self._now = start
 
     def drain(self) -> list[Call]:
         """Give the calls for drivers made since the last time, in order.

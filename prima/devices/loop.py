@@ -5,7 +5,7 @@ It has no clock. Whoever drives it jumps to what is due next, or waits until the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from prima.devices.protocol import Devices
 from prima.interpreter.bounds import Visit
@@ -21,11 +21,17 @@ MAX_WRITTEN = 50_000_000
 class Loop:
     """One run: a session on its devices, instant by instant. Times are ms from its start."""
 
-    def __init__(self, session: Session, devices: Devices, until: int) -> None:
+    def __init__(
+        self, session: Session, devices: Devices, until: int, most: int | None = MAX_RECORDS
+    ) -> None:
         self.session = session
         self.devices = devices
         self.until = until
         """When the run ends at the latest."""
+        self.most = most
+        """Records that it may make; None for as many as come, where nobody keeps them."""
+        self.journal: Callable[[list[Record]], object] = lambda _: None
+        """Is given the records of an instant before its orders are carried out."""
         self.now = 0
         """The instant that was carried out last."""
         self.outcome = ""
@@ -39,6 +45,10 @@ class Loop:
         """Whether every application has ended, likewise."""
         self._full = False
         """Whether the run has made as much as it may."""
+
+    def go_on(self, now: int) -> None:
+        """Go on with a session that has been brought to this time already."""
+        self.now, self._deadline, self._ended = now, self.session.deadline(), self.session.over
 
     def run(self) -> Iterator[list[Record]]:
         """Run to the end, giving the records of each instant as they are made."""
@@ -74,7 +84,9 @@ class Loop:
         self.session.recorder.add("over", "mediator", outcome=self.outcome)
         self.visits = self.session.drain_visits()
         self.session.close()
-        return self.session.drain()
+        records = self.session.drain()
+        self.journal(records)
+        return records
 
     @property
     def over(self) -> bool:
@@ -93,11 +105,14 @@ class Loop:
         if not inbound and (self._deadline is None or now < self._deadline):
             return []
         session = self.session
-        for order in session.step(now, inbound):
+        orders = session.step(now, inbound)
+        records, self.visits = session.drain(), session.drain_visits()
+        self.journal(records)
+        for order in orders:
             self.devices.order(now, order)
         self._deadline, self._ended = session.deadline(), session.over
-        records, self.visits = session.drain(), session.drain_visits()
-        self._made += len(records)
-        self._full = self._made > MAX_RECORDS or session.written > MAX_WRITTEN
+        if self.most is not None:
+            self._made += len(records)
+            self._full = self._made > self.most or session.written > MAX_WRITTEN
         self.devices.observe(now, records)
         return records

@@ -46,6 +46,10 @@ class Sight:
             return [Occurred("human.lost", "robot")]
         return []
 
+    def restore(self, found: bool) -> None:
+        """Go on after a run that was cut off, in which the user was seen or not."""
+        self._found, self._unseen_since = found, None
+
     def find(self, where: Data) -> Inbound:
         """A Command that looks for the user has found them."""
         self._found, self._unseen_since = True, None

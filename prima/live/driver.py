@@ -26,13 +26,14 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings, Limits, Pose
-from prima.errors import PrimaError
+from prima.errors import RunError
 from prima.messages import Data, Json, Record
+from prima.sim.map import Map
 
 Tell = Callable[[Report | News], None]
 
 
-class Unreachable(PrimaError):
+class Unreachable(RunError):
     """The robot, or the program that drives it, is not there."""
 
 
@@ -55,6 +56,7 @@ class Driver:
     Args:
         settings: its ``driver`` element.
         profile: the robot.
+        site: the map of the place where the robot is.
     """
 
     kind: ClassVar[str] = ""
@@ -66,9 +68,12 @@ class Driver:
     progress: ClassVar[Limits] = Limits()
     """How long it takes at most by its own nature, where the document says nothing."""
 
-    def __init__(self, settings: DriverSettings, profile: Profile) -> None:
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         self.settings = settings
         self.profile = profile
+        self.site = site
+        self.now: Callable[[], int] = lambda: 0
+        """The run's time (ms)."""
         self._tell: Tell = lambda _: None
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -105,6 +110,14 @@ class Driver:
             Unreachable: it is not.
         """
 
+    async def check(self) -> list[str]:
+        """Try what only this driver can try before a run, as whether the microphone hears anything.
+
+        Returns:
+            what does not work, each a sentence.
+        """
+        return []
+
     async def close(self) -> None:
         """Give back the connection; the run is over."""
 
@@ -120,9 +133,9 @@ class Driver:
 
     # What a driver uses -----------------------------------------------------------------
 
-    def attach(self, tell: Tell) -> None:
-        """Connect it with a run, in whose event loop this is called."""
-        self._tell = tell
+    def attach(self, tell: Tell, now: Callable[[], int] = lambda: 0) -> None:
+        """Connect it with a run and its clock (ms), in whose event loop this is called."""
+        self._tell, self.now = tell, now
         self._loop = asyncio.get_running_loop()
 
     def tell(self, report: Report | News) -> None:
@@ -155,9 +168,15 @@ class Driver:
         return values
 
     def place(self, goal: Begin) -> Pose | None:
-        """The place that a goal names, on the robot's own map; None if it names none."""
+        """The place that a goal names, on the robot's own map; None if it names none.
+
+        The robot's document says where a place is there; else it is where the site's map has it.
+        """
         args = goal.command.args
-        return self.settings.places.get(str(args.get("to", args.get("toward", ""))))
+        name = str(args.get("to", args.get("toward", "")))
+        point = self.site.point(name)
+        known = Pose(*point, self.site.headings.get(name, 0.0)) if point is not None else None
+        return self.settings.places.get(name, known)
 
 
 class TaskDriver(Driver):
@@ -170,8 +189,8 @@ class TaskDriver(Driver):
     confirms: ClassVar[bool] = False
     """Whether :meth:`perform` calls :meth:`accept` itself, when the robot has accepted a goal."""
 
-    def __init__(self, settings: DriverSettings, profile: Profile) -> None:
-        super().__init__(settings, profile)
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
+        super().__init__(settings, profile, site)
         self._tasks: dict[str, asyncio.Task[None]] = {}
 
     async def perform(self, goal: Begin) -> Data:

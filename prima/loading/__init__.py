@@ -6,6 +6,7 @@ text and values.
 
 from __future__ import annotations
 
+import os
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -442,14 +443,18 @@ def _prices(document: Document) -> list[Problem]:
     return notes(document, read_robot(str(robot), read_file(robot)))
 
 
-def load_scenario(path: str | Path) -> Loaded:
+def load_scenario(path: str | Path, robot: str = "") -> Loaded:
     """Load a scenario with its world, robot and applications.
+
+    Args:
+        path: the scenario's.
+        robot: the path of another robot than the scenario's.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _without_ignored(_load(path_of(path), read_file(path)))
+    return _without_ignored(_load(path_of(path), read_file(path), robot=robot))
 
 
 def _without_ignored(loaded: Loaded) -> Loaded:
@@ -465,6 +470,7 @@ def stage(
     world: str | None = None,
     robot: str | None = None,
     maps: Iterable[str] = (),
+    entrances: bool = False,
 ) -> Loaded:
     """Put applications on a robot in an empty room, with a user in front of it.
 
@@ -475,6 +481,7 @@ def stage(
         world: path of another world; the robot is at its first place.
         robot: path of another robot's profile.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
+        entrances: whether the robot takes up what areas of the world offer.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
@@ -497,9 +504,10 @@ def stage(
     ]
     world = world or str(demo / "worlds" / "room.xml")
     robot = robot or str(demo / "robots" / "papero.xml")
+    taken_up = ' entrances="open"' if entrances else ""
     text = (
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
-        f' world="{escape(world)}" robot="{escape(robot)}">'
+        f' world="{escape(world)}" robot="{escape(robot)}"{taken_up}>'
         f"{_standing(world)}{''.join(applications + answers)}</scenario>"
     )
     try:
@@ -577,7 +585,7 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
 
 
 @few_guesses()
-def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
+def _load(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.devices.profile import read_robot
     from prima.sim.devices import Cast
@@ -587,28 +595,30 @@ def _load(path: Path, data: bytes, whole: bool = False) -> Loaded:
     from prima.sim.scenario import look_at_scenario
 
     scenario, told = look_at_scenario(str(path), data)
+    if robot:
+        scenario.robot = os.path.relpath(robot, path.parent)
     reading = _Reading(path, {path.name: _digest(data)}, [*told], whole=whole)
     reading.answered = tuple(one.uri for one in scenario.services if one.uri)
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
     world = reading.read(scenario.world, root.attribute_place("world"), read_world)
-    robot = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
+    profile = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
     if world is not None:
         reading.problems += world.warnings
     offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
-    if robot is not None:
-        reading.check_commands(robot)
-        reading.problems += robot.warnings
+    if profile is not None:
+        reading.check_commands(profile)
+        reading.problems += profile.warnings
     reading.check_policy(scenario)
     reading.replies(scenario)
     offered = {name for _, name in offers}
     complete = len(reading.documents) == len(scenario.applications) + len(offered)
-    if world is None or robot is None or not complete:
+    if world is None or profile is None or not complete:
         documents = reading.documents if complete else None
-        names = check_names(scenario, world, robot, documents)
+        names = check_names(scenario, world, profile, documents)
         raise DocumentError(in_order([*reading.problems, *names]))
-    cast = Cast(scenario, reading.documents, world, robot, offers)
+    cast = Cast(scenario, reading.documents, world, profile, offers)
     problems = in_order([*reading.problems, *check_cast(cast)])
     if not any(problem.severity == "error" for problem in told):
         problems = in_order([*problems, *check_hearing(cast)])

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from prima.devices.profile import Profile
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
-from prima.messages import Inbound, Loaded, Order, Record, Unloaded
+from prima.messages import Inbound, Loaded, Order, Record
 from prima.session import AnyDocument
-from prima.sim.map import Area, Map, Point
+from prima.sim.entrances import Entrances
+from prima.sim.map import Area, Map
 from prima.sim.person import Person
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
@@ -17,9 +19,6 @@ from prima.sim.scenario import Scenario
 from prima.sim.services import Services, Web
 from prima.sim.telephone import Telephone
 from prima.sim.world import STEP_MS, World
-
-THRESHOLD = 0.5
-"""How far (m) outside an area the robot has left it."""
 
 
 @dataclass(slots=True)
@@ -46,20 +45,18 @@ class SimulatedDevices:
         self.person = Person(scenario, self.world, self.robot)
         self.services = Services(scenario.services, web)
         self.telephone = Telephone(scenario.transfers)
-        native = [doc for doc in cast.documents if isinstance(doc, Document)]
-        self._native = {doc.id for doc in native}
+        self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
         """Applications of PRIMA's own language."""
-        self._watched = _watch_sensors(native, self.robot)
+        self._watched = watches(cast.documents)
+        if self._watched:
+            self.robot.body.told_of = sensors_watched(cast.documents)
         self._loads = sorted(
             (start, index, doc.id)
             for index, ((_, start, _), doc) in enumerate(
                 zip(scenario.applications, cast.documents, strict=False)
             )
         )
-        self._inside: set[str] = set()
-        """Areas that the robot is in."""
-        self._crossed: Point | None = None
-        """Where the robot was when areas were compared with its place last."""
+        self._entrances = Entrances(cast.offers)
         self._said = False
         """Whether something of what came in last was the user's doing."""
 
@@ -73,7 +70,7 @@ class SimulatedDevices:
         moves = self.world.moving or self.robot.body.moves_on
         due: int | None = None
         for time in (
-            0 if self._crossed is None and self.cast.offers else None,
+            0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
             self.robot.due(),
             self.person.due(),
@@ -91,8 +88,8 @@ class SimulatedDevices:
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
             inbound.append(self._loaded(self._loads.pop(0)[2]))
-        if self.cast.offers:
-            inbound += self._cross()
+        for one in self._entrances.cross(self.world.position):
+            inbound.append(self._loaded(one.app, one.place) if isinstance(one, Loaded) else one)
         inbound += self.robot.collect(now)
         said = self.person.collect(now)
         self._said = bool(said)
@@ -125,23 +122,6 @@ class SimulatedDevices:
         native = name in self._native
         return Loaded(name, place, {} if native else self.cast.scenario.connection)
 
-    def _cross(self) -> list[Inbound]:
-        """Load what an area offers that the robot has come into, and unload what it has left."""
-        here = self.world.position
-        if here is self._crossed:
-            return []
-        self._crossed = here
-        crossed: list[Inbound] = []
-        for area, name in self.cast.offers:
-            inside = area.id in self._inside
-            if not inside and area.holds(here):
-                self._inside.add(area.id)
-                crossed.append(self._loaded(name, area.title))
-            elif inside and not area.holds(here, THRESHOLD):
-                self._inside.discard(area.id)
-                crossed.append(Unloaded(name, area.title))
-        return crossed
-
 
 def _world(cast: Cast) -> World:
     """The world, with robot and user where the scenario lets them begin."""
@@ -156,13 +136,17 @@ def _world(cast: Cast) -> World:
     return world
 
 
-def _watch_sensors(documents: list[Document], robot: Robot) -> bool:
-    """Whether an application watches sensors; the robot is told which, where that is known."""
-    if not any(
-        doc.watches or any(form.watches for form in doc.forms.values()) for doc in documents
-    ):
-        return False
-    read = [sensors_read(doc) for doc in documents]
+def watches(documents: Iterable[AnyDocument]) -> bool:
+    """Whether an application watches sensors."""
+    native = (doc for doc in documents if isinstance(doc, Document))
+    return any(doc.watches or any(form.watches for form in doc.forms.values()) for doc in native)
+
+
+def sensors_watched(documents: Iterable[AnyDocument]) -> frozenset[str] | None:
+    """The sensors that applications look at, by the first part of their names.
+
+    None where that cannot be told: then all may matter.
+    """
+    read = [sensors_read(doc) for doc in documents if isinstance(doc, Document)]
     known = [one for one in read if one is not None]
-    robot.body.told_of = frozenset().union(*known) if len(known) == len(read) else None
-    return True
+    return frozenset().union(*known) if len(known) == len(read) else None

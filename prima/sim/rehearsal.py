@@ -78,6 +78,29 @@ def check_cast(cast: Cast) -> list[Problem]:
     return problems + check_expectations(scenario, cast.documents, cast.robot)
 
 
+def make_session(
+    cast: Cast, policy: Policy, bound: int | None, isolate: str, patience: int | None
+) -> Session:
+    """The session of a run.
+
+    Raises:
+        DocumentError: scenario, world, robot and applications do not go together.
+    """
+    if problems := check_cast(cast):
+        raise DocumentError(problems)
+    scenario = cast.scenario
+    return Session(
+        cast.documents,
+        policy,
+        cast.robot.commands,
+        bound,
+        scenario.date,
+        absence=cast.robot.absence,
+        isolate=isolate,
+        patience=scenario.patience if patience is None else patience,
+    )
+
+
 class Rehearsal(Loop):
     """One run of a scenario in virtual time: it jumps to whatever is due next.
 
@@ -96,18 +119,6 @@ class Rehearsal(Loop):
         isolate: str = "ea",
         patience: int | None = None,
     ) -> None:
-        problems = check_cast(cast)
-        if problems:
-            raise DocumentError(problems)
-        scenario = cast.scenario
-        session = Session(
-            cast.documents,
-            policy,
-            cast.robot.commands,
-            bound,
-            scenario.date,
-            absence=cast.robot.absence,
-            isolate=isolate,
-            patience=scenario.patience if patience is None else patience,
-        )
-        super().__init__(session, SimulatedDevices(cast, web, policy.exclusive), scenario.until)
+        session = make_session(cast, policy, bound, isolate, patience)
+        devices = SimulatedDevices(cast, web, policy.exclusive)
+        super().__init__(session, devices, cast.scenario.until)

@@ -1,0 +1,236 @@
+"""prima live."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import (
+    PATIENCE,
+    check_output,
+    clean,
+    columns,
+    duration_option,
+    format_option,
+    limit_option,
+    map_option,
+    raise_limits,
+    suggesting,
+    tell,
+    tell_problems,
+    why_option,
+    write_for_programs,
+)
+from prima.errors import UsageError
+from prima.scheduler.policy import POLICIES, USAGE
+
+if TYPE_CHECKING:
+    from prima.live.visit import Chosen, Settings, Visit
+    from prima.messages import Record
+
+INTERRUPTED = 130
+"""The exit code after Ctrl-C."""
+FASTEST = 1000.0
+
+
+@click.command()
+@click.argument("scenario", type=click.Path(), required=False)
+@click.option("--robot", type=click.Path(), help="The robot, whose document names its drivers.")
+@click.option("--world", type=click.Path(), help="The site's map, and what its areas offer.")
+@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
+@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@click.option("-o", "--output", type=click.Path(), help="Write the journal here, as it grows.")
+@click.option("--resume", "journal", type=click.Path(), help="Go on with a run that was cut off.")
+@click.option(
+    "--check", "checks", is_flag=True, help="Try each driver and Command of the robot, and end."
+)
+@click.option(
+    "--speed",
+    type=click.FloatRange(0, FASTEST, min_open=True),
+    default=1.0,
+    help="Run so many times as fast as real time; for simulated robots.",
+)
+@duration_option("--until", "End the run after this time at the latest.")
+@duration_option("--late", "Tell when an instant is later than this; 250ms by default.")
+@click.option(
+    "--sync", is_flag=True, help="Have each instant on the disk before it is carried out."
+)
+@click.option(
+    "--driver",
+    "drivers",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(),
+    help="Take drivers from this Python file, too; it is run.",
+)
+@click.option(
+    "--policy",
+    shell_complete=suggesting(*POLICIES),
+    help=f"The mediator's policy: {USAGE}.",
+)
+@click.option(
+    "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
+)
+@duration_option("--patience", PATIENCE)
+@why_option
+@click.option(
+    "--allow-host",
+    "hosts",
+    metavar="HOST[:PORT]",
+    multiple=True,
+    help="Let VoiceXML documents fetch from this host; without, no network is used.",
+)
+@click.option(
+    "--isolate",
+    type=click.Choice(["ea", "all", "none"]),
+    default="ea",
+    help="Whose scripts get a process of their own: each EA's, each application's or none's.",
+)
+@map_option
+@limit_option
+@format_option
+def live(
+    scenario: str | None,
+    robot: str | None,
+    world: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    output: str | None,
+    journal: str | None,
+    checks: bool,
+    speed: float,
+    until: int | None,
+    late: int | None,
+    sync: bool,
+    drivers: tuple[str, ...],
+    policy: str | None,
+    bound: int | None,
+    patience: int | None,
+    why: bool,
+    hosts: tuple[str, ...],
+    isolate: str,
+    maps: tuple[str, ...],
+    limits: tuple[str, ...],
+    form: str,
+) -> None:
+    """Run applications on a robot, in real time, with the journal as transcript.
+
+    Rows are printed as they happen. Ctrl-C ends the run and makes the robot safe; --resume
+    goes on with it. With SCENARIO the robot, its world and its user are simulated.
+
+    Exit code 2 if something is wrong before the run, 3 if the robot is not there or an
+    application ended by an error, 130 after Ctrl-C.
+
+    \b
+    prima live --robot documents/robots/simulated.xml --fa documents/fa/follow.xml -o visit.jsonl
+    prima live --robot documents/robots/simulated.xml --check
+    prima live --speed 20 documents/scenarios/follow-during-navigation.xml
+    prima live --resume visit.jsonl
+    """
+    from prima import api
+    from prima.live.visit import Chosen, Settings, begin, go_on
+
+    raise_limits(limits)
+    chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps)
+    _check_usage(chosen, journal, output, checks)
+    web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
+    settings = Settings(
+        policy, bound, patience, isolate, speed, until, sync, drivers=drivers, web=web
+    )
+    if late is not None:
+        settings.late = late or None
+    if checks:
+        _check(chosen, settings)
+        return
+    if output is not None:
+        check_output(output, "journal", *filter(None, (scenario, robot, world, *fas, *eas)))
+    if journal is not None:
+        from prima.live.journal import read_broken
+
+        visit = go_on(read_broken(journal), settings)
+    else:
+        visit = begin(chosen, settings, output)
+    tell_problems(visit.loaded.problems)
+    _run(visit, why, form == "json")
+
+
+def _check_usage(chosen: Chosen, journal: str | None, output: str | None, checks: bool) -> None:
+    """Refuse options that do not go together.
+
+    Raises:
+        UsageError: there are some.
+    """
+    given = chosen.scenario or chosen.fas or chosen.eas
+    if journal is not None:
+        if given or chosen.robot or chosen.world or chosen.maps or output:
+            raise UsageError("--resume goes on with what the journal names; leave out the rest.")
+        return
+    if chosen.scenario and (chosen.fas or chosen.eas or chosen.world or chosen.maps):
+        message = "A scenario names its own applications and world;"
+        raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
+    if checks and not chosen.robot:
+        raise UsageError("Name the robot to be checked with --robot.")
+    if checks:
+        return
+    if not given and not chosen.world:
+        raise UsageError("Name applications with --fa and --ea, or a scenario.")
+    if not chosen.scenario and not chosen.robot:
+        hint = "documents/robots/simulated.xml is one without hardware."
+        raise UsageError(f"Name the robot with --robot; {hint}")
+
+
+def _check(chosen: Chosen, settings: Settings) -> None:
+    """Try the robot; exit code 3 if something of it does not work."""
+    from prima.live.preflight import check_robot
+
+    if not check_robot(chosen, settings, click.echo):
+        raise Exit(3)
+
+
+def _run(visit: Visit, why: bool, as_json: bool) -> None:
+    """Carry out a run, with its rows on stdout."""
+    if as_json:
+        write_for_programs()
+    sink = _write if as_json else Rows(visit, why)
+    visit.run(sink, lambda text: tell(f"prima: {text}"))
+    session = visit.loop.session
+    for failure in session.failures:
+        tell(f"prima: {failure}")
+    if visit.stopped:
+        if visit.journal is not None:
+            tell(f"Stopped. Go on with: prima live --resume {visit.journal.path}")
+        raise Exit(INTERRUPTED)
+    if session.failures:
+        raise Exit(3)
+
+
+def _write(records: list[Record]) -> None:
+    """Records as JSON lines, to stdout."""
+    from prima.transcript.lines import line
+
+    for record in records:
+        sys.stdout.write(line(record))
+    sys.stdout.flush()
+
+
+class Rows:
+    """Prints the rows of a run as they happen."""
+
+    def __init__(self, visit: Visit, why: bool) -> None:
+        from prima.transcript.table import Growing, format_head, layout
+
+        self._table = Growing()
+        self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
+        click.echo(format_head(self._shape))
+
+    def __call__(self, records: list[Record]) -> None:
+        """Print what the records of an instant add."""
+        from prima.transcript.lines import finished
+        from prima.transcript.table import format_row
+
+        for row in self._table.add([finished(record) for record in records]):
+            click.echo(clean("\n".join(format_row(row, self._shape))))
+        sys.stdout.flush()

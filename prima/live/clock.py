@@ -1,0 +1,43 @@
+"""The one clock of a live run."""
+
+from __future__ import annotations
+
+import asyncio
+from time import monotonic
+
+
+class Clock:
+    """Milliseconds of the run, from a monotonic clock: setting the machine's time changes nothing.
+
+    Args:
+        speed: how many times as fast as real time the run goes.
+        start: the run's time (ms) at which the clock begins.
+    """
+
+    def __init__(self, speed: float = 1.0, start: int = 0) -> None:
+        self.speed = speed
+        self._start = start
+        self._began = monotonic()
+
+    def begin(self) -> None:
+        """Let the run's time begin now."""
+        self._began = monotonic()
+
+    def now(self) -> int:
+        """The run's time (ms)."""
+        return self._start + int((monotonic() - self._began) * 1000 * self.speed)
+
+    async def wait(self, until: int | None, woken: asyncio.Event) -> None:
+        """Wait until a time (ms; None for ever), or until somebody wakes the run."""
+        if until is None:
+            await woken.wait()
+            return
+        left = (until - self._start) / 1000 / self.speed - (monotonic() - self._began)
+        if left <= 0:
+            await asyncio.sleep(0)  # let drivers tell what they have
+            return
+        try:
+            async with asyncio.timeout(left):
+                await woken.wait()
+        except TimeoutError:
+            return

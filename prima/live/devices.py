@@ -1,0 +1,327 @@
+"""A real robot as the devices of a run: the conductor, its drivers, services, and the places.
+
+It has no clock of its own and starts no task: the shell gives it both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine, Sequence
+from typing import Any, Protocol
+
+from prima.devices import voice
+from prima.devices.conductor import Conductor
+from prima.devices.goals import (
+    LISTEN,
+    SAY,
+    Again,
+    At,
+    Begin,
+    Broke,
+    Call,
+    Cancel,
+    Lost,
+    News,
+    Report,
+    Safe,
+    Sees,
+    Speaks,
+    Stand,
+)
+from prima.devices.profile import Profile
+from prima.devices.settings import Limits
+from prima.live.driver import Driver
+from prima.live.journal import Known
+from prima.messages import (
+    Emergency,
+    Heard,
+    Inbound,
+    Loaded,
+    Order,
+    Record,
+    Sensed,
+)
+from prima.sim.entrances import Entrances
+
+SPEECH_MS = 5_000
+"""How much longer than expected a text may take, besides twice its time."""
+
+
+class Answering(Protocol):
+    """What answers the messages that applications send."""
+
+    def due(self) -> int | None:
+        """When an answer is to be collected (ms)."""
+
+    def collect(self, now: int) -> list[Inbound]:
+        """The answers that have come."""
+
+    def order(self, now: int, order: Order) -> None:
+        """Take a message."""
+
+
+class LiveDevices:
+    """The :class:`~prima.devices.protocol.Devices` of a real robot. Times are ms of the run.
+
+    Args:
+        profile: the robot.
+        drivers: its drivers, in the document's order.
+        services: what answers what applications send.
+        loads: the applications to be loaded at once, by their ids.
+        entrances: the areas of the site that offer applications.
+        read: the sensors that the applications look at; None if that cannot be told.
+        exclusive: whether a device does one thing at a time (every policy with a mediator).
+        start: the instant after which the run begins, or goes on.
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        drivers: Sequence[Driver],
+        services: Answering,
+        loads: Sequence[str],
+        entrances: Entrances | None = None,
+        read: frozenset[str] | None = None,
+        exclusive: bool = True,
+        start: int = -1,
+    ) -> None:
+        self.profile = profile
+        self.drivers = drivers
+        self.services = services
+        self.conductor = Conductor(
+            profile, self._where_it_is, self.limits, exclusive, max(start, 0)
+        )
+        self.now: Callable[[], int] = lambda: 0
+        """The run's clock."""
+        self.wake: Callable[[], None] = lambda: None
+        """Lets the shell look at once what is due."""
+        self.spawn: Callable[[Coroutine[Any, Any, None]], object] = lambda one: one.close()
+        """Lets something run in the background."""
+        self.lost: Callable[[Driver], None] = lambda _: None
+        """Is told of a driver that has lost its robot."""
+        self._read = read
+        self._loads = list(loads)
+        self._entrances = entrances or Entrances([])
+        self._routes: dict[str, Driver] = {}
+        self._news: list[News | Inbound] = []
+        self._told: int | None = None
+        """Since when something waits that was told."""
+        self._last = start
+        """The latest instant."""
+        self._at: At | None = None
+        self._sees = Sees(False)
+        self._began: int | None = None
+        """When the user began to speak."""
+        self._heard = False
+        self._carrying = False
+
+    # The session's side ------------------------------------------------------------------
+
+    @property
+    def awaits(self) -> bool:
+        """Whether an application is still to be loaded."""
+        return bool(self._loads) or bool(self._entrances.offers)
+
+    def due(self) -> int | None:
+        """The next instant at which something is to be collected, if one is known."""
+        told = None if self._told is None else max(self._told, self._last + 1)
+        times = [
+            self._last + 1 if self._loads or self._news else None,
+            told,
+            self.conductor.due(self._sees.visible),
+            self.services.due(),
+            *(driver.due() for driver in self.drivers),
+        ]
+        return min((time for time in times if time is not None), default=None)
+
+    def collect(self, now: int) -> list[Inbound]:
+        """All that has come in by ``now``, in order."""
+        self._last = now
+        for driver in self.drivers:
+            driver.sample(now)
+        self._told = None
+        inbound: list[Inbound] = [Loaded(name) for name in self._loads]
+        self._loads.clear()
+        if self._at is not None:
+            inbound += self._entrances.cross((self._at.x, self._at.y))
+        inbound += self.conductor.collect(now, self._sees.visible, self._whereabouts())
+        self._carry_out()
+        news, self._news = self._news, []
+        for one in news:
+            inbound += self._take(now, one)
+        return inbound + self.services.collect(now)
+
+    def order(self, now: int, order: Order) -> None:
+        """Give an order to whom it is for."""
+        if order.verb == "send":
+            self.services.order(now, order)
+            return
+        self.conductor.order(now, order)
+        self._carry_out()
+
+    def observe(self, now: int, records: list[Record]) -> None:
+        """All orders of an instant have been given: the ear listens on."""
+        self.conductor.end_loops()
+        self._carry_out()
+        if self._heard:
+            self._heard = False
+            self.conductor.ear.listen_on(now)
+        for driver in self.drivers:
+            driver.observe(now, records)
+
+    def go_on(self, state: Known, first: list[Inbound]) -> None:
+        """Go on after a run that was cut off.
+
+        Args:
+            state: what it knew then.
+            first: what is told before anything else.
+        """
+        self._loads = [name for name in self._loads if name not in state.loaded]
+        self._entrances.enter(state.inside)
+        self.conductor.sight.restore(state.found)
+        self.conductor.sensors.values.update(state.sensors)
+        self._news += first
+
+    # The drivers' side -------------------------------------------------------------------
+
+    def tell(self, driver: Driver, told: Report | News) -> None:
+        """Take what a driver tells; reports reach the conductor at once."""
+        now = self._now()
+        self._told = now if self._told is None else self._told
+        match told:
+            case At():
+                self._at = told
+            case Sees():
+                self._sees = told
+            case Speaks() | Heard() | Emergency() | Sensed():
+                self._news.append(told)
+            case _ if isinstance(told, Report):
+                if isinstance(told, Lost):
+                    self.lost(driver)
+                self.conductor.report(now, told)
+                self._carry_out()
+            case _:
+                self._news.append(told)
+        self.wake()
+
+    def _take(self, now: int, news: News | Inbound) -> list[Inbound]:
+        """What a driver's news mean for the session."""
+        conductor = self.conductor
+        match news:
+            case Speaks(begins=True):
+                self._began = now
+                conductor.speech_begins(now)
+                self._carry_out()
+                return []
+            case Speaks():
+                self._silent()
+                return []
+            case Heard():
+                began, self._heard = self._began, True
+                self._silent()
+                passed = conductor.marks_passed(now if began is None else began)
+                return [Heard(news.text, {**passed, **news.data})]
+            case Sensed():
+                read = self._read
+                parts = news.values.items()
+                values = {
+                    name: value
+                    for name, value in parts
+                    if read is None or name.partition(".")[0] in read
+                }
+                return conductor.sensors.take(values)
+            case Emergency(pressed=True):
+                self.make_safe()
+                return [news]
+            case At() | Sees():
+                return []
+            case _:
+                return [news]
+
+    def _silent(self) -> None:
+        """The user has fallen silent."""
+        if self._began is not None:
+            self._began, self._heard = None, True
+            self.conductor.ear.speech_ends()
+
+    def _now(self) -> int:
+        return max(self.now(), self._last)
+
+    def make_safe(self) -> None:
+        """Let every driver stop everything at once."""
+        for driver in self.drivers:
+            self.spawn(driver.safe())
+
+    def _carry_out(self) -> None:
+        """Let the drivers do what the conductor says, until nothing more comes of it."""
+        if self._carrying:
+            return
+        self._carrying = True
+        try:
+            while calls := self.conductor.drain():
+                for call in calls:
+                    self._call(call)
+        finally:
+            self._carrying = False
+
+    def _call(self, call: Call) -> None:
+        match call:
+            case Begin():
+                self._begin(call)
+            case Again() if call.key in self._routes:
+                self._routes[call.key].again(call.key)
+            case Cancel() if call.key in self._routes:
+                self._routes[call.key].cancel(call.key)
+            case Stand():
+                for driver in self.drivers:
+                    driver.stand()
+            case Safe():
+                self.make_safe()
+
+    def _begin(self, goal: Begin) -> None:
+        driver = self.route(goal)
+        now, device = self._now(), min(goal.devices, default="none")
+        if driver is None:
+            self.conductor.report(now, Broke(goal.key, device, "no driver carries it out"))
+            return
+        self._routes[goal.key] = driver
+        try:
+            driver.start(goal)
+        except Exception as error:
+            reason = f"the driver {driver.kind} has failed: {error}"
+            self.conductor.report(now, Broke(goal.key, device, reason))
+
+    def route(self, goal: Begin) -> Driver | None:
+        """The driver of a goal: the one that says how, or else the first with one of its devices."""
+        there = [one for one in self.drivers if one.settings.devices & goal.devices]
+        how = (one for one in there if one.does(goal) is not None)
+        able = (one for one in there if not one.mapped or goal.kind in one.own)
+        return next(how, None) or next(able, None)
+
+    def limits(self, goal: Begin) -> Limits:
+        """How long a goal's driver may take: as the document says, else as suits the goal."""
+        driver = self.route(goal)
+        if driver is None:
+            return Limits()
+        does = driver.does(goal)
+        said = does.limits.over(driver.settings.limits) if does else driver.settings.limits
+        if goal.kind == LISTEN:
+            return Limits(said.accept, None, said.cancel)
+        if goal.kind == SAY and said.progress is None:
+            command = goal.command
+            lasts = voice.duration(command.text or "", command.lang, self.profile.voices)
+            said = Limits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
+        return said.over(driver.progress)
+
+    # Where it is -------------------------------------------------------------------------
+
+    def _where_it_is(self) -> dict[str, float]:
+        at = self._at
+        if at is None:
+            return {}
+        return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1)}
+
+    def _whereabouts(self) -> dict[str, float]:
+        """Where the user is, as far as the camera tells."""
+        sees = self._sees
+        told = {"distance": sees.distance, "angle": sees.angle} if sees.visible else {}
+        return {name: value for name, value in told.items() if value is not None}

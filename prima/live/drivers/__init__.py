@@ -1,0 +1,66 @@
+"""The drivers: a package each, found by its kind. Those of others come by entry points."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from prima.errors import UsageError, did_you_mean, one_of
+from prima.live.driver import Driver
+
+GROUP = "prima.drivers"
+"""The entry points by which other packages offer drivers: the kind, and the class."""
+
+
+def kinds() -> list[str]:
+    """The kinds of drivers that are there."""
+    own = {path.parent.name for path in Path(__file__).parent.glob("*/__init__.py")}
+    return sorted(own | {point.name for point in entry_points(group=GROUP)})
+
+
+def driver_class(kind: str, files: tuple[str, ...] = ()) -> type[Driver]:
+    """The driver of a kind.
+
+    Args:
+        kind: as a robot's document names it.
+        files: Python files that define drivers, which come first.
+
+    Raises:
+        UsageError: there is none, or a file cannot be run.
+    """
+    for file in files:
+        for found in _defined(file):
+            if found.kind == kind:
+                return found
+    points = {point.name: point for point in entry_points(group=GROUP)}
+    if kind in points:
+        found = points[kind].load()
+        if not (inspect.isclass(found) and issubclass(found, Driver)):
+            raise UsageError(f'The entry point "{kind}" in {GROUP} is not a Driver class.')
+        return found
+    if kind not in kinds():
+        hint = did_you_mean(kind, kinds()) or f"The kinds are {one_of(kinds())}."
+        raise UsageError(f'There is no driver of the kind "{kind}". {hint}')
+    made: type[Driver] = importlib.import_module(f"{__name__}.{kind}").DRIVER
+    return made
+
+
+def _defined(file: str) -> list[type[Driver]]:
+    """The drivers that a Python file defines; it is run."""
+    path = Path(file)
+    spec = importlib.util.spec_from_file_location(f"prima_driver_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise UsageError(f"{file}: this is not a Python file.")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise UsageError(f"{file}: {type(error).__name__}: {error}.") from error
+    named = [one for _, one in inspect.getmembers(module, inspect.isclass)]
+    found = [one for one in named if issubclass(one, Driver) and one.kind]
+    if not found:
+        raise UsageError(f"{file}: it defines no Driver with a kind.")
+    return found

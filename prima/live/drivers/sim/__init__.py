@@ -1,0 +1,127 @@
+"""The simulated robot as a driver: a body in the site's map, with the user in front of it."""
+
+from __future__ import annotations
+
+import math
+
+from prima.devices.goals import (
+    LISTEN,
+    Accepted,
+    Again,
+    At,
+    Begin,
+    Cancel,
+    Report,
+    Sees,
+    Stand,
+    Stopped,
+)
+from prima.errors import UsageError
+from prima.language.values import BadValue, read_value
+from prima.live.driver import Driver
+from prima.messages import Sensed
+from prima.sim.body import Body
+from prima.sim.routes import Routes
+from prima.sim.world import STEP_MS, World
+
+
+class SimDriver(Driver):
+    """A body in the site's map, which moves by the run's clock.
+
+    It begins at the map's first place, or at ``option`` ``at``, with a user a metre in front of
+    it unless ``user`` is ``false``. ``stopping`` is how long (as ``20ms``) a goal takes to stop.
+    """
+
+    kind = "sim"
+
+    async def open(self) -> None:
+        """Put the robot on the map, where it was if it was there before.
+
+        Raises:
+            UsageError: an option is wrong.
+        """
+        options, site = self.settings.options, self.site
+        at = options.get("at", next(iter(site.places), ""))
+        if at not in site.places and at:
+            raise UsageError(f'{self.settings.place}: the map has no place "{at}".')
+        try:
+            self._stopping = int(read_value("duration", options.get("stopping", "0s")) or 0)
+        except BadValue:
+            message = f"{self.settings.place}: stopping is not a duration. Write it as 20ms."
+            raise UsageError(message) from None
+        heading = site.headings.get(at, 0.0)
+        x, y = site.places.get(at, (0.0, 0.0))
+        self.world = World(site, self.profile, (x, y), heading)
+        self.world.time = self.now()
+        if options.get("user", "true") == "true":
+            angle = math.radians(heading)
+            self.world.person = x + math.cos(angle), y + math.sin(angle)
+        self.body = Body(self.profile, self.world, Routes(site))
+        self._later: list[tuple[int, Report]] = []
+        self._at: At | None = None
+        self._sees = Sees(False)
+
+    def start(self, goal: Begin) -> None:
+        """Begin a goal at the latest instant."""
+        self.tell(Accepted(goal.key))
+        if goal.kind != LISTEN:
+            self._report(self.body.take(self.world.time, goal))
+
+    def cancel(self, key: str) -> None:
+        """End a goal, at once or after the time that stopping takes."""
+        told = self.body.take(self.world.time, Cancel(key)) or [Stopped(key)]
+        if self._stopping:
+            self._later += [(self.now() + self._stopping, one) for one in told]
+        else:
+            self._report(told)
+
+    def again(self, key: str) -> None:
+        """The wheels stay with a goal that makes another loop."""
+        if key in self.body.efforts:
+            self.body.take(self.world.time, Again(key))
+
+    def stand(self) -> None:
+        """Stop the wheels."""
+        self.body.take(self.world.time, Stand())
+
+    async def safe(self) -> None:
+        """Stop everything."""
+        self.body.locomotion.stand()
+
+    def due(self) -> int | None:
+        """When the body has something to tell."""
+        moves = self.world.moving or self.body.moves_on
+        times = [self.body.due(), self.world.time + STEP_MS if moves else None]
+        times += [when for when, _ in self._later]
+        return min((time for time in times if time is not None), default=None)
+
+    def sample(self, now: int) -> None:
+        """Let the body get on, and tell what has come of it."""
+        self.world.advance(now)
+        ready = [report for when, report in self._later if when <= now]
+        self._later = [one for one in self._later if one[0] > now]
+        self._report(ready + self.body.collect(now))
+        self._look()
+        for event in self.body.corners():
+            self.tell(event)
+        if values := self.body.measure():
+            self.tell(Sensed(values))
+
+    def _look(self) -> None:
+        """Tell where the robot is, and whether it sees the user, where that has changed."""
+        at = At(*self.world.position, self.world.heading)
+        visible = self.world.sees_person()
+        sees = Sees(visible, **self.body.locomotion.whereabouts()) if visible else Sees(False)
+        if at != self._at:
+            self._at = at
+            self.tell(at)
+        if sees != self._sees:
+            self._sees = sees
+            self.tell(sees)
+
+    def _report(self, reports: list[Report]) -> None:
+        for report in reports:
+            self.tell(report)
+
+
+DRIVER = SimDriver

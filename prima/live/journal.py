@@ -1,0 +1,168 @@
+"""The journal of a live run: its transcript, appended instant by instant, and how a run goes on from it.
+
+An instant is written before its orders are carried out. So whatever a journal lacks at its end
+the world has not seen, but for what came in at the very last instant.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from prima.errors import RunError, UsageError
+from prima.journal import replay_instants
+from prima.messages import Emergency, Inbound, Json, Narrated, Record
+from prima.session import Session
+from prima.transcript.lines import finished, line, read_lines
+
+
+class Journal:
+    """A file that grows by each instant's records.
+
+    Args:
+        path: where it is; a new file unless ``kept`` is given.
+        sync: whether each instant is on the disk before it is carried out.
+        kept: how many bytes of an older journal are kept; it goes on after these.
+
+    Raises:
+        UsageError: the file is there already, or cannot be written.
+    """
+
+    def __init__(self, path: str, sync: bool = False, kept: int | None = None) -> None:
+        self.path = path
+        self._sync = sync
+        flags = os.O_WRONLY | os.O_APPEND
+        if kept is None:
+            flags |= os.O_CREAT | os.O_EXCL
+        try:
+            self._file = os.open(path, flags, 0o644)
+            if kept is not None:
+                os.ftruncate(self._file, kept)
+        except FileExistsError:
+            hint = f"Go on with --resume {path}, or name another file."
+            raise UsageError(f"{path}: there is a journal already. {hint}") from None
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise UsageError(f"{path}: cannot be written: {reason}.") from None
+
+    def write(self, records: list[Record]) -> None:
+        """Append records, times in ms.
+
+        Raises:
+            RunError: they cannot be written, as on a full disk.
+        """
+        data = "".join(map(line, records)).encode()
+        try:
+            while data:
+                data = data[os.write(self._file, data) :]
+            if self._sync:
+                os.fsync(self._file)
+        except OSError as error:
+            raise RunError(f"{self.path}: cannot be written: {error.strerror}.") from None
+
+    def close(self) -> None:
+        """Close the file."""
+        os.close(self._file)
+
+
+@dataclass(slots=True)
+class Broken:
+    """A journal that was cut off: its whole records, and how many bytes these are."""
+
+    path: str
+    records: list[Record]
+    kept: int
+
+    @property
+    def time(self) -> int:
+        """When it was cut off (ms)."""
+        return round(float(self.records[-1]["time"]) * 1000)
+
+
+def read_broken(path: str) -> Broken:
+    """Read a journal up to its last whole record.
+
+    Raises:
+        UsageError: it is none, cannot be read, or its run has ended.
+    """
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    kept = data.rfind(b"\n") + 1
+    try:
+        text = data[:kept].decode()
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
+    records = list(read_lines(path, text.splitlines(keepends=True)))
+    if records[-1]["phase"] == "over":
+        raise UsageError(f"{path}: this run has ended; there is nothing to go on with.")
+    if "live" not in records[0].get("data", {}):
+        raise UsageError(f"{path}: this is not the journal of a live run.")
+    return Broken(path, records, kept)
+
+
+def catch_up(broken: Broken, session: Session) -> list[Record]:
+    """Bring a new session to where a journal was cut off.
+
+    Returns:
+        Records (times in ms) that the last instant lacks in the journal.
+
+    Raises:
+        UsageError: the session does not make the journal's records: other documents made it.
+    """
+    made = list(replay_instants(session, broken.records))
+    for number, (before, record) in enumerate(zip(broken.records[1:], made, strict=False), start=2):
+        if finished(record) != before:
+            message = "the documents do not give this record again; they have changed."
+            raise UsageError(f"{broken.path}:{number}: {message}")
+    if len(made) < len(broken.records) - 1:
+        number = len(made) + 2
+        message = "the documents do not give this record again; they have changed."
+        raise UsageError(f"{broken.path}:{number}: {message}")
+    return made[len(broken.records) - 1 :]
+
+
+@dataclass(slots=True)
+class Known:
+    """What a run knew when it was cut off."""
+
+    loaded: set[str]
+    """Applications that were there."""
+    inside: set[str]
+    """Those of areas that the robot was in."""
+    found: bool
+    """Whether the user was seen."""
+    sensors: dict[str, Json]
+    halted: bool
+    """Whether the emergency stop was pressed."""
+
+
+def known(records: list[Record]) -> Known:
+    """What a run knew at the end of its records."""
+    state = Known(set(), set(), False, {}, False)
+    for record in records:
+        match record["phase"]:
+            case "load" if record.get("inbound"):
+                state.loaded.add(record["app"])
+                if record.get("data", {}).get("place"):
+                    state.inside.add(record["app"])
+            case "unload" if record.get("inbound"):
+                state.inside.discard(record["app"])
+            case "event" if record["event"] in ("human.found", "human.lost"):
+                state.found = record["event"] == "human.found"
+            case "sensed":
+                state.sensors |= record["data"]
+            case "emergency":
+                state.halted = record["outcome"] == "pressed"
+    return state
+
+
+def going_on(state: Known) -> Iterator[Inbound]:
+    """What a run is told when it goes on: all that ran was interrupted, and starts again (E5)."""
+    yield Narrated("environment", "the run was cut off here, and goes on")
+    if not state.halted:
+        yield Emergency(True)
+        yield Emergency(False, True)

@@ -1,0 +1,208 @@
+"""The shell of a live run: one event loop, one clock, and the tasks of drivers.
+
+It waits until something is due or has come in, then lets the :class:`~prima.devices.loop.Loop`
+carry out what a rehearsal would carry out at once. What arrives in one turn is one instant (V3).
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from functools import partial
+from typing import Any
+
+from prima.devices.goals import Back
+from prima.devices.loop import Loop
+from prima.live.clock import Clock
+from prima.live.devices import LiveDevices
+from prima.live.driver import Driver, Unreachable
+
+FIRST_S, LONGEST_S = 0.5, 30.0
+"""How long to wait before a lost robot is looked for again: at first, and at most."""
+SAFE_S = 5.0
+"""How long a driver may take to stop everything."""
+LATE_MS = 250
+"""How late an instant may be before that is worth telling."""
+
+
+class Shell:
+    """Runs a loop in real time, or ``clock.speed`` times as fast.
+
+    Args:
+        loop: the run; its devices may be simulated.
+        clock: its time.
+        warn: is told what an operator should know.
+        late: how late (ms) an instant may be before ``warn`` is told; None for never.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        clock: Clock,
+        warn: Callable[[str], None],
+        late: int | None = LATE_MS,
+    ) -> None:
+        self.loop = loop
+        self.clock = clock
+        self.latest = 0
+        """How late (ms) the latest of all instants was."""
+        self._warn = warn
+        self._late = late
+        self._woken = asyncio.Event()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._stopped = False
+        self._lost: set[Driver] = set()
+
+    @property
+    def _drivers(self) -> list[Driver]:
+        devices = self.loop.devices
+        return list(devices.drivers) if isinstance(devices, LiveDevices) else []
+
+    def stop(self) -> None:
+        """End the run as soon as possible: no more instants are carried out."""
+        self._stopped = True
+        self._woken.set()
+
+    async def run(self) -> None:
+        """Carry out the run to its end; the robot is made safe then, whatever has happened.
+
+        Raises:
+            Unreachable: a driver cannot reach its robot at the start.
+        """
+        try:
+            await self._open()
+            self.clock.begin()
+            await self._go()
+        finally:
+            await self._close()
+
+    async def _go(self) -> None:
+        loop = self.loop
+        while not self._stopped:
+            self._woken.clear()
+            if not self._advance():
+                return
+            due = loop.due()
+            if due is None and not self._drivers:  # nobody can tell anything any more
+                loop.finish(loop.until)
+                return
+            due = loop.until if due is None else min(due, loop.until)
+            await self.clock.wait(due, self._woken)
+            if self.clock.now() >= loop.until and self._advance():
+                loop.finish(loop.until)
+                return
+
+    def _advance(self) -> bool:
+        """Carry out all that is due; false when the run is over."""
+        loop, now = self.loop, min(self.clock.now(), self.loop.until)
+        due = loop.due()
+        if due is not None and due < now:
+            self._note_late(now - due)
+        while not self._stopped and loop.advance(now) is not None:
+            now = min(self.clock.now(), loop.until)
+        if loop.outcome or loop.over:
+            loop.finish(loop.now)
+            return False
+        return True
+
+    def _note_late(self, late: int) -> None:
+        if self._late is not None and late > max(self.latest, self._late):
+            self._warn(f"An instant was carried out {late / 1000:g} s late.")
+        self.latest = max(self.latest, late)
+
+    # Drivers ----------------------------------------------------------------------------
+
+    async def _open(self) -> None:
+        devices = self.loop.devices
+        if not isinstance(devices, LiveDevices):
+            return
+        devices.now, devices.wake = self.clock.now, self._woken.set
+        devices.spawn, devices.lost = self._spawn, self._lose
+        for driver in self._drivers:
+            driver.attach(partial(devices.tell, driver), self.clock.now)
+        await asyncio.gather(*(open_driver(driver) for driver in self._drivers))
+        for driver in self._drivers:
+            self._spawn(self._watch(driver))
+
+    async def _close(self) -> None:
+        for task in list(self._tasks):
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        for driver in self._drivers:
+            for end in (driver.safe, driver.close):
+                try:
+                    async with asyncio.timeout(SAFE_S):
+                        await end()
+                except Exception as error:
+                    self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
+
+    def _spawn(self, what: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.ensure_future(self._contained(what))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _contained(self, what: Coroutine[Any, Any, None]) -> None:
+        """A driver that fails in the background does not end the run."""
+        try:
+            await what
+        except Exception as error:
+            self._warn(f"A driver has failed: {_why(error)}.")
+
+    def _lose(self, driver: Driver) -> None:
+        """A driver has lost its robot: look for it again and again."""
+        if driver in self._lost:
+            return
+        self._lost.add(driver)
+        self._warn(f"{driver.kind}: the robot is lost; it is looked for.")
+        self._spawn(driver.safe())
+        self._spawn(self._find(driver))
+
+    async def _find(self, driver: Driver) -> None:
+        wait = FIRST_S
+        while True:
+            await asyncio.sleep(wait)
+            wait = min(wait * 2, LONGEST_S)
+            try:
+                await open_driver(driver)
+            except Unreachable:
+                continue
+            self._lost.discard(driver)
+            self._warn(f"{driver.kind}: the robot is back.")
+            driver.tell(Back(driver.settings.devices))
+            return
+
+    async def _watch(self, driver: Driver) -> None:
+        """Ask by the heartbeat whether the robot is still there."""
+        seconds = driver.settings.heartbeat / 1000
+        while True:
+            await asyncio.sleep(seconds)
+            if driver in self._lost:
+                continue
+            try:
+                async with asyncio.timeout(seconds):
+                    await driver.ping()
+            except (Unreachable, TimeoutError) as error:
+                driver.lose(str(error) or "the robot does not answer")
+
+
+async def open_driver(driver: Driver) -> None:
+    """Connect a driver with its robot, in the time that its document allows.
+
+    Raises:
+        Unreachable: it is not there, or does not answer in time.
+    """
+    settings = driver.settings
+    where = f" at {settings.address}" if settings.address else ""
+    try:
+        async with asyncio.timeout(settings.open / 1000):
+            await driver.open()
+            await driver.ping()
+    except TimeoutError:
+        reason = f"no answer within {settings.open / 1000:g} s"
+        raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}.") from None
+    except Unreachable as error:
+        raise Unreachable(f"{settings.place}: {driver.kind}{where}: {error}") from None
+
+
+def _why(error: Exception) -> str:
+    return str(error) or type(error).__name__

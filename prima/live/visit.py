@@ -1,0 +1,310 @@
+"""A live run from its documents to its end: what ``prima live`` does."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from prima.devices.loop import Loop
+from prima.devices.profile import Profile
+from prima.errors import UsageError
+from prima.live.clock import Clock
+from prima.live.devices import LiveDevices
+from prima.live.driver import Driver
+from prima.live.drivers import driver_class
+from prima.live.journal import Broken, Journal, catch_up, going_on, known
+from prima.live.shell import LATE_MS, Shell
+from prima.loading import Loaded, load_scenario, stage
+from prima.loading.files import in_place_of_files, read_file
+from prima.loading.heads import check_files, chosen_policy, run_record
+from prima.messages import Json, Record
+from prima.scheduler.policy import Policy
+from prima.sim.devices import sensors_watched, watches
+from prima.sim.entrances import Entrances
+from prima.sim.map import Map
+from prima.sim.rehearsal import Rehearsal, make_session
+from prima.sim.services import Services, Web
+
+FOREVER_MS = 10**13
+"""How long a run may last on a robot: nobody ends it but its applications, or people."""
+STAGE = "stage.xml"
+"""The scenario that is made of applications, and no file."""
+Sink = Callable[[list[Record]], object]
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What a live run is made of. Paths are as given on the command line."""
+
+    robot: str = ""
+    scenario: str = ""
+    world: str = ""
+    fas: tuple[str, ...] = ()
+    eas: tuple[str, ...] = ()
+    maps: tuple[str, ...] = ()
+
+    def loaded(self) -> Loaded:
+        """Load it all.
+
+        Raises:
+            DocumentError: with the problems of all files, if any is an error.
+            UsageError: a file cannot be read.
+        """
+        if self.scenario:
+            return load_scenario(self.scenario, robot=self.robot)
+        given = self.world or None, self.robot or None, self.maps, bool(self.world)
+        return stage(self.fas, self.eas, (), *given)
+
+    def told(self, folder: str) -> dict[str, Json]:
+        """The same for a journal in a folder: paths lead from there, and the robot is whole."""
+
+        def seen(path: str) -> str:
+            return os.path.relpath(path, folder or ".")
+
+        told: dict[str, Json] = {"robot": seen(self.robot)} if self.robot else {}
+        for name in ("scenario", "world"):
+            if path := getattr(self, name):
+                told[name] = seen(path)
+        for name, paths in (("fa", self.fas), ("ea", self.eas)):
+            if paths:
+                told[name] = [seen(path) for path in paths]
+        if self.maps:
+            parts = (text.partition("=") for text in self.maps)
+            told["maps"] = [f"{uri}={seen(path)}" for uri, _, path in parts]
+        if self.robot:
+            told["document"] = read_file(self.robot).decode("utf-8", "replace")
+        return told
+
+
+def reloaded(head: Record, name: str) -> Loaded:
+    """Load what a journal says that it was made with; the robot is the one in the journal.
+
+    Args:
+        head: its first record.
+        name: its path, from which paths in it lead.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: the record says nothing of files, or a file is not the one of then.
+    """
+    live = head["data"].get("live")
+    if not isinstance(live, dict):
+        message = "the transcript does not say with which files it was made; name its scenario."
+        raise UsageError(f"{name}: {message}")
+    folder = os.path.dirname(name)
+
+    def path(told: Json) -> str:
+        return os.path.relpath(os.path.join(folder, str(told))) if told else ""
+
+    def paths(told: Json) -> tuple[str, ...]:
+        return tuple(path(one) for one in told) if isinstance(told, list) else ()
+
+    parts = (str(one).partition("=") for one in live.get("maps") or ())
+    chosen = Chosen(
+        path(live.get("robot")),
+        path(live.get("scenario")),
+        path(live.get("world")),
+        paths(live.get("fa")),
+        paths(live.get("ea")),
+        tuple(f"{uri}={path(where)}" for uri, _, where in parts),
+    )
+    texts = {}
+    if chosen.robot and isinstance(live.get("document"), str):
+        texts[Path(chosen.robot).resolve()] = live["document"].encode()
+    with in_place_of_files(texts):
+        loaded = chosen.loaded()
+    loaded.files.pop(STAGE, None)
+    check_files(head, loaded, name)
+    return loaded
+
+
+@dataclass(slots=True)
+class Settings:
+    """How a live run goes."""
+
+    policy: str | None = None
+    bound: int | None = None
+    patience: int | None = None
+    isolate: str = "ea"
+    speed: float = 1.0
+    until: int | None = None
+    """When it ends at the latest (ms)."""
+    sync: bool = False
+    """Whether each instant is on the disk before it is carried out."""
+    late: int | None = LATE_MS
+    """How late (ms) an instant may be before that is told."""
+    drivers: tuple[str, ...] = ()
+    """Python files that define drivers."""
+    web: Web | None = None
+
+
+@dataclass(slots=True)
+class Visit:
+    """A live run that is ready to go."""
+
+    loop: Loop
+    clock: Clock
+    settings: Settings
+    head: Record
+    loaded: Loaded
+    journal: Journal | None = None
+    missed: list[Record] = field(default_factory=list)
+    """Records that the last instant of a broken journal lacks; none for a new run."""
+    resumed: bool = False
+    latest: int = 0
+    """How late (ms) the latest of its instants was."""
+    stopped: bool = False
+    """Whether somebody has ended it from outside."""
+
+    def run(self, sink: Sink, warn: Callable[[str], None]) -> None:
+        """Carry it out to its end.
+
+        Args:
+            sink: is given the records of each instant, times in ms, before it is carried out.
+            warn: is told what an operator should know.
+
+        Raises:
+            Unreachable: a robot cannot be reached.
+            RunError: the journal cannot be written.
+        """
+
+        def keep(records: list[Record]) -> None:
+            if self.journal is not None:
+                self.journal.write(records)
+            sink(records)
+
+        keep(self.missed if self.resumed else [self.head])
+        self.loop.journal = keep
+        try:
+            asyncio.run(self._run(warn))
+        finally:
+            self.loop.session.close()
+            if self.journal is not None:
+                self.journal.close()
+
+    async def _run(self, warn: Callable[[str], None]) -> None:
+        shell = Shell(self.loop, self.clock, warn, self.settings.late)
+
+        def stop() -> None:
+            self.stopped = True
+            shell.stop()
+
+        running = asyncio.get_running_loop()
+        for name in (signal.SIGINT, signal.SIGTERM):
+            with suppress(NotImplementedError, ValueError, RuntimeError):
+                running.add_signal_handler(name, stop)
+        try:
+            await shell.run()
+        finally:
+            self.latest = shell.latest
+
+
+def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
+    """Prepare a new run.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: there is no such driver, policy or file; or there is a journal already.
+    """
+    loaded = chosen.loaded()
+    cast = loaded.cast
+    loaded.files.pop(STAGE, None)
+    simulated = bool(chosen.scenario)
+    if not simulated:
+        now = datetime.now(UTC).replace(tzinfo=None)
+        cast.scenario.date = now.isoformat(timespec="seconds")
+    name = settings.policy or cast.scenario.policy
+    policy = chosen_policy(name, loaded)
+    loop = _simulated(loaded, policy, settings) if simulated else _real(loaded, policy, settings)
+    if settings.until is not None:
+        loop.until = settings.until
+    told = chosen.told(os.path.dirname(output or ""))
+    patience = cast.scenario.patience if settings.patience is None else settings.patience
+    head = run_record(loaded, name, settings.bound, patience, {"live": told})
+    journal = Journal(output, settings.sync) if output is not None else None
+    return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)
+
+
+def go_on(broken: Broken, settings: Settings) -> Visit:
+    """Prepare to go on with a run that was cut off.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: a file is not the one of then, or the run was a simulation.
+    """
+    head = broken.records[0]
+    loaded = reloaded(head, broken.path)
+    data = head["data"]
+    if data["live"].get("scenario"):
+        message = "a scenario's world is gone with its run; run it again from its beginning."
+        raise UsageError(f"{broken.path}: {message}")
+    loaded.cast.scenario.date = data["date"]
+    patience = data.get("patience")
+    settings = replace(
+        settings,
+        policy=data["policy"],
+        bound=data.get("bound"),
+        patience=None if patience is None else round(patience * 1000),
+    )
+    start = broken.time
+    loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, start)
+    missed = catch_up(broken, loop.session)
+    loop.go_on(start)
+    state = known(broken.records)
+    assert isinstance(loop.devices, LiveDevices)
+    loop.devices.go_on(state, list(going_on(state)))
+    if settings.until is not None:
+        loop.until = settings.until
+    journal = Journal(broken.path, settings.sync, broken.kept)
+    clock = Clock(settings.speed, start)
+    return Visit(loop, clock, settings, head, loaded, journal, missed, resumed=True)
+
+
+def _simulated(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
+    """A scenario, which is run as in a rehearsal but by the clock."""
+    given = settings.bound, settings.web, settings.isolate, settings.patience
+    return Rehearsal(loaded.cast, policy, *given)
+
+
+def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -> Loop:
+    """A run on the robot's drivers."""
+    cast = loaded.cast
+    drivers = make_drivers(cast.robot, cast.world, settings.drivers)
+    own = [doc.id for doc in cast.documents[: len(cast.scenario.applications)]]
+    devices = LiveDevices(
+        cast.robot,
+        drivers,
+        Services([], settings.web),
+        own,
+        Entrances(cast.offers),
+        sensors_watched(cast.documents) if watches(cast.documents) else frozenset(),
+        policy.exclusive,
+        start,
+    )
+    session = make_session(cast, policy, settings.bound, settings.isolate, settings.patience)
+    return Loop(session, devices, FOREVER_MS, most=None)
+
+
+def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver]:
+    """The drivers of a robot's document.
+
+    Raises:
+        UsageError: the document names none, or one that is not there.
+    """
+    if not robot.drivers:
+        hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'
+        raise UsageError(f"The robot {robot.id} has no driver. {hint}")
+    made = []
+    for settings in robot.drivers:
+        try:
+            kind = driver_class(settings.kind, tuple(files))
+        except UsageError as error:
+            raise UsageError(f"{settings.place}: {error}") from None
+        made.append(kind(settings, robot, site))
+    return made
