@@ -13,6 +13,7 @@ from prima.devices.conductor import Conductor
 from prima.devices.goals import (
     LISTEN,
     SAY,
+    Accepted,
     Again,
     At,
     Begin,
@@ -21,11 +22,13 @@ from prima.devices.goals import (
     Cancel,
     Lost,
     News,
+    Progress,
     Report,
     Safe,
     Sees,
     Speaks,
     Stand,
+    Stopped,
 )
 from prima.devices.profile import Profile
 from prima.devices.settings import Limits
@@ -68,7 +71,8 @@ class LiveDevices:
         services: what answers what applications send.
         loads: the applications to be loaded at once, by their ids.
         entrances: the areas of the site that offer applications.
-        read: the sensors that the applications look at; None if that cannot be told.
+        watches: whether any application watches sensors.
+        read: the sensors that they look at; None if that cannot be told.
         exclusive: whether a device does one thing at a time (every policy with a mediator).
         start: the instant after which the run begins, or goes on.
     """
@@ -80,6 +84,7 @@ class LiveDevices:
         services: Answering,
         loads: Sequence[str],
         entrances: Entrances | None = None,
+        watches: bool = True,
         read: frozenset[str] | None = None,
         exclusive: bool = True,
         start: int = -1,
@@ -98,6 +103,7 @@ class LiveDevices:
         """Lets something run in the background."""
         self.lost: Callable[[Driver], None] = lambda _: None
         """Is told of a driver that has lost its robot."""
+        self._watches = watches
         self._read = read
         self._loads = list(loads)
         self._entrances = entrances or Entrances([])
@@ -125,7 +131,7 @@ class LiveDevices:
         """The next instant at which something is to be collected, if one is known."""
         told = None if self._told is None else max(self._told, self._last + 1)
         times = [
-            self._last + 1 if self._loads or self._news else None,
+            self._last + 1 if self._loads or self._news or self._entrances.unseen else None,
             told,
             self.conductor.due(self._sees.visible),
             self.services.due(),
@@ -186,7 +192,8 @@ class LiveDevices:
     def tell(self, driver: Driver, told: Report | News) -> None:
         """Take what a driver tells; reports reach the conductor at once."""
         now = self._now()
-        self._told = now if self._told is None else self._told
+        if not isinstance(told, Accepted | Progress | Stopped) and self._told is None:
+            self._told = now
         match told:
             case At():
                 self._at = told
@@ -221,13 +228,7 @@ class LiveDevices:
                 passed = conductor.marks_passed(now if began is None else began)
                 return [Heard(news.text, {**passed, **news.data})]
             case Sensed():
-                read = self._read
-                parts = news.values.items()
-                values = {
-                    name: value
-                    for name, value in parts
-                    if read is None or name.partition(".")[0] in read
-                }
+                values = {name: value for name, value in news.values.items() if self._matters(name)}
                 return conductor.sensors.take(values)
             case Emergency(pressed=True):
                 self.make_safe()
@@ -236,6 +237,14 @@ class LiveDevices:
                 return []
             case _:
                 return [news]
+
+    def _matters(self, sensor: str) -> bool:
+        """Whether an application looks at a sensor; of the others the first value is told."""
+        if not self._watches:
+            return False
+        read = self._read
+        known = sensor in self.conductor.sensors.values
+        return not known or read is None or sensor.partition(".")[0] in read
 
     def _silent(self) -> None:
         """The user has fallen silent."""
@@ -318,7 +327,7 @@ class LiveDevices:
         at = self._at
         if at is None:
             return {}
-        return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1)}
+        return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1) % 360.0}
 
     def _whereabouts(self) -> dict[str, float]:
         """Where the user is, as far as the camera tells."""

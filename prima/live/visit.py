@@ -283,7 +283,8 @@ def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -
         Services([], settings.web),
         own,
         Entrances(cast.offers),
-        sensors_watched(cast.documents) if watches(cast.documents) else frozenset(),
+        watches(cast.documents),
+        sensors_watched(cast.documents),
         policy.exclusive,
         start,
     )

@@ -1,0 +1,1 @@
+"""Live runs: drivers, clock, journal, and what comes of them."""

@@ -1,0 +1,67 @@
+"""The same scenario rehearsed, and live: in jumps of the clock, the transcripts are the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.interpreter.elements import Document
+from prima.messages import Record
+from prima.scheduler.policy import policy_named
+from prima.session import AnyDocument
+from prima.sim.rehearsal import Rehearsal
+from prima.transcript.lines import finished
+from tests.invariants import check
+from tests.live.stage import carried_out, live_loop
+
+SCENARIOS = sorted((Path(__file__).parents[2] / "documents" / "scenarios").glob("*.xml"))
+
+
+def rehearsed(path: Path) -> list[Record]:
+    loaded = api.load_scenario(path)
+    run = Rehearsal(loaded.cast, policy_named(loaded.cast.scenario.policy), isolate="none")
+    return [finished(record) for records in run.run() for record in records]
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_the_shell_gives_what_a_rehearsal_gives(path: Path) -> None:
+    loaded = api.load_scenario(path)
+    run = Rehearsal(loaded.cast, policy_named(loaded.cast.scenario.policy), isolate="none")
+    assert carried_out(run) == rehearsed(path)
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_a_driver_gives_what_a_rehearsal_gives(path: Path) -> None:
+    loaded = api.load_scenario(path)
+    live = carried_out(live_loop(loaded.cast, loaded.cast.scenario.policy))
+    before = rehearsed(path)
+    if loaded.cast.offers:  # a robot goes on to where the next application is offered
+        live[-1]["outcome"] = before[-1]["outcome"]
+    assert live == before
+
+
+def calls(document: AnyDocument) -> bool:
+    """Whether an application may have a state that goes on while another asks."""
+    return not isinstance(document, Document) or any(
+        node.tag == "subdialog" for node in document.node.walk()
+    )
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_invariants_hold_where_devices_take_time_to_stop(path: Path) -> None:
+    loaded = api.load_scenario(path)
+    policy = loaded.cast.scenario.policy
+    live = carried_out(live_loop(loaded.cast, policy, stopping="60ms"))
+    documents = loaded.cast.documents
+    names = [doc.id for doc in documents]
+    assert check(live, policy, names, calling=[doc.id for doc in documents if calls(doc)]) == []
+
+
+def test_what_begins_on_a_device_that_still_stops_is_held_back_and_told() -> None:
+    path = next(one for one in SCENARIOS if one.stem == "follow-during-navigation")
+    live = carried_out(live_loop(api.load_scenario(path).cast, stopping="60ms"))
+    delays = [record for record in live if record["phase"] == "delayed"]
+    assert delays
+    assert {record["data"]["waited"] for record in delays} == {0.06}
