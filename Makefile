@@ -22,7 +22,7 @@ test: $(VENV)/.dev
 # Drivers against the second parties of tests/parties, each in an environment of its own.
 test-live: $(VENV)/.dev
 	$(BIN)/python -m tools.environments
-	$(BIN)/python -m pytest tests/parties
+	$(BIN)/python -m pytest -n 2 --dist loadfile tests/parties
 
 check: $(VENV)/.dev
 	$(BIN)/ruff format --check .

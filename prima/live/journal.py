@@ -22,7 +22,7 @@ class Journal:
     """A file that grows by each instant's records.
 
     Args:
-        path: where it is; a new file unless ``kept`` is given.
+        path: where it is, a device among them; a new file unless ``kept`` is given.
         sync: whether each instant is on the disk before it is carried out.
         kept: how many bytes of an older journal are kept; it goes on after these.
 
@@ -34,7 +34,7 @@ class Journal:
         self.path = path
         self._sync = sync
         flags = os.O_WRONLY | os.O_APPEND
-        if kept is None:
+        if kept is None and (os.path.isfile(path) or not os.path.exists(path)):
             flags |= os.O_CREAT | os.O_EXCL
         try:
             self._file = os.open(path, flags, 0o644)

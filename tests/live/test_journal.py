@@ -1,0 +1,151 @@
+"""The journal: cut off anywhere, a run goes on, and says nothing twice but what was cut."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.devices.loop import Loop
+from prima.errors import RunError, UsageError
+from prima.journal import replay_instants
+from prima.live.devices import LiveDevices
+from prima.live.journal import Journal, catch_up, going_on, known, read_broken
+from prima.messages import Record
+from prima.sim.devices import Cast
+from prima.transcript.lines import finished
+from tests.live.stage import carried_out, live_loop
+
+SCENARIOS = Path(__file__).parents[2] / "documents" / "scenarios"
+HEAD: Record = {"time": 0, "phase": "run", "actor": "mediator", "data": {"live": {}}}
+
+
+def cast_of(name: str) -> Cast:
+    cast = api.load_scenario(SCENARIOS / f"{name}.xml").cast
+    cast.offers.clear()
+    return cast
+
+
+def written(records: list[Record]) -> str:
+    return "".join(json.dumps(record) + "\n" for record in [HEAD, *records])
+
+
+def gone_on(cast: Cast, path: Path) -> list[Record]:
+    """The whole journal of a run that goes on after it was cut off."""
+    broken = read_broken(str(path))
+    loop = live_loop(cast, start=broken.time)
+    missed = [finished(record) for record in catch_up(broken, loop.session)]
+    loop.go_on(broken.time)
+    assert isinstance(loop.devices, LiveDevices)
+    state = known(broken.records)
+    loop.devices.go_on(state, list(going_on(state)))
+    return [*broken.records[1:], *missed, *carried_out(loop, broken.time)]
+
+
+def replayed(cast: Cast, records: list[Record]) -> list[Record]:
+    loop: Loop = live_loop(cast)
+    try:
+        again = [finished(one) for one in replay_instants(loop.session, [HEAD, *records])]
+    finally:
+        loop.session.close()
+    return again
+
+
+def said(records: list[Record]) -> Counter[str]:
+    """How often each behaviour with a text has started, by its name."""
+    return Counter(
+        record["behavior"]
+        for record in records
+        if record["phase"] == "start" and record.get("text")
+    )
+
+
+def check_going_on(cast: Cast, records: list[Record], cut: int, path: Path) -> None:
+    """Cut a run off after some records, let it go on, and look at what came of it."""
+    path.write_text(written(records[:cut]))
+    whole = gone_on(cast, path)
+    assert whole[:cut] == records[:cut]
+    again = replayed(cast, whole)
+    assert again == whole[: len(again)]
+    assert {record["phase"] for record in whole[len(again) :]} <= {"over"}
+    ended = {record["behavior"] for record in records[:cut] if record["phase"] == "end"}
+    twice = {name for name, times in said(whole).items() if times > 1}
+    halted = {
+        record["behavior"]
+        for record in whole
+        if record["phase"] == "cancel" and record.get("outcome") == "halted"
+    }
+    already = {name for name, times in said(records).items() if times > 1}
+    assert not (twice - already) & ended, "what was said to its end is said again"
+    assert twice - already <= halted, "only what was cut starts again"
+
+
+@pytest.mark.parametrize("name", ["touched-on-the-way", "picture-alone"])
+def test_a_run_goes_on_wherever_it_was_cut_off(name: str, tmp_path: Path) -> None:
+    cast = cast_of(name)
+    records = carried_out(live_loop(cast))
+    for cut in range(1, len(records)):
+        check_going_on(cast, records, cut, tmp_path / "visit.jsonl")
+
+
+# Journals that cannot be gone on with --------------------------------------------------------
+
+
+def broken_text(tmp_path: Path, text: str) -> str:
+    path = tmp_path / "visit.jsonl"
+    path.write_text(text)
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "no records"),
+        ("{}\n", "no transcript's record"),
+        (json.dumps({**HEAD, "data": {}}) + "\n", "not the journal of a live run"),
+        (
+            written([{"time": 1, "phase": "over", "actor": "mediator", "outcome": "over"}]),
+            "has ended",
+        ),
+    ],
+)
+def test_what_is_no_broken_journal_is_refused(tmp_path: Path, text: str, why: str) -> None:
+    with pytest.raises(UsageError, match=why):
+        read_broken(broken_text(tmp_path, text))
+
+
+def test_a_line_that_was_cut_is_left_out(tmp_path: Path) -> None:
+    whole = written([{"time": 0.5, "phase": "note", "actor": "user", "text": "walks"}])
+    broken = read_broken(broken_text(tmp_path, whole + '{"time":1.0,"phase":"no'))
+    assert broken.time == 500
+    assert broken.kept == len(whole.encode())
+
+
+def test_a_journal_of_other_documents_is_refused(tmp_path: Path) -> None:
+    cast = cast_of("picture-alone")
+    records = carried_out(live_loop(cast))[:20]
+    changed = [
+        {**record, "text": "Something else."} if record.get("text") else record
+        for record in records
+    ]
+    path = broken_text(tmp_path, written(changed))
+    with pytest.raises(UsageError, match=r"visit\.jsonl:\d+: the documents do not give"):
+        gone_on(cast, Path(path))
+
+
+def test_a_journal_is_never_written_over(tmp_path: Path) -> None:
+    path = tmp_path / "visit.jsonl"
+    path.write_text("kept\n")
+    with pytest.raises(UsageError, match="--resume"):
+        Journal(str(path))
+    assert path.read_text() == "kept\n"
+
+
+def test_a_full_disk_ends_the_run_with_a_clear_error() -> None:
+    journal = Journal("/dev/full")
+    with pytest.raises(RunError, match="No space left"):
+        journal.write([HEAD])
+    journal.close()

@@ -1,0 +1,196 @@
+"""``prima live`` from the command line."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ROBOT = "documents/robots/simulated.xml"
+HELLO = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="hello" kind="ea">
+  <form id="a"><block><speak>Hello there.</speak><turn angle="30"/><exit/></block></form>
+</prima>"""
+WAITS = HELLO.replace("<exit/>", "").replace('id="hello"', 'id="waits"')
+
+
+def prima(*words: str, timeout: float = 60) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "prima", *words]
+    return subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, timeout=timeout, check=False
+    )
+
+
+@pytest.fixture
+def hello(tmp_path: Path) -> str:
+    path = tmp_path / "hello.xml"
+    path.write_text(HELLO)
+    return str(path)
+
+
+def robot_with(tmp_path: Path, driver: str) -> str:
+    path = tmp_path / "robot.xml"
+    text = (ROOT / ROBOT).read_text()
+    path.write_text(text.replace('<driver kind="sim"/>', driver))
+    return str(path)
+
+
+def test_a_run_prints_its_rows_and_writes_a_journal_that_replays(
+    hello: str, tmp_path: Path
+) -> None:
+    journal = tmp_path / "visit.jsonl"
+    ran = prima("live", "--robot", ROBOT, "--ea", hello, "--speed", "20", "-o", str(journal))
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert '"Hello there."' in ran.stdout
+    assert json.loads(journal.read_text().splitlines()[-1])["phase"] == "over"
+    again = prima("replay", str(journal))
+    assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
+    shown = prima("show", str(journal), "--why")
+    assert shown.returncode == 0, shown.stderr
+    assert "S1" in shown.stdout
+
+
+def test_a_journal_replays_wherever_it_and_its_documents_are_moved(tmp_path: Path) -> None:
+    before, after = tmp_path / "before", tmp_path / "after"
+    before.mkdir()
+    (before / "hello.xml").write_text(HELLO)
+    journal = before / "visit.jsonl"
+    ran = prima("live", "--robot", ROBOT, "--ea", str(before / "hello.xml"), "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    before.rename(after)
+    again = prima("replay", str(after / "visit.jsonl"))
+    assert again.returncode == 0, again.stderr
+    (after / "hello.xml").write_text(HELLO.replace("there", "you"))
+    other = prima("replay", str(after / "visit.jsonl"))
+    assert other.returncode == 2
+    assert "has changed" in other.stderr or "is not the file" in other.stderr
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
+    sent: signal.Signals, tmp_path: Path
+) -> None:
+    (tmp_path / "waits.xml").write_text(WAITS)
+    journal = tmp_path / "visit.jsonl"
+    words = ["--robot", ROBOT, "--ea", str(tmp_path / "waits.xml"), "-o", str(journal)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "live", *words],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    limit = time.monotonic() + 30
+    while not (journal.exists() and journal.stat().st_size) and time.monotonic() < limit:
+        time.sleep(0.02)
+    running.send_signal(sent)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert f"prima live --resume {journal}" in told
+    on = prima("live", "--resume", str(journal), "--speed", "50", "--until", "20s")
+    assert on.returncode == 0, on.stderr
+    assert "the run was cut off here, and goes on" in on.stdout
+    assert prima("replay", str(journal)).returncode == 0
+
+
+def test_every_command_of_the_simulated_robot_passes_the_preflight() -> None:
+    ran = prima("live", "--robot", ROBOT, "--check")
+    assert ran.returncode == 0, ran.stdout
+    assert "turn: accepted in" in ran.stdout
+    assert "FAILS" not in ran.stdout
+
+
+BROKEN_DRIVER = """
+from prima.devices.goals import Accepted
+from prima.live.driver import Driver, Refused, TaskDriver, Unreachable
+import asyncio
+
+class Silent(Driver):
+    kind = "silent"
+    def start(self, goal): pass
+    def cancel(self, key): pass
+
+class Never(Driver):
+    kind = "never"
+    async def open(self): await asyncio.sleep(1000)
+
+class Away(Driver):
+    kind = "away"
+    async def open(self): raise Unreachable("nobody listens there; start the daemon")
+
+class Wrong(TaskDriver):
+    kind = "wrong"
+    async def perform(self, goal): raise Refused("the motor is hot")
+
+class Flood(TaskDriver):
+    kind = "flood"
+    async def perform(self, goal):
+        from prima.messages import Narrated
+        for number in range(2000):
+            self.tell(Narrated("environment", f"note {number}"))
+        return {}
+
+class Broken(Driver):
+    kind = "broken"
+    def start(self, goal): raise ZeroDivisionError("division by zero")
+    def cancel(self, key): pass
+    async def safe(self): raise RuntimeError("no link")
+"""
+
+
+@pytest.mark.parametrize(
+    ("driver", "code", "told"),
+    [
+        ('<driver kind="sims"/>', 2, 'robot.xml:20:3: There is no driver of the kind "sims". Did'),
+        ('<driver kind="never" open="300ms"/>', 3, "robot.xml:20:3: never: no answer within 0.3 s"),
+        ('<driver kind="away" address="here:1"/>', 3, "away at here:1: nobody listens there"),
+        ('<driver kind="silent" accept="300ms"/>', 3, "the device does not accept it"),
+        ('<driver kind="wrong"/>', 3, "the motor is hot"),
+        ('<driver kind="broken"/>', 3, "the driver broken has failed: division by zero"),
+        ('<driver kind="flood"/>', 0, ""),
+        ("", 2, "has no driver"),
+    ],
+)
+def test_drivers_that_do_not_work_end_in_a_clear_sentence(
+    driver: str, code: int, told: str, hello: str, tmp_path: Path
+) -> None:
+    (tmp_path / "drivers.py").write_text(BROKEN_DRIVER)
+    words = ["--driver", str(tmp_path / "drivers.py"), "--until", "20s"]
+    robot = robot_with(tmp_path, driver)
+    ran = prima("live", "--robot", robot, "--ea", hello, *words)
+    assert told in ran.stderr
+    assert ran.returncode == code, ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "Name applications"),
+        (["--robot", ROBOT], "Name applications"),
+        (["--check"], "--robot"),
+        (["--ea", "documents/ea/guide.xml"], "--robot"),
+        (["--resume", "nowhere.jsonl"], "cannot be read"),
+        (["--resume", "visit.jsonl", "--robot", ROBOT], "leave out the rest"),
+        (["documents/scenarios/schedule-alone.xml", "--ea", "x.xml"], "leave out --fa"),
+        (["--robot", ROBOT, "--ea", "documents/ea/guide.xml", "--until", "soon"], "--until"),
+        (["--robot", "nowhere.xml", "--ea", "documents/ea/guide.xml"], "cannot be read"),
+    ],
+)
+def test_wrong_usage_is_told_with_exit_code_2(words: list[str], told: str) -> None:
+    ran = prima("live", *words)
+    assert ran.returncode == 2 or "nowhere.xml" in words
+    assert ran.returncode in (1, 2)
+    assert told in ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
+    ran = prima("live", "--robot", ROBOT, "--ea", hello, "-o", "/dev/full")
+    assert ran.returncode == 3
+    assert "/dev/full: cannot be written: No space left on device" in ran.stderr
