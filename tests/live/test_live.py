@@ -194,3 +194,19 @@ def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
     ran = prima("live", "--robot", ROBOT, "--ea", hello, "-o", "/dev/full")
     assert ran.returncode == 3
     assert "/dev/full: cannot be written: No space left on device" in ran.stderr
+
+
+def test_the_driver_of_the_documentation_works(hello: str, tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "live.md").read_text()
+    code = page.split("```python\n")[1].split("```")[0]
+    (tmp_path / "my_robot.py").write_text(code)
+    words = ["--driver", str(tmp_path / "my_robot.py")]
+    away = prima(
+        "live", *words, "--robot", robot_with(tmp_path, '<driver kind="my-robot"/>'), "--ea", hello
+    )
+    assert (away.returncode, 'write its address="..."' in away.stderr) == (3, True)
+    robot = robot_with(tmp_path, '<driver kind="my-robot" address="here"/>')
+    ran = prima("live", *words, "--robot", robot, "--ea", hello, "-o", str(tmp_path / "a.jsonl"))
+    assert ran.returncode == 0, ran.stderr
+    assert "stop everything here" in ran.stdout
+    assert prima("replay", str(tmp_path / "a.jsonl")).returncode == 0
