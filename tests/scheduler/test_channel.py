@@ -12,7 +12,7 @@ import pytest
 from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Step
 from prima.scheduler import rules
-from tests.stage import Stage, ask, command, move, say, search
+from tests.helpers.stage import Stage, ask, command, move, say, search
 
 EVENT = 7
 

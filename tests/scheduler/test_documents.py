@@ -6,7 +6,7 @@ import pytest
 
 from prima.interpreter.bounds import MOST_BRIEF
 from prima.messages import Ended, Failed, Occurred, Sensed
-from tests.robot import Bench, document
+from tests.helpers.robot import Bench, document
 
 IDLE = '<form id="sleep"/>'
 

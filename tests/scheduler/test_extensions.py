@@ -9,7 +9,7 @@ import pytest
 
 from prima.language.commands import TABLE_4_2, Argument, CommandType
 from prima.messages import Command, Step
-from tests.stage import Stage, ask, command, move, say, search
+from tests.helpers.stage import Stage, ask, command, move, say, search
 
 EVENT, LATER = 7, 8
 ALL = "prima+all"

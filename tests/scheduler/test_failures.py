@@ -9,7 +9,7 @@ import pytest
 
 from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Group
-from tests.stage import Stage, ask, chain, command, move, say
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
 

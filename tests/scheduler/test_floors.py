@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from prima.messages import Command, Group, Step
-from tests.stage import Stage, ask, chain, command, move, say, search
+from tests.helpers.stage import Stage, ask, chain, command, move, say, search
 
 EVENT = 7
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, command, move, say
 
 EVENT, LATER = 7, 8
 

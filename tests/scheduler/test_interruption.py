@@ -8,7 +8,7 @@ import pytest
 
 from prima.language.commands import PATIENCE_MS
 from prima.messages import Command, Group, Step
-from tests.stage import Stage, ask, chain, command, say
+from tests.helpers.stage import Stage, ask, chain, command, say
 
 EVENT = 7
 

@@ -6,7 +6,7 @@ Each rule by its number, on the smallest case that shows it.
 from __future__ import annotations
 
 from prima.messages import Group, Step
-from tests.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, command, move, say
 
 EVENT = 7
 

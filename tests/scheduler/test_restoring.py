@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Command, Step
-from tests.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, command, move, say
 
 EVENT = 7
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from prima.language.commands import TABLE_4_2
 from prima.messages import Command, Group, OpenUnit, Step
-from tests.stage import Stage, ask, chain, command, move, say, search
+from tests.helpers.stage import Stage, ask, chain, command, move, say, search
 
 EVENT = 7
 
