@@ -55,7 +55,8 @@ from prima.messages import (
 )
 from prima.scheduler.policy import policy_named
 from prima.session import Session
-from tests.helpers.generated import APPS, Play, plays
+from tests.helpers.generated.plays import Play, plays
+from tests.helpers.generated.world import APPS
 from tests.invariants import check
 from tests.invariants.test_properties import examples
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType
@@ -44,6 +45,10 @@ def search(text: str | None = None) -> Command:
 
 def command(kind: str, text: str | None = None, /, **args: Any) -> Command:
     return Command(kind, args, text)
+
+
+def restartable(what: Command) -> Command:
+    return replace(what, restartable=True)
 
 
 def chain(*whats: Command | Group) -> list[Step]:

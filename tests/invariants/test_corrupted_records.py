@@ -14,7 +14,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from prima.messages import Emergency, Inbound, Occurred, Unloaded
-from tests.helpers.generated import APPS, Play, World, perform, plays
+from tests.helpers.generated.plays import Play, perform, plays
+from tests.helpers.generated.world import APPS, World
 from tests.invariants import check
 
 Records = list[dict[str, Any]]

@@ -20,19 +20,9 @@ from prima.interpreter.elements import Document, Subdialog, all_items
 from prima.messages import Record
 from prima.session import AnyDocument, Session
 from tests import ROOT
-from tests.helpers.generated import (
-    APPS,
-    Play,
-    Run,
-    Script,
-    baselines,
-    drive,
-    extended,
-    perform,
-    plays,
-    scripts,
-    without_hints,
-)
+from tests.helpers.generated.plays import Play, perform, plays, without_hints
+from tests.helpers.generated.scripts import Script, drive, scripts
+from tests.helpers.generated.world import APPS, Run, baselines, extended
 from tests.invariants import check, numbers, unfinished
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
@@ -149,8 +139,9 @@ CHILD = """
 import sys
 from pathlib import Path
 from prima import load_scenario, rehearse
-from tests import generated, invariants
-from tests.helpers.generated import *
+from tests.helpers.generated.plays import *
+from tests.helpers.generated.scripts import *
+from tests.helpers.generated.world import *
 from prima.messages import *
 
 for path in sys.argv[1:]:
