@@ -1,7 +1,4 @@
-"""Calls, hanging up and recordings, as a scenario has them go.
-
-VoiceXML 2.0, 1.5.4, 2.3.6, 2.3.7, 5.1.4; 2.1, 7.
-"""
+"""Calls that a scenario's telephone connects, refuses or ends: VoiceXML 2.0, 2.3.7; 2.1, 7."""
 
 from __future__ import annotations
 
@@ -9,78 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from prima import api
 from prima.errors import DocumentError
-from prima.messages import Transferred
-from tests import ROOT
-from tests.helpers.voice import Call, vxml
-
-SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="world.xml"
-  robot="robot.xml"><robot at="middle"/><person x="1" y="0"/>
-  <application src="app.vxml"/>{script}</scenario>"""
-STOP = (
-    '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar" xml:lang="en">'
-    '<rule id="r">stop it</rule></grammar>'
-)
-ZERO = (
-    '<grammar version="1.0" mode="dtmf" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
-    '<rule id="r">0</rule></grammar>'
-)
-ALL = (
-    '<catch event="error connection"><log>'
-    '<value expr="_event"/> <value expr="typeof t"/></log><exit/></catch>'
-)
-
-
-@pytest.fixture
-def place(tmp_path: Path) -> Path:
-    """A folder with a world and a robot."""
-    demo = ROOT / "documents"
-    (tmp_path / "world.xml").write_bytes((demo / "worlds/room.xml").read_bytes())
-    (tmp_path / "robot.xml").write_bytes((demo / "robots/papero.xml").read_bytes())
-    return tmp_path
-
-
-def run(place: Path, app: str, script: str = "", **files: str) -> api.Transcript:
-    """Run an application in a scenario; its replay must be the same, byte for byte."""
-    (place / "app.vxml").write_text(vxml(app))
-    for name, text in files.items():
-        (place / f"{name}.vxml").write_text(text)
-    (place / "s.xml").write_text(SCENARIO.format(script=script))
-    made = api.rehearse(place / "s.xml")
-    (place / "made.jsonl").write_text(made.dumps())
-    assert api.replay(api.read(place / "made.jsonl"), place / "s.xml").dumps() == made.dumps()
-    return made
-
-
-def logs(made: api.Transcript) -> list[str]:
-    return [record["message"] for record in made.records if record["phase"] == "log"]
-
-
-def shown(made: api.Transcript) -> list[str]:
-    return [row.what for row in made.rows()]
-
-
-def ended(made: api.Transcript) -> tuple[float, str]:
-    """When and how the application ended."""
-    (found,) = (
-        record
-        for record in made.records
-        if record["phase"] == "unload" and record["actor"] == "mediator"
-    )
-    return found["time"], found["outcome"]
-
-
-def transfer(more: str = 'bridge="true"', inside: str = "", to: str = "tel:+1-555-1234") -> str:
-    """A form with one transfer, which logs what comes of it."""
-    return f"""{ALL}<form><transfer name="t" dest="{to}" {more}>{inside}
-    <filled><log><value expr="t"/> <value expr="t$.duration"/> <value expr="typeof t$.inputmode"/>
-    </log></filled></transfer><block><log>on</log></block></form>"""
+from tests.helpers.telephone import ALL, STOP, ZERO, Quiet, ended, logs, run, shown, transfer
+from tests.helpers.voice import Call
 
 
 # 2.3.7.2 Bridge transfer --------------------------------------------------------------------
-
-
 def test_without_a_word_in_the_scenario_nobody_answers(place: Path) -> None:
     assert logs(run(place, transfer())) == ["noanswer 0 undefined", "on"]
 
@@ -251,8 +182,6 @@ def test_grammars_outside_the_transfer_do_not_end_it(place: Path) -> None:
 
 
 # 2.3.7.3 Errors ---------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("kind", ["bridge", "blind", "consultation"])
 @pytest.mark.parametrize(
     "event",
@@ -309,8 +238,6 @@ def test_a_destination_by_an_expression_that_fails_is_error_semantic() -> None:
 
 
 # 2.3.7.1 Blind; 2.1, 7 Consultation --------------------------------------------------------
-
-
 @pytest.mark.parametrize("more", ["", 'bridge="false"', 'type="blind"'])
 def test_a_blind_transfer_takes_the_caller_away(place: Path, more: str) -> None:
     made = run(place, transfer(more), '<transfer outcome="busy" after="2s"/>')
@@ -356,8 +283,6 @@ def test_a_grammar_ends_a_consultation_before_it_is_answered(place: Path) -> Non
 
 
 # Which <transfer> of a scenario -------------------------------------------------------------
-
-
 def test_the_transfer_that_says_most_of_a_destination_counts(place: Path) -> None:
     app = "".join(
         f"""<transfer name="t{one}" dest="{to}" bridge="true"><filled><log expr="t{one}"/></filled>
@@ -395,57 +320,6 @@ def test_what_is_wrong_with_a_scenarios_telephone_is_told_at_its_place(
     assert told in str(caught.value)
 
 
-# 1.5.4 Hanging up ---------------------------------------------------------------------------
-
-
-def test_the_user_hangs_up_at_a_question(place: Path) -> None:
-    app = f"""<catch event="connection.disconnect.hangup"><log>bye</log>Are you there?</catch>
-    <form><field name="f"><prompt>Well?</prompt>{STOP}</field></form>"""
-    made = run(place, app, '<when asked="Well?" after="1s"><hang-up/></when>')
-    assert (logs(made), ended(made)[1]) == (["bye"], "connection.disconnect.hangup")
-    assert shown(made)[1:4] == ['"Well?"', "hangs up", "log: bye"]
-
-
-def test_a_hangup_that_nothing_catches_ends_the_application(place: Path) -> None:
-    app = f'<form><field name="f"><prompt>Well?</prompt>{STOP}</field></form>'
-    made = run(place, app, '<when asked="Well?"><hang-up/></when>')
-    assert ended(made)[1] == "connection.disconnect.hangup"
-
-
-def test_after_a_hangup_values_can_be_submitted(place: Path) -> None:
-    app = f"""<var name="a" expr="1"/><catch event="connection.disconnect.hangup">One moment.
-    <submit next="service:keep" namelist="a" fetchaudio="hold.wav"/></catch>
-    <form><field name="f"><prompt>Well?</prompt>{STOP}</field></form>"""
-    kept = vxml(
-        f"""<form><block><log>kept</log>Kept.</block><field name="g"><prompt>Well?</prompt>{STOP}
-        </field><block><log>never</log></block></form>"""
-    )
-    script = """<service name="keep"><reply after="2s" src="kept.vxml"/></service>
-    <when asked="Well?" after="1s"><hang-up/></when>"""
-    made = run(place, app, script, kept=kept)
-    assert logs(made) == ["kept"]
-    assert [what for what in shown(made) if what.startswith('"')] == ['"Well?"']
-    sent = [record["data"] for record in made.records if record["phase"] == "send"]
-    assert sent[0]["params"] == {"a": 1}
-    assert ended(made)[1] == "connection.disconnect.hangup"
-
-
-def test_the_user_hangs_up_during_a_bridged_call(place: Path) -> None:
-    script = '<transfer lasts="60s"/><when at="5s"><hang-up/></when>'
-    made = run(place, transfer(), script)
-    assert logs(made)[0] == "connection.disconnect.hangup undefined"
-    assert "ends the call to tel:+1-555-1234: connection.disconnect.hangup" in shown(made)
-    assert not any("tel:+1-555-1234 hangs up" in what for what in shown(made))
-    assert ended(made)[0] == 5.0
-
-
-def test_the_user_hangs_up_before_and_during_a_call_that_listens(place: Path) -> None:
-    for at in ("1s", "5s"):
-        script = f'<transfer after="3s" lasts="60s"/><when at="{at}"><hang-up/></when>'
-        made = run(place, transfer(inside=STOP), script)
-        assert logs(made)[0] == "connection.disconnect.hangup undefined"
-
-
 def test_events_during_a_call_come_at_the_next_wait(place: Path) -> None:
     app = f"""<catch event="touch"><log>touched</log><exit/></catch>
     <form><transfer name="t" dest="tel:+1" bridge="true"><filled><log expr="t"/></filled></transfer>
@@ -469,18 +343,6 @@ def test_exit_in_what_a_call_has_filled_ends_the_application(place: Path) -> Non
     assert logs(made) == ["busy 0 undefined", 'exit: "busy"']
 
 
-# What devices tell --------------------------------------------------------------------------
-
-
-class Quiet(Call):
-    """A call whose telephone says what the test says."""
-
-    calls = False
-
-    def told(self, outcome: str, serial: int = 1) -> None:
-        self.step(Transferred("app", serial, "tel:+1-555-1234", outcome))
-
-
 def test_a_telephone_that_says_nothing_is_waited_for_a_minute() -> None:
     call = Quiet(transfer())
     deadline = call.session.deadline()
@@ -497,209 +359,8 @@ def test_news_of_another_call_is_not_heeded() -> None:
     assert call.logs() == []
 
 
-def test_what_came_along_with_the_call_goes_along_with_the_transfer() -> None:
-    sent = Quiet(transfer('bridge="true" aai="order 7"')).phases("send")[0]["data"]
-    assert sent == {"to": "tel:+1-555-1234", "transfer": "bridge", "params": {"aai": "order 7"}}
-    sent = Quiet(transfer("bridge='true' aaiexpr=\"'a' + 1\"")).phases("send")[0]["data"]
-    assert sent["params"] == {"aai": "a1"}
-
-
 def test_a_device_that_fails_during_a_call_ends_it() -> None:
     call = Quiet(transfer('bridge="true" transferaudio="music.wav"'))
     call.fail("music.wav")
     assert call.logs()[0].startswith("error.device.speaker")
     assert call.phases("send")[1]["data"]["transfer"] == "over"
-
-
-# 5.1.4 session.connection -------------------------------------------------------------------
-
-CONNECTION = """<form><block><log expr="[session.connection.remote.uri, session.connection.local.uri,
-  session.connection.protocol.name, session.connection.protocol.version, session.connection.aai,
-  session.connection.originator === session.connection.remote,
-  session.connection.redirect &amp;&amp; session.connection.redirect.length + ' '
-  + session.connection.redirect[0].uri + ' ' + session.connection.redirect[0].reason].join()"/></block></form>"""
-
-
-def test_what_a_scenario_says_of_the_connection_is_there(place: Path) -> None:
-    script = """<connection remote="tel:+81-1" local="tel:+81-2" protocol="sip" version="2.0"
-    aai="vip" originator="remote"><redirect uri="tel:+81-3" reason="busy"/>
-    <redirect uri="tel:+81-4"/></connection>"""
-    assert logs(run(place, CONNECTION, script)) == [
-        "tel:+81-1,tel:+81-2,sip,2.0,vip,true,2 tel:+81-3 busy"
-    ]
-
-
-def test_what_it_does_not_say_is_undefined(place: Path) -> None:
-    assert logs(run(place, CONNECTION)) == [",,,,,false,"]
-    assert logs(run(place, CONNECTION, '<connection local="tel:+81-2"/>')) == [
-        ",tel:+81-2,,,,false,"
-    ]
-
-
-def test_the_connection_cannot_be_changed(place: Path) -> None:
-    app = """<catch event="error.semantic"><log>no</log><exit/></catch>
-    <form><block><assign name="session.connection" expr="1"/></block></form>"""
-    assert logs(run(place, app, '<connection aai="x"/>')) == ["no"]
-
-
-# 2.3.6 Recording ----------------------------------------------------------------------------
-
-
-def record(more: str = "", inside: str = "") -> str:
-    """A form with one recording, which logs what comes of it."""
-    return f"""<catch event="connection.disconnect.hangup"><log>hangup: <value expr="r"/>,
-    <value expr="r$.duration"/></log></catch>
-    <form><record name="r" {more}><prompt>Speak.</prompt>{inside}
-    <noinput><log>silence</log><exit/></noinput>
-    <filled><log expr="[r, r$.duration, r$.size, r$.termchar, r$.maxtime].join()"/></filled></record>
-    </form>"""
-
-
-def says(*texts: str) -> str:
-    return "".join(
-        f'<when asked="Speak." count="{count}" after="1s"><say>{text}</say></when>'
-        for count, text in enumerate(texts, 1)
-    )
-
-
-HELLO = "Hello Ann, here is Bob."
-"""17 letters, 13 a second, and 300 ms: 1608 ms."""
-
-
-def test_a_recording_is_what_is_said_and_as_long(place: Path) -> None:
-    made = run(place, record(), says(HELLO))
-    assert logs(made) == [f"{HELLO},1608,{len(HELLO)},,false"]
-
-
-def test_the_size_is_that_of_what_is_submitted(place: Path) -> None:
-    made = run(place, record(), says("Gr\u00fc\u00dfe."))
-    assert logs(made)[0].split(",")[2] == "8"
-
-
-def test_a_final_silence_takes_its_time_and_is_not_recorded(place: Path) -> None:
-    first = run(place, record(), says(HELLO))
-    later = run(place, record('finalsilence="2s"'), says(HELLO))
-    assert logs(later) == logs(first)
-    assert ended(later)[0] == pytest.approx(ended(first)[0] + 2)
-
-
-def test_a_key_ends_a_recording_at_once(place: Path) -> None:
-    for key in "#*":
-        first = run(place, record(), says(HELLO))
-        made = run(place, record('finalsilence="2s"'), says(HELLO + key))
-        assert logs(made) == [f"{HELLO},1608,{len(HELLO)},{key},false"]
-        assert ended(made)[0] == ended(first)[0]
-
-
-def test_without_dtmfterm_keys_end_nothing(place: Path) -> None:
-    made = run(place, record('dtmfterm="false"'), says(HELLO + "#"))
-    assert logs(made)[0].startswith(f"{HELLO}#,1608,")
-    assert logs(run(place, record('dtmfterm="false"'), says("12")))[0].startswith("12,")
-
-
-def test_a_key_before_anything_is_said_leaves_the_record_unfilled(place: Path) -> None:
-    app = """<form><record name="r"><prompt>Speak.</prompt><noinput><log>silence</log></noinput>
-    <filled><log expr="r + ' ' + application.lastresult$.utterance
-    + application.lastresult$.inputmode"/></filled></record></form>"""
-    made = run(place, app, says("#", HELLO))
-    assert logs(made) == [f"{HELLO} #dtmf"]
-
-
-def test_a_grammar_for_keys_ends_a_recording_as_well(place: Path) -> None:
-    app = record('dtmfterm="false"', ZERO)
-    assert logs(run(place, app, says("0", HELLO))) == [f"{HELLO},1608,{len(HELLO)},,false"]
-
-
-def test_a_grammar_of_the_record_ends_it_with_what_was_said(place: Path) -> None:
-    app = f"""<form><record name="r"><prompt>Speak.</prompt>{STOP}
-    <filled><log expr="[r, r$.utterance, r$.confidence].join()"/></filled></record></form>"""
-    assert logs(run(place, app, says("Stop it."))) == ["Stop it.,Stop it.,1"]
-
-
-def test_maxtime_cuts_a_recording_off(place: Path) -> None:
-    made = run(place, record('maxtime="1s" finalsilence="2s"'), says(HELLO))
-    assert logs(made) == ["Hello Ann, here,1000,15,,true"]
-    assert logs(run(place, record('maxtime="2s"'), says(HELLO)))[0].endswith("false")
-
-
-def test_maxtime_cuts_even_a_first_word(place: Path) -> None:
-    assert logs(run(place, record('maxtime="200ms"'), says("Supercalifragilistic")))[0] == (
-        "Su,200,2,,true"
-    )
-
-
-def test_silence_is_noinput(place: Path) -> None:
-    app = record().replace("<prompt>", '<prompt timeout="3s">')
-    made = run(place, app)
-    assert logs(made) == ["silence"]
-
-
-def test_a_beep_is_heard_before_the_recording(place: Path) -> None:
-    first = run(place, record(), says(HELLO))
-    made = run(place, record('beep="true"'), says(HELLO))
-    assert '"Speak. [beep]"' in shown(made)
-    assert ended(made)[0] == pytest.approx(ended(first)[0] + 0.75)  # with the full stop's pause
-    assert logs(made) == logs(first)
-    bare = record('beep="true"').replace("<prompt>Speak.</prompt>", "")
-    assert '"[beep]"' in shown(run(place, bare))
-
-
-def test_hanging_up_keeps_what_was_recorded(place: Path) -> None:
-    script = says(HELLO) + '<when asked="Speak." after="1900ms"><hang-up/></when>'
-    made = run(place, record(), script)
-    assert logs(made) == ["hangup: Hello Ann,, 900"]
-    assert not any("here" in what for what in shown(made))
-
-
-def test_hanging_up_in_the_final_silence_keeps_all(place: Path) -> None:
-    script = says(HELLO) + '<when asked="Speak." after="3500ms"><hang-up/></when>'
-    made = run(place, record('finalsilence="3s"'), script)
-    assert logs(made) == [f"hangup: {HELLO}, 1608"]
-
-
-def test_hanging_up_before_anything_is_said_records_nothing(place: Path) -> None:
-    made = run(place, record(), '<when asked="Speak." after="1s"><hang-up/></when>')
-    assert logs(made) == ["hangup: undefined, undefined"] or "error" in ended(made)[1]
-
-
-@pytest.mark.parametrize("kind", ["audio/basic", "audio/x-wav", "audio/wav;codec=1", "Audio/Basic"])
-def test_known_formats_are_recorded(place: Path, kind: str) -> None:
-    assert logs(run(place, record(f'type="{kind}"'), says(HELLO)))[0].startswith(HELLO)
-
-
-def test_other_formats_are_error_unsupported_format(place: Path) -> None:
-    app = '<catch event="error"><log expr="_event"/><exit/></catch>' + record('type="video/mpeg"')
-    made = run(place, app, says(HELLO))
-    assert logs(made) == ["error.unsupported.format"]
-
-
-@pytest.mark.parametrize("played", ['<value expr="r"/>', '<audio expr="r"/>'])
-def test_a_recording_is_played_back(place: Path, played: str) -> None:
-    app = f"""<form><record name="r"><prompt>Speak.</prompt></record>
-    <block>You said: {played}</block></form>"""
-    said = "A and/or b."
-    assert f'"You said: {said}"' in shown(run(place, app, says(said)))
-
-
-def test_a_recording_that_is_played_back_takes_its_own_time(place: Path) -> None:
-    app = """<form><record name="r" maxtime="1s"><prompt>Speak.</prompt></record>
-    <block><audio expr="r">No recording.</audio></block></form>"""
-    made = run(place, app, says(HELLO))
-    row = next(row for row in made.rows() if row.what == '"Hello Ann, here"' and row.actor == "R")
-    assert ended(made)[0] == pytest.approx(row.time + 1)
-
-
-def test_a_recording_is_submitted_as_its_text(place: Path) -> None:
-    app = """<form><record name="r"><prompt>Speak.</prompt></record>
-    <block><submit next="service:keep" namelist="r" method="post"/></block></form>"""
-    kept = vxml("<form><block>Kept.</block></form>")
-    script = says(HELLO) + '<service name="keep"><reply src="kept.vxml"/></service>'
-    made = run(place, app, script, kept=kept)
-    (sent,) = (one["data"] for one in made.records if one["phase"] == "send")
-    assert sent["params"] == {"r": HELLO}
-
-
-def test_a_device_that_does_not_tell_how_long_it_heard_is_guessed_for() -> None:
-    call = Call(record())
-    call.answer("abcde")
-    assert call.logs() == ["abcde,500,5,,false"]
