@@ -300,7 +300,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ),
     ("x6", "dropped", put(requests, "x6", nothing)),
 ]
-"""Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_sim.py)."""
+"""Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""
 
 
 def named_after(rule: str) -> Iterator[Callable[[], None]]:

@@ -1,4 +1,4 @@
-"""What strangers have met with files and commands of their own, so that nobody does again."""
+"""Files that are too large, missing or badly named, and what commands say of them."""
 
 from __future__ import annotations
 
