@@ -18,7 +18,13 @@ BESIDE = {
 }  # fmt: skip
 """Folders that are no room of the package; docs/development.md says what is in each."""
 
-FILES = [path for path in sorted(TESTS.rglob("*.py")) if "node_modules" not in path.parts]
+FILES = [
+    path
+    for path in sorted(TESTS.rglob("*.py"))
+    if not any(
+        part == "node_modules" or part.startswith(".") for part in path.relative_to(TESTS).parts
+    )
+]
 FOLDERS = sorted({path.relative_to(TESTS).parts[0] for path in FILES if path.parent != TESTS})
 
 
