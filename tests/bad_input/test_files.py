@@ -10,15 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests import ROOT
-
-
-def prima(*args: str, cwd: Path, input: str = "") -> subprocess.CompletedProcess[str]:
-    """The command line in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *args],
-        capture_output=True, text=True, encoding="utf-8", errors="surrogateescape", timeout=60, cwd=cwd, check=False, input=input,
-    )  # fmt: skip
-
+from tests.helpers.command import prima
 
 GREETS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="greets"><form id="a">
 <block><speak>Hello.</speak><exit/></block></form></prima>"""

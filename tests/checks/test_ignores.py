@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +13,7 @@ from prima.errors import Problem
 from prima.lsp import problems as editor
 from prima.lsp.desk import Desk
 from tests import ROOT
+from tests.helpers.command import prima
 
 BESIDE = ROOT / "tests" / "mistakes" / "beside"
 SILENT = (
@@ -23,13 +22,6 @@ SILENT = (
 """A question with the warning no-noinput."""
 IGNORE = "<!-- prima-ignore: {} -->"
 WHY = "no-noinput The kiosk waits for its next guest."
-
-
-def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, args)],
-        capture_output=True, text=True, timeout=60, cwd=cwd, check=False,
-    )  # fmt: skip
 
 
 def write(folder: Path, content: str, name: str = "a.xml", before: str = "") -> Path:

@@ -15,20 +15,9 @@ from click.testing import CliRunner
 
 from prima.cli import COMMANDS, cli
 from tests import ROOT
+from tests.helpers.command import prima
 
 DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
-
-
-def prima(*args: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, args)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        timeout=60,
-        cwd=cwd,
-        check=False,
-    )
 
 
 def test_what_the_readme_promises(tmp_path: Path) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,13 +10,7 @@ import pytest
 from prima.cli.new import KINDS
 from prima.errors import UsageError
 from prima.templates import identifier, write
-
-
-def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, args)],
-        capture_output=True, text=True, timeout=60, cwd=cwd, check=False,
-    )  # fmt: skip
+from tests.helpers.command import prima
 
 
 @pytest.mark.parametrize("name", ["guide", "My guide 3", "日本", "3--x <&> y", "_"])

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +11,7 @@ import pytest
 from prima.cli.common import check_output
 from prima.errors import UsageError
 from tests import ROOT
+from tests.helpers.command import prima
 
 SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" title="s"
   world="world.xml" robot="robot.xml" until="5s">
@@ -31,18 +30,6 @@ VOICE = """<?xml version="1.0"?><!-- another's -->
 """
 
 
-def prima(folder: Path, *args: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *args],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        timeout=60,
-        cwd=folder,
-        check=False,
-    )
-
-
 def write(folder: Path) -> None:
     shutil.copy(ROOT / "documents" / "worlds" / "room.xml", folder / "world.xml")
     shutil.copy(ROOT / "documents" / "robots" / "papero.xml", folder / "robot.xml")
@@ -58,8 +45,8 @@ def write(folder: Path) -> None:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("outputs")
     write(folder)
-    assert prima(folder, "run", "s.xml", "-o", "t.jsonl").returncode == 0
-    assert prima(folder, "test", "s.xml", "--update", "--yes").returncode == 0
+    assert prima("run", "s.xml", "-o", "t.jsonl", cwd=folder).returncode == 0
+    assert prima("test", "s.xml", "--update", "--yes", cwd=folder).returncode == 0
     assert (folder / "s.txt").exists()
     os.link(folder / "t.jsonl", folder / "linked.jsonl")
     (folder / "pointed.txt").symlink_to("s.txt")
@@ -109,7 +96,7 @@ def test_an_output_that_would_replace_a_file_of_the_author_is_refused(
     made: Path, words: str
 ) -> None:
     before = {path: path.read_bytes() for path in made.iterdir()}
-    done = prima(made, *words.split())
+    done = prima(*words.split(), cwd=made)
     assert {path: path.read_bytes() for path in made.iterdir()} == before
     assert done.returncode == 2
     assert done.stdout == "", "refused before it is run"
@@ -118,7 +105,7 @@ def test_an_output_that_would_replace_a_file_of_the_author_is_refused(
 
 def test_what_earlier_runs_wrote_is_replaced(tmp_path: Path) -> None:
     write(tmp_path)
-    assert prima(tmp_path, "test", "s.xml", "--update", "--yes").returncode == 0
+    assert prima("test", "s.xml", "--update", "--yes", cwd=tmp_path).returncode == 0
     for words in (
         "run s.xml -o t.jsonl",
         "run s.xml -o t.txt",
@@ -131,7 +118,7 @@ def test_what_earlier_runs_wrote_is_replaced(tmp_path: Path) -> None:
         "test s.xml --junit /dev/null --coverage-xml /dev/null",
     ):
         for _ in range(2):
-            done = prima(tmp_path, *words.split())
+            done = prima(*words.split(), cwd=tmp_path)
             assert (done.returncode, "elsewhere" in done.stderr) == (0, False), words
 
 
@@ -188,7 +175,7 @@ def test_only_a_scenario_has_an_expected_table(tmp_path: Path) -> None:
 def test_a_record_that_is_no_object_is_told_plainly(tmp_path: Path) -> None:
     for text in ("[]", "3", '"word"', "null"):
         (tmp_path / "t.jsonl").write_text(f"{text}\n", encoding="utf-8")
-        done = prima(tmp_path, "show", "t.jsonl")
+        done = prima("show", "t.jsonl", cwd=tmp_path)
         assert done.returncode == 2
         assert "t.jsonl:1: " in done.stderr
         assert "braces" in done.stderr and "dictionary" not in done.stderr
@@ -197,7 +184,7 @@ def test_a_record_that_is_no_object_is_told_plainly(tmp_path: Path) -> None:
 def test_talk_is_not_saved_to_a_folder(tmp_path: Path) -> None:
     write(tmp_path)
     (tmp_path / "adir").mkdir()
-    done = prima(tmp_path, "talk", "s.xml", "--save", "adir")
+    done = prima("talk", "s.xml", "--save", "adir", cwd=tmp_path)
     assert done.returncode == 2
     assert "adir: this is a folder; name a file, as adir/visit.xml." in done.stderr
 
@@ -214,12 +201,12 @@ def test_talk_is_not_saved_to_a_folder(tmp_path: Path) -> None:
     ],
 )
 def test_a_dash_is_stdout(made: Path, words: str, begins: str) -> None:
-    done = prima(made, *words.split())
+    done = prima(*words.split(), cwd=made)
     assert done.returncode == 0 and done.stdout.startswith(begins), done
     assert not (made / "-").exists()
 
 
 def test_several_transcripts_do_not_go_to_stdout(made: Path) -> None:
-    done = prima(made, "run", "s.xml", "--policy", "prima", "--policy", "fifo", "-o", "-")
+    done = prima("run", "s.xml", "--policy", "prima", "--policy", "fifo", "-o", "-", cwd=made)
     assert done.returncode == 2 and "go into a folder" in done.stderr
     assert not (made / "-").exists()

@@ -5,9 +5,11 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 from tests import ROOT
+from tests.helpers import command
 
 SECONDS = 60
 
@@ -49,18 +51,11 @@ def write(name: str, content: str) -> None:
     Path(name).write_text(content, encoding="utf-8")
 
 
-def prima(*args: object, **more: object) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run(
-        [*MODULE, *map(str, args)],
-        capture_output=True,
-        text=True,
-        timeout=SECONDS,
-        check=False,
-        **more,  # type: ignore[call-overload]
-    )
-    assert "Traceback" not in done.stderr and "defect of prima" not in done.stderr, done.stderr
-    assert isinstance(done, subprocess.CompletedProcess)
-    return done
+def prima(
+    *args: object, input: str = "", env: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a batch in this folder."""
+    return command.prima("run", *args, input=input, env=env, timeout=SECONDS)
 
 
 def files(folder: str) -> dict[str, bytes]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import random
-import subprocess
-import sys
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from prima import api
 from prima.graph import states
 from prima.graph.model import Graph, Node
 from tests import ROOT
+from tests.helpers import command
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -92,11 +91,5 @@ FLOW = [
 
 # The command --------------------------------------------------------------------------------
 def prima(folder: Path, *words: str) -> tuple[int, str, str]:
-    done = subprocess.run(
-        [sys.executable, "-m", "prima", "graph", *words],
-        cwd=folder,
-        capture_output=True,
-        encoding="utf-8",
-    )
-    assert "Traceback" not in done.stderr and "defect" not in done.stderr, done.stderr
+    done = command.prima("graph", *words, cwd=folder)
     return done.returncode, done.stdout, done.stderr

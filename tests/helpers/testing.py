@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from html import escape
 from pathlib import Path
 
@@ -70,15 +68,3 @@ def write(folder: Path, expected: str, desk: str = DESK) -> Path:
 
 def outcome(folder: Path, expected: str, desk: str = DESK) -> Result:
     return run_one(str(write(folder, expected, desk)), Choice())
-
-
-def prima(*args: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, args)],
-        capture_output=True,
-        encoding="utf-8",
-        timeout=60,
-        cwd=cwd,
-        check=False,
-        stdin=subprocess.DEVNULL,
-    )

@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 from prima import loading
 from tests import ROOT
-
-
-def prima(*args: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, args)],
-        capture_output=True, text=True, timeout=60, cwd=cwd, check=False,
-    )  # fmt: skip
 
 
 def wrong(places: int) -> str:

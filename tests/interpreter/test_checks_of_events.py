@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.validating import prima
+from tests.helpers.command import prima
 
 
 @pytest.mark.parametrize(

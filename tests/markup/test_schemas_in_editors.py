@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -17,6 +16,7 @@ from prima import api, loading
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.rnc import make_rnc
 from tests import ROOT
+from tests.helpers.command import prima
 from tools.reference import VOCABULARIES, voicexml
 
 SCHEMAS = ROOT / "schemas"
@@ -211,25 +211,19 @@ def test_emacs_lisp_of_the_page_finds_the_schemas(tmp_path: Path) -> None:
     assert "x.xml dialogue.rnc 1" in done.stdout, done.stderr
 
 
-def prima(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *words], cwd=folder, capture_output=True, encoding="utf-8"
-    )
-
-
 def test_the_command_copies_the_schemas(tmp_path: Path) -> None:
-    done = prima("schemas", "schemas", folder=tmp_path)
+    done = prima("schemas", "schemas", cwd=tmp_path)
     assert done.returncode == 0 and not done.stdout
     assert sorted(p.name for p in (tmp_path / "schemas").iterdir()) == sorted(
         p.name for p in SCHEMAS.iterdir()
     )
-    again = prima("schemas", "schemas", folder=tmp_path)
+    again = prima("schemas", "schemas", cwd=tmp_path)
     assert again.returncode == 2
     assert again.stderr == "prima: schemas: is there already; name a new folder.\n"
-    far = prima("schemas", "x.xml/schemas", folder=tmp_path)
+    far = prima("schemas", "x.xml/schemas", cwd=tmp_path)
     assert far.returncode in (0, 2) and "Traceback" not in far.stderr
     (tmp_path / "file").write_text("", encoding="utf-8")
-    wrong = prima("schemas", "file/schemas", folder=tmp_path)
+    wrong = prima("schemas", "file/schemas", cwd=tmp_path)
     assert wrong.returncode == 2 and "cannot be written" in wrong.stderr
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import subprocess
-import sys
 import tomllib
 from importlib import import_module
 from pathlib import Path
@@ -23,21 +21,12 @@ from prima.loading.files import in_place_of_files
 from prima.lsp.fixes import changes
 from prima.lsp.text import Lines
 from tests import ROOT
+from tests.helpers.command import prima
 
 MISTAKES = Path(__file__).parent
 EXPECTED: dict[str, dict[str, str]] = tomllib.loads(
     (MISTAKES / "expected.toml").read_text(encoding="utf-8")
 )
-
-
-def prima(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *words],
-        cwd=ROOT,
-        capture_output=True,
-        encoding="utf-8",
-        timeout=60,
-    )
 
 
 def problems_of(path: Path) -> list[Problem]:
@@ -139,30 +128,30 @@ def test_no_code_is_emitted_that_is_not_explained() -> None:
 
 
 def test_explain_lists_all_codes() -> None:
-    listed = prima("explain")
+    listed = prima("explain", cwd=ROOT)
     assert listed.returncode == 0 and listed.stderr == ""
     lines = listed.stdout.partition("Codes of problems:\n")[2].splitlines()
     assert [line.split()[0] for line in lines] == [*diagnoses()]
     assert all(len(line) <= 100 for line in lines)
-    told = json.loads(prima("explain", "--format", "json").stdout)
+    told = json.loads(prima("explain", "--format", "json", cwd=ROOT).stdout)
     codes = {one["code"]: one["explanation"] for one in told if one["kind"] == "problem"}
     assert codes == {code: one.meaning for code, one in diagnoses().items()}
 
 
 def test_explain_shows_the_wrong_example_the_message_and_the_right_one() -> None:
-    told = prima("explain", "misplaced-element")
+    told = prima("explain", "misplaced-element", cwd=ROOT)
     assert told.returncode == 0
     assert "wrong.xml:3:5: error: <speak> cannot stand in <form>. Put it into a <block>." in (
         told.stdout
     )
     assert "    3 |     <speak>Hello.</speak>\n      |     ^~~~~~\n" in told.stdout
-    as_json = json.loads(prima("explain", "too-deep", "--format", "json").stdout)
+    as_json = json.loads(prima("explain", "too-deep", "--format", "json", cwd=ROOT).stdout)
     assert as_json["problems"][0]["code"] == "too-deep"
     assert as_json["right"]["text"].startswith("<prima ")
 
 
 def test_explain_guesses_a_misspelt_code() -> None:
-    told = prima("explain", "no-anser")
+    told = prima("explain", "no-anser", cwd=ROOT)
     assert told.returncode == 2 and told.stdout == ""
     assert 'There is no rule, code or file "no-anser". Did you mean "no-answer"?' in told.stderr
     with pytest.raises(UsageError, match="prima explain lists them"):
@@ -334,10 +323,10 @@ def test_two_applications_of_one_id_are_named_by_their_options(tmp_path: Path) -
     ask = MISTAKES / "beside" / "ask.xml"
     other = tmp_path / "other.xml"
     other.write_bytes(ask.read_bytes())
-    twice = prima("run", "--ea", str(ask), "--ea", str(ask))
+    twice = prima("run", "--ea", str(ask), "--ea", str(ask), cwd=ROOT)
     assert twice.returncode == 2 and twice.stdout == ""
     assert f"--ea {ask} is given twice." in twice.stderr
-    both = prima("run", "--fa", str(ask), "--ea", str(other))
+    both = prima("run", "--fa", str(ask), "--ea", str(other), cwd=ROOT)
     assert both.returncode == 2 and "stage.xml" not in both.stderr
     assert f'--fa {ask} and --ea {other} have the same id, "ask".' in both.stderr
 

@@ -29,6 +29,7 @@ from prima.transcript.rules import RULES
 from prima.transcript.run import run_of
 from prima.transcript.table import Row
 from tests import ROOT
+from tests.helpers.command import prima
 from tests.helpers.generated_report import long_run
 
 SCENARIOS = ROOT / "documents" / "scenarios"
@@ -371,13 +372,6 @@ def test_a_row_without_behaviour_has_no_reasons() -> None:
 
 
 # The command line -----------------------------------------------------------------------
-
-
-def prima(*words: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "prima", *map(str, words)],
-        cwd=cwd, capture_output=True, encoding="utf-8",
-    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")

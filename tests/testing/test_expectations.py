@@ -19,7 +19,8 @@ from prima.testing.telling import format_result
 from prima.testing.tracing import States, states_of
 from prima.transcript.run import run_of
 from tests import ROOT
-from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, prima, write
+from tests.helpers.command import prima
+from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
 
 # Expectations ----------------------------------------------------------------------
 TRUE = [

@@ -11,7 +11,8 @@ from prima.errors import UsageError
 from prima.testing.golden import difference
 from prima.testing.running import Choice, run_one
 from prima.transcript.table import format_rows
-from tests.helpers.testing import DESK, prima, write
+from tests.helpers.command import prima
+from tests.helpers.testing import DESK, write
 
 
 # Expected tables -------------------------------------------------------------------

@@ -23,7 +23,8 @@ from prima.testing.junit import junit
 from prima.testing.running import Choice, run_all
 from prima.testing.telling import format_result
 from tests import ROOT
-from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, prima, write
+from tests.helpers.command import prima
+from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
 
 
 # Finding and running ---------------------------------------------------------------

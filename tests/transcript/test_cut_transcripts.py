@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from prima import api
 from tests import ROOT
+from tests.helpers.command import prima
 
 SCENARIO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
 
@@ -35,11 +34,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-def prima(folder: Path, words: list[str]) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "prima", *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8")
-
-
 def cut(folder: Path, letters: int = 0) -> None:
     """Write the first 150 records as ``t.jsonl``, and so many letters of the next."""
     lines = (folder / "whole.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
@@ -51,7 +45,7 @@ def cut(folder: Path, letters: int = 0) -> None:
 @pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
 def test_what_stands_before_a_cut_line_is_shown(folder: Path, words: list[str]) -> None:
     cut(folder, letters=30)
-    done = prima(folder, words)
+    done = prima(*words, cwd=folder)
     assert done.returncode == 2, done.stderr
     assert "t.jsonl:151: the record is cut off" in done.stderr
     assert done.stdout or (folder / "made").stat().st_size
@@ -60,7 +54,7 @@ def test_what_stands_before_a_cut_line_is_shown(folder: Path, words: list[str]) 
 @pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
 def test_a_run_that_did_not_end_is_shown_and_told(folder: Path, words: list[str]) -> None:
     cut(folder)
-    done = prima(folder, words)
+    done = prima(*words, cwd=folder)
     assert done.returncode == (1 if words[0] == "diff" else 0), done.stderr
     assert done.stderr.count("the transcript ends at 35.000 s, before its run did.") == 1
     assert done.stdout or (folder / "made").stat().st_size
@@ -70,13 +64,13 @@ def test_a_run_that_did_not_end_is_shown_and_told(folder: Path, words: list[str]
 def test_of_a_whole_transcript_nothing_is_told(folder: Path, words: list[str]) -> None:
     cut(folder)
     (folder / "t.jsonl").write_bytes((folder / "whole.jsonl").read_bytes())
-    done = prima(folder, words)
+    done = prima(*words, cwd=folder)
     assert done.returncode == 0 and "before its run did" not in done.stderr
 
 
 def test_a_row_that_was_cut_off_is_told_so(folder: Path) -> None:
     cut(folder, letters=30)
-    done = prima(folder, ["explain", "t.jsonl", "30"])
+    done = prima("explain", "t.jsonl", "30", cwd=folder)
     assert done.returncode == 2 and done.stdout == ""
     assert "There is no row 30; the rows are 0 to 20. t.jsonl:151:" in done.stderr
 
@@ -85,7 +79,7 @@ def test_a_cut_run_is_explained_as_the_whole_one(folder: Path) -> None:
     cut(folder, letters=30)
     words = ["explain", "10", "--format", "json"]
     data = [
-        json.loads(prima(folder, [words[0], name, *words[1:]]).stdout)
+        json.loads(prima(words[0], name, *words[1:], cwd=folder).stdout)
         for name in ("t.jsonl", "whole.jsonl")
     ]
     assert data[0] == data[1]

@@ -9,7 +9,8 @@ import pytest
 from prima import api, loading
 from prima.errors import DocumentError
 from tests import ROOT
-from tests.helpers.validating import VXML, prima, told
+from tests.helpers.command import prima
+from tests.helpers.validating import VXML, told
 
 PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
 <form id="f"><field name="a"><prompt>A?</prompt>
