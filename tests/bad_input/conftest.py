@@ -28,7 +28,6 @@ def prima(
     return call
 
 
-# Transcripts -----------------------------------------------------------------------------
 @pytest.fixture
 def transcript(prima: Prima, tmp_path: Path) -> str:
     """A good transcript, ``good.jsonl``, of ``s.xml``."""

@@ -25,8 +25,6 @@ from tests.helpers.bad_input import (
 LAUGHS = '<!ENTITY a0 "ha">' + "".join(
     f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 9)
 )
-
-
 FIFTH = "\U00010000"
 """A letter of names since XML 1.0's fifth edition, and not before."""
 

@@ -28,8 +28,6 @@ from tests.helpers.bad_input import (
 
 # Documents that do not wait ---------------------------------------------------------
 AT_ONCE = '<send event="a.b" delay="0s"/>'
-
-
 LOOPS = [
     ("goto", block('<goto next="#f"/>'), "loops without ever waiting"),
     ("goto-cycle", block('<goto next="#g"/>') + form('<block><goto next="#f"/></block>', "g"), "without ever waiting"),

@@ -22,7 +22,6 @@ from tests.helpers.bad_input import (
     write,
 )
 
-# Expressions and scripts at run time ---------------------------------------------------
 EXPRESSIONS = [
     ("throws", "(function(){throw new Error('boom')})()", "Error: boom"),
     ("throws-symbol", "(function(){throw Symbol('x')})()", "app.xml:3"),

@@ -22,10 +22,7 @@ from tests.helpers.bad_input import (
     write,
 )
 
-# Scenarios, worlds and robots ---------------------------------------------------------
 FOREIGN = ' xmlns:x="urn:x"'
-
-
 SCENARIOS = [
     ("no-world", scenario(PLAY, world="no.xml"), "s.xml:1:68", '"no.xml" cannot be read: No such'),
     ("directory", scenario(PLAY, world="."), "s.xml:1:68", "cannot be read"),
@@ -77,8 +74,6 @@ WORLDS = [
     ("foreign", world(f'<x:place{FOREIGN} id="a"/>'), "w.xml:2:1", "another namespace"),
     ("wall", world('<wall x1="1e308" y1="0" x2="0" y2="1"/>'), "w.xml:2:11", "out of range"),
 ]  # fmt: skip
-
-
 ROBOTS = [
     ("radius", robot("", 'radius="-1"'), "w.xml:1:63", "out of range"),
     ("speed", robot("", 'speed="0"'), "w.xml:1:62", "out of range"),
@@ -132,8 +127,6 @@ def test_a_robot_without_devices(
 
 
 DANCE = '<adds command="dance" devices="arm">{}</adds><allows command="speak" argument="voice"/>'
-
-
 NUMBER = '<argument name="n" kind="number" low="5"/>'
 
 

@@ -27,15 +27,10 @@ from tests.helpers.certifying import PROFILE, certified, run, without_more_for_e
 from tests.helpers.generated_pairs import pair
 
 SITUATIONS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
-
-
 FAS = sorted(ROOT.glob("documents/fa/*.xml"))
-
-
 EAS = sorted(ROOT.glob("documents/ea/*ml"))
 
 
-# Properties ---------------------------------------------------------------------------------
 @given(st.integers(0, 10**6))
 @settings(
     max_examples=int(os.environ.get("PRIMA_EXAMPLES", "300")) * 17 // 100,

@@ -149,8 +149,6 @@ def test_what_drives_waits_for_whole_conversations(tmp_path: Path) -> None:
 
 
 LOOP = '<form id="f"><block><speak>On and on.</speak><goto next="#f"/></block></form>'
-
-
 LATER = '<form id="g"><block><gesture name="bow"/><speak>My turn.</speak></block></form>'
 
 

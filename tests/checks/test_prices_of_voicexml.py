@@ -41,8 +41,6 @@ def test_commands_of_the_robot_in_voicexml_are_seen_everywhere(tmp_path: Path, b
 
 
 SPOKEN = "This is a rather long sentence that takes some seconds to say."
-
-
 ARRANGED = {
     "par": "<par><speak>{}</speak><point-by-hand angle='40'/></par>",
     "seq": "<par><seq><speak>{0}</speak><speak>{0}</speak></seq><gesture name='nod'/></par>",

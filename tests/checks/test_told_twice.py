@@ -14,13 +14,8 @@ from tests.helpers.robot import Bench
 from tests.helpers.validating import VXML
 from tests.helpers.voice import Call
 
-# What is told a second time (O3) -------------------------------------------------------------
 ASKS = """<form id="a"><field name="x" type="boolean"><prompt>Well?</prompt>{}</field>{}</form>"""
-
-
 THEN = """<form id="b">{}</form>"""
-
-
 BACK = '<block><goto next="#a"/></block>'
 
 
@@ -62,24 +57,12 @@ def test_what_is_meant_to_be_told_again_is_not_warned_of(first: str, then: str) 
 
 
 SAYS = '<block name="h"><speak>Hello there, and welcome.</speak></block>'
-
-
 TO = "<on event='touch'>{}</on>"
-
-
 BY = '<goto next-expr="{}"/>'
-
-
 CALLS = """<form id="b"><subdialog name="s" src="#c">{}</subdialog><block>{}</block></form>
 <form id="c">{}</form>"""
-
-
 BACK_THEN, RETURNS = '<goto next="#a"/>', "<block><gesture name='nod'/><return/></block>"
-
-
 CALLED_BACK = ASKS.format("", TO.format('<goto next="#b"/>'))
-
-
 END = '<form id="end"><block><exit/></block></form>'
 
 
@@ -88,8 +71,6 @@ def form_of(inside: str, form: str = "a") -> str:
 
 
 ANSWERED = '<field name="x" type="boolean"><prompt>Well?</prompt>{}<filled><exit/></filled></field>'
-
-
 AGAIN = {
     "a text": (form_of(SAYS + TO.format(BY.format("'#a'"))), "this leads back to"),
     "one of two": (form_of(SAYS + TO.format(BY.format("n ? 'end' : (first ? 'a' : 'end')"))) + END, "leads back"),
@@ -167,11 +148,7 @@ def assert_said_twice(bench: Bench) -> None:
 
 
 CALLER = '<form id="s"><subdialog name="d" src="#a"><on event="bang">{}</on></subdialog></form>'
-
-
 BANG = ASKS.format("", TO.format('<return event="bang"/>'))
-
-
 NEVER_AGAIN = {
     "who called goes elsewhere": CALLER.format("<goto next='#end'/>") + END + BANG,
     "who called ends": CALLER.format("<exit/>") + BANG,
@@ -229,14 +206,8 @@ def told_twice_in(body: str) -> list[Problem]:
 
 
 ASKS_VOICE = "<form id='a'><field name='x' type='boolean'><prompt>Well?</prompt>{}</field>{}</form>"
-
-
 BACK_VOICE = "<form id='b'>{}<block><goto next='#a'/></block></form>"
-
-
 TOUCHED = "<catch event='touch'>{}<goto next='#{}'/></catch>"
-
-
 HANDLED = "<catch event='message'>{}<goto next='#a'/></catch>"
 
 
@@ -295,30 +266,14 @@ def test_voicexml_may_tell_again_what_is_meant_so(tmp_path: Path, body: str) -> 
 
 
 H = "<block name='h'>Hello there, and welcome.</block>"
-
-
 TOUCH = "<catch event='touch'>{}</catch>"
-
-
 VOICE_CALLS = """<form id='b'><subdialog name='s' src='{}'>{}</subdialog><block>{}</block></form>
 <form id='c'>{}</form>"""
-
-
 TO_B, TO_A, NODS = "<goto next='#b'/>", "<goto next='#a'/>", "<block>Oh.<return/></block>"
-
-
 VX = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"{}>{}</vxml>'
-
-
 OVER_THERE = VX.format("", "<form id='b'><block>Oh.<goto next='main.vxml#a'/></block></form>")
-
-
 Q = "<field name='x' type='boolean'><prompt>Well?</prompt>{}</field>"
-
-
 HQ = H + Q.format("")
-
-
 VOICE_AGAIN: dict[str, tuple[str, str, dict[str, str]]] = {
     "a text": (form_of(HQ + TOUCH.format("<goto expr=\"'#a'\"/>")), "leads back", {}),
     "one of two": (

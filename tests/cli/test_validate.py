@@ -29,8 +29,6 @@ BAD = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">
   </form>
 </prima>
 """
-
-
 GOOD = BAD.replace("speek", "speak")
 
 

@@ -208,9 +208,6 @@ def test_no_device_is_given_two_tasks_whatever_the_driver_does(
     assert check(records, policy, APPS) == []
 
 
-# What the conductor does about each of these ------------------------------------------------
-
-
 class Desk:
     """A conductor, with what it says."""
 

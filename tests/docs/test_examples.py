@@ -118,7 +118,6 @@ def alike(shown: list[str], made: list[str]) -> bool:
     return bool(made) and shown[0].rstrip() == made[0] and alike(shown[1:], made[1:])
 
 
-# Examples --------------------------------------------------------------------
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_complete_examples_are_valid(page: Path, tmp_path: Path) -> None:
     stage(page, tmp_path)
@@ -151,8 +150,6 @@ SCENE = (
     '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="x" world="w" robot="r">',
     "</scenario>",
 )
-
-
 CONTEXTS = {
     "dialogue": (
         (BEGIN, "</prima>"),

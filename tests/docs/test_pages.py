@@ -23,7 +23,6 @@ from tests.helpers.pages import FENCE, NAMESPACES, PAGES
 from tools import reference
 
 
-# Tables ----------------------------------------------------------------------
 def test_generated_files_are_those_of_the_code() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "tools.reference", "--check"],

@@ -16,7 +16,6 @@ import pytest
 from tests.helpers.batches import ENDLESS, MODULE, SECONDS, files, prima, scenario, write
 
 
-# The terminal -----------------------------------------------------------------------------------
 def terminal(words: list[str], out_too: bool, **environment: str) -> tuple[bytes, bytes]:
     """What a batch writes to a terminal that is its stderr, and to its stdout."""
     ours, theirs = pty.openpty()

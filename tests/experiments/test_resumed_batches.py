@@ -16,7 +16,6 @@ from prima.experiments.batch import (
 )
 from tests.helpers.batches import HELLO, POLICIES, files, prima, scenario, write
 
-# Taking a batch up again ------------------------------------------------------------------------
 BATCH = ("a/one.xml", "b", "a/three.xml", *POLICIES)
 
 
@@ -79,8 +78,6 @@ VOICE = """<vxml xmlns="http://www.w3.org/2001/vxml" version="2.1" xml:lang="en"
 <grammar src="which.grxml" type="application/srgs+xml"/><noinput><exit/></noinput>
 <filled><exit/></filled></field></form></vxml>
 """
-
-
 GRAMMAR = """<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en"
  root="r"><rule id="r"><one-of><item>this</item><item>that</item></one-of></rule></grammar>
 """

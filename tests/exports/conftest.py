@@ -15,7 +15,6 @@ def demo() -> api.Transcript:
     return api.rehearse(DEMO)
 
 
-# The command line -----------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def folder(demo: api.Transcript, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("exports")

@@ -90,7 +90,6 @@ def test_mcap_schemas_give_each_field_one_type(demo: api.Transcript) -> None:
             assert field["type"] != "array" or isinstance(field["items"]["type"], str), name
 
 
-# What strangers write -------------------------------------------------------------------------
 NASTY = [
     "=cmd|' /C calc'!A0",
     " +1",

@@ -10,7 +10,6 @@ from prima import api
 from tests.helpers.exporting import SCENARIOS, end, event, made, of, start
 
 
-# The timeline ---------------------------------------------------------------------------------
 def test_the_demo_has_what_a_reader_of_its_table_expects(demo: api.Transcript) -> None:
     found = made(demo.records)
     assert of(found, "navigate: says")[0] == (0.0, 1.443, "Where are you going?")

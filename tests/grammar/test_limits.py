@@ -176,8 +176,6 @@ def test_the_chart_takes_what_the_rules_derive(one: str, two: str) -> None:
 
 
 LONGEST = 3
-
-
 Said = set[tuple[str, ...]]
 
 

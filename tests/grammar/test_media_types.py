@@ -11,7 +11,6 @@ from prima.grammar import (
 from tests.helpers.grammars import ABNF, inside, xml
 
 
-# Media types --------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("file", "kind", "form"),
     [("g.gram", "application/srgs+xml", "ABNF"), ("g.grxml", "application/srgs", "XML")],

@@ -10,7 +10,6 @@ from prima.grammar import (
 from tests.helpers.grammars import ABNF, SCRIPT
 
 
-# Names in tags ------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("rules", "told"),
     [

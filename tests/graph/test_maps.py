@@ -27,10 +27,7 @@ def test_all_scenarios_can_be_drawn() -> None:
             etree.fromstring(made.encode())
 
 
-# The map of a world ---------------------------------------------------------------------------
 WORLD = '<world xmlns="urn:prima:world:1" version="1.0" id="w">{}</world>'
-
-
 WORLDS = sorted((ROOT / "documents/worlds").iterdir())
 
 

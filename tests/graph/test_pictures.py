@@ -159,7 +159,6 @@ def test_nothing_is_drawn_of_nothing() -> None:
     assert "Nothing is in working memory." in treepicture.draw(empty)
 
 
-# Strangers' names ------------------------------------------------------------------------------
 NASTY = (
     '</text><script>alert(1)</script>"\\N \\" ]] --> | %% {{x}} #quot; &amp; `b` \u202e 1. - * \x7f'
 )

@@ -33,7 +33,6 @@ MEMORIES = [
 ]
 
 
-# Runs ----------------------------------------------------------------------------------------
 def memories(scenario: str, policy: str) -> tuple[list[Record], dict[float, dict[str, str]]]:
     """A run's records, and what the mediator's own memory held when each instant was over."""
     cast = api.load_scenario(ROOT / "documents" / scenario).cast

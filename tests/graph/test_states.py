@@ -12,7 +12,6 @@ from tests import ROOT
 from tests.helpers.graphs import app, drawn, named, vxml, ways
 
 
-# States ------------------------------------------------------------------------------------
 def test_the_museum_guide_leads_where_its_document_says() -> None:
     graph = states(ROOT / "documents/ea/museum.xml")
     assert len(graph.nodes) == 8

@@ -7,7 +7,6 @@ from pathlib import Path
 from tests.helpers.graphs import drawn, named, vxml, ways
 
 
-# VoiceXML ------------------------------------------------------------------------------------
 def test_what_commands_of_voicexml_say_is_shown(tmp_path: Path) -> None:
     par = '<p:par><p:speak>One <value expr="n"/>.</p:speak><p:gesture name="nod"/></p:par>'
     said = f"<form><block>{par}<p:speak>Two.</p:speak></block></form>"

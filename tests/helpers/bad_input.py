@@ -19,14 +19,8 @@ from prima import api
 from prima.language.commands import DEVICES
 
 DOCUMENTS = api.documents_folder()
-
-
 WORLD, ROBOT = DOCUMENTS / "worlds" / "office.xml", DOCUMENTS / "robots" / "papero.xml"
-
-
 GIGABYTE = 1 << 30
-
-
 SECONDS = 20
 """How long anything here may take at most; what is bounded takes a fraction of it."""
 
@@ -65,11 +59,7 @@ def robot(body: str, attributes: str = "") -> str:
 
 
 GOOD = app(block("<speak>Hello there.</speak><log>alive</log><exit/>"))
-
-
 CATCH = '<on event="error"><log>caught <value expr="_message"/></log><exit/></on>'
-
-
 PLAY = '<application src="app.xml"/>'
 
 

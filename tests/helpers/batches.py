@@ -12,12 +12,9 @@ from tests import ROOT
 from tests.helpers import command
 
 SECONDS = 60
-
-
 MODULE = [sys.executable, "-m", "prima", "run"]
 
 
-# A small world of its own ---------------------------------------------------------------------
 def app(body: str, name: str = "app") -> str:
     return (
         f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="{name}">'
@@ -36,14 +33,8 @@ def scenario(
 
 
 HELLO = app("<block><speak>Hello there.</speak><exit/></block>")
-
-
 FAILS = app('<block><speak>Oh.</speak><throw event="bored"/></block>')
-
-
 WRONG = app("<blok/>")
-
-
 ENDLESS = app('<block><speak>Still here.</speak><goto next="#f"/></block>')
 
 

@@ -18,14 +18,8 @@ from prima.messages import Record
 from tests import ROOT
 
 ROBOT = ROOT / "documents" / "robots" / "papero.xml"
-
-
 PROFILE = read_robot(str(ROBOT), read_file(ROBOT))
-
-
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{}" id="{}" xml:lang="en">'
-
-
 FA = (
     '<form id="sleep"><on event="touch"><goto next="#yes"/></on></form>'
     '<form id="yes"><block><speak>Yes?</speak><goto next="#sleep"/></block></form>'
@@ -59,7 +53,6 @@ def certified(folder: Path, body: str, own: str = FA) -> Certificate:
     return found
 
 
-# What runs may do --------------------------------------------------------------------------
 def run(folder: Path, fa: str, ea: str, whens: str, until: str = "60s") -> list[Record]:
     """The records of a scenario with two applications."""
     text = (
@@ -73,8 +66,6 @@ def run(folder: Path, fa: str, ea: str, whens: str, until: str = "60s") -> list[
 
 
 TOUCH = '<when at="1s"><touch sensor="head"/></when>'
-
-
 VXML = (
     '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1"'
     ' xml:lang="en">'

@@ -14,20 +14,12 @@ from pygls.lsp.client import LanguageClient
 from prima.lsp.text import Lines
 
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n'
-
-
 VOICE = '<vxml xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1" version="2.1">\n'
-
-
 SCENE = (
     '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
     ' world="../worlds/office.xml" robot="../robots/papero-plus.xml">\n'
 )
-
-
 SECONDS = 60
-
-
 Result = TypeVar("Result")
 
 
@@ -189,7 +181,6 @@ class Editor:
         return made
 
 
-# Problems --------------------------------------------------------------------------------
 WRONG = {
     "fa/element.xml": BEGIN + '<form id="a"><block><speek>Hello.</speek></block></form></prima>',
     "fa/names.xml": BEGIN + '<form id="a"><block><goto next="#b"/></block></form></prima>',

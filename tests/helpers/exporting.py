@@ -26,11 +26,7 @@ from prima.exports.timeline import Timeline
 from tests import ROOT
 
 SCENARIOS = ROOT / "documents" / "scenarios"
-
-
 DEMO = SCENARIOS / "follow-during-navigation.xml"
-
-
 Records = list[dict[str, Any]]
 
 

@@ -11,14 +11,8 @@ from prima.markup.reader import parse
 from prima.markup.tree import Node
 
 SRGS = "http://www.w3.org/2001/06/grammar"
-
-
 HEAD = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r"'
-
-
 ABNF = "#ABNF 1.0;\nlanguage en;\nroot $r;\n"
-
-
 SCRIPT = ABNF + "tag-format <semantics/1.0>;\n"
 
 
@@ -36,7 +30,6 @@ def codes(error: pytest.ExceptionInfo[GrammarError]) -> list[str]:
     return sorted(problem.code for problem in error.value.problems)
 
 
-# Other documents --------------------------------------------------------------
 FILES = {
     "http://x.org/g/cities.grxml": xml(
         '<rule id="r">Rome<tag>out = "FCO"</tag></rule>'
@@ -58,8 +51,6 @@ FILES = {
     " | twice $r {out = rules.r};\npublic $passed = $r;",
     "http://x.org/g/through.gram": ABNF + "public $r = $<odd.gram#passed>;",
 }
-
-
 asked: list[str] = []
 
 

@@ -7,8 +7,6 @@ from pathlib import Path
 import prima
 
 DEMO = prima.documents_folder()
-
-
 HEAD = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">'
 
 
@@ -41,7 +39,6 @@ def said(transcript: prima.Transcript) -> list[str]:
     return [row.what for row in transcript.rows() if row.what.startswith('"')]
 
 
-# Documents without their namespace ---------------------------------------------------------
 def problems(folder: Path, text: str | bytes, name: str = "app.vxml") -> list[prima.Problem]:
     """What is wrong with a document."""
     (folder / name).write_bytes(text.encode() if isinstance(text, str) else text)

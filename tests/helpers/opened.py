@@ -14,13 +14,9 @@ if TYPE_CHECKING:
 
 
 SCENARIO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
-
-
 CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
 )  # fmt: skip
-
-
 DESK, PHONE = (1440, 900), (390, 844)
 
 

@@ -13,8 +13,6 @@ from tests.helpers.generated.plays import Play
 from tests.helpers.generated.world import TABLE, World
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="{}">{}</prima>'
-
-
 IDLE = HEAD.format("fa", '<form id="f1"/>')
 
 
@@ -42,8 +40,5 @@ NESTED = (
 )
 
 
-# What the records tell, against the rules -----------------------------------------------
 IN_ORDER = ("fa", "ea", "xa")
-
-
 SEARCH = "<block><active-sensing-human>Where are you?</active-sensing-human></block>"

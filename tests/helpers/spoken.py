@@ -12,8 +12,6 @@ from prima.messages import Record
 from tests import ROOT
 
 DEMO = ROOT / "documents"
-
-
 Played = Callable[..., api.Transcript]
 
 

@@ -10,8 +10,6 @@ from prima.transcript.table import Row
 from tests import ROOT
 
 DOCUMENTS = ROOT / "documents"
-
-
 TOUCHED = DOCUMENTS / "scenarios" / "touched-on-the-way.xml"
 
 
@@ -75,8 +73,6 @@ def room(tmp_path: Path, ea: str, more: str = "") -> Path:
 ASKS = """<form id="f"><field name="a" type="boolean"><prompt>Well?</prompt>
 <noinput><speak>Nothing heard.</speak><exit/></noinput>
 <filled><speak>Thanks.</speak><exit/></filled></field></form>"""
-
-
 TICKS = (
     '<form id="f"><block><send event="tick" delay="2s"/></block>'
     '<on event="tick"><speak>Tick.</speak></on></form>'

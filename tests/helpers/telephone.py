@@ -11,20 +11,14 @@ from tests.helpers.voice import Call, vxml
 SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="world.xml"
   robot="robot.xml"><robot at="middle"/><person x="1" y="0"/>
   <application src="app.vxml"/>{script}</scenario>"""
-
-
 STOP = (
     '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar" xml:lang="en">'
     '<rule id="r">stop it</rule></grammar>'
 )
-
-
 ZERO = (
     '<grammar version="1.0" mode="dtmf" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
     '<rule id="r">0</rule></grammar>'
 )
-
-
 ALL = (
     '<catch event="error connection"><log>'
     '<value expr="_event"/> <value expr="typeof t"/></log><exit/></catch>'

@@ -9,14 +9,8 @@ from prima.testing.running import Choice, Result, run_one
 from tests import ROOT
 
 DEMOS = sorted((ROOT / "documents" / "scenarios").rglob("*.xml"))
-
-
 WORLD = ROOT / "documents" / "worlds" / "room.xml"
-
-
 ROBOT = ROOT / "documents" / "robots" / "papero.xml"
-
-
 DESK = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="desk" xml:lang="en">
   <form id="ask">
     <field name="floor" type="number">
@@ -39,8 +33,6 @@ DESK = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="desk" 
   </form>
 </prima>
 """
-
-
 SCENE = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="lift" title="Up"
   world="{world}" robot="{robot}" until="60s">
   <robot at="middle"/>
@@ -52,8 +44,6 @@ SCENE = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="lift" title=
 {expected}
 </scenario>
 """
-
-
 FIRST = SCENE[: SCENE.index("{expected}")].count("\n") + 1
 """The line of the first expectation."""
 

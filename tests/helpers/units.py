@@ -8,11 +8,7 @@ from tests.helpers.robot import document
 from tests.helpers.voice import Call
 
 P = 'xmlns:p="urn:prima:dialogue:1"'
-
-
 SPEECH = {"speaker", "speech-recognition"}
-
-
 TOUCHED = '<form id="a"><on event="touch"><speak>Ouch.</speak></on></form>'
 """Another application, which speaks when the robot is touched."""
 

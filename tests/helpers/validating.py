@@ -16,7 +16,6 @@ def wrong(places: int) -> str:
     return f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{good}{wall}{bad}</world>\n'
 
 
-# Documents of VoiceXML together ---------------------------------------------------------
 VXML = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"{}>{}</vxml>'
 
 

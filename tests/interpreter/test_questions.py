@@ -7,7 +7,6 @@ import pytest
 from prima.messages import Heard
 from tests.helpers.robot import Bench, document
 
-# Questions --------------------------------------------------------------------------------
 ASK = """<form id="a"><field name="colour">
   <prompt>Which colour?</prompt><prompt count="2">Red or blue?</prompt>
   <option value="r">red</option><option>blue</option>
@@ -31,8 +30,6 @@ SURE = """{}<form id="a">{}<field name="f">{}<prompt>Well?</prompt>
   <nomatch><log expr="'no ' + event.data.utterance + ' ' + event.data.confidence"/></nomatch>
   <filled><log expr="f + ' ' + f$.utterance + ' ' + f$.confidence"/></filled>
 </field></form>"""
-
-
 LEVEL = '<property name="confidencelevel" value="{}"/>'
 
 

@@ -7,7 +7,6 @@ import pytest
 from tests.helpers.robot import Bench
 
 
-# Subdialogs -------------------------------------------------------------------------------------
 def test_a_subdialog_has_its_own_context_and_gives_values_back() -> None:
     bench = Bench(
         """<var name="n" expr="1"/>

@@ -7,7 +7,6 @@ import pytest
 from prima.interpreter.units import units_of
 from tests.helpers.robot import Bench, document, read
 
-# Units ------------------------------------------------------------------------------------------
 UNIT = """<form id="a">
   <iu name="u" longest="20s">
     <field name="x" type="boolean"><prompt>May I?</prompt>{}</field>
@@ -37,8 +36,6 @@ ANSWER = (
     '<var name="n"/><form id="a"><block><speak>The answer is</speak><move-head pan="30"/>{}'
     "<speak>forty two.</speak><exit/></block></form>"
 )
-
-
 TRAINS = '<form id="a"><on event="touch" reactive="false"><speak>I like trains.</speak></on></form>'
 
 
@@ -62,11 +59,7 @@ REACHING = """<form id="a">{form}
   </iu>
   <block><exit/></block>
 </form><form id="b"><block><topological-move to="hall"/><exit/></block></form>{document}"""
-
-
 TURNS = '<on event="{}"><turn angle="90"/></on>'
-
-
 GOES = '<on event="{}"><topological-move to="hall"/></on>'
 
 
@@ -130,8 +123,6 @@ def test_u5_a_unit_owns_nothing_for_handlers_that_it_cannot_reach(parts: dict[st
 
 
 CHOOSES = '<filled><throw event-expr="{}"/></filled>'
-
-
 GIVEN = '<var name="e" expr="old ? \'y\' : \'z\'"/><var name="old" expr="true"/>'
 
 

@@ -122,8 +122,6 @@ def test_a_watch_is_looked_at_only_when_its_sensor_changes(monkeypatch: pytest.M
 
 
 LOG = '<form id="a"><block><log><value expr="{}"/></log></block></form>'
-
-
 WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
 
 

@@ -165,7 +165,6 @@ def chance(patch: pytest.MonkeyPatch) -> None:
     rebind(patch, rules, "s2f", rank)
 
 
-# The extensions, broken ------------------------------------------------------------
 def anything_composed(patch: pytest.MonkeyPatch) -> None:
     """X5 lets any two ABs use one device."""
 

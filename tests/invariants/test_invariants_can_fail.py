@@ -52,14 +52,8 @@ from tests.invariants.broken import (
 )
 
 Patch = Callable[[pytest.MonkeyPatch], None]
-
-
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="{}">{}</prima>'
-
-
 BLOCK = '<form id="f1"><block>{}</block></form>'
-
-
 FIELD = (
     '<form id="f1"><field name="q" type="boolean"><prompt>Well?</prompt></field>'
     "<block><speak>Good.</speak></block></form>"
@@ -86,20 +80,10 @@ class Mutation:
 
 
 STORY = Ask(("speak",), ((),), restartable=True)
-
-
 YES = ("fa", one("speak"))
-
-
 CONNECTED = Ask(("speak",), ((),), connect=True)
-
-
 HELD = Ask(("speak",), ((),), hold=6000)
-
-
 GOES = (one("topological-move"),)
-
-
 TWICE = Script(((), ()), ((50, ((HELD,), ())), (4000, ((HELD,), ()))), (), World())
 """Its stream is held when the application asks again."""
 
@@ -117,8 +101,6 @@ TAKEN_AWAY = Script(
 
 
 TWO_BRANCHES = Ask(("turn", "speak", "turn", "speak", "turn"), ((), (), (0,), (1,), (2,)))
-
-
 MUTATIONS = (
     Mutation(1, devices_shared, at_events(("fa", one("speak")), ("ea", one("speak")))),
     Mutation(2, running_cut, at_events(("fa", one("speak")), ("fa", Leave()))),
@@ -216,8 +198,6 @@ MUTATIONS = (
     Mutation(11, restored_for_nothing, at_events(("fa", one("speak"))), "prima+x1"),
     Mutation(11, place_forgotten, TAKEN_AWAY, "prima+x1"),
 )
-
-
 IDS = [f"{mutation.invariant}-{mutation.patch.__name__}" for mutation in MUTATIONS]
 
 

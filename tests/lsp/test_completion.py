@@ -9,7 +9,6 @@ from lsprotocol import types as lsp
 
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, edited, plain
 
-# Completion ------------------------------------------------------------------------------
 PROPOSED = {
     "document": ("fa/x.xml", "|", {"prima", "vxml", "scenario", "world", "robot"}, {"form"}),
     "root": ("fa/x.xml", "<|", {"prima", "vxml"}, {"form"}),

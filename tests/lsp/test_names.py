@@ -11,26 +11,19 @@ from pygls.exceptions import JsonRpcException
 
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
 
-# Names -------------------------------------------------------------------------------------
 FORMS = (
     BEGIN
     + '<form id="a"><block><goto next="#b"/></block></form>\n<form id="|b"><block><goto next="#b"/></block></form></prima>'
 )
-
-
 SCOPES = (
     BEGIN + '<var name="n"/><form id="a"><var name="|n"/><block cond="n &lt; document.n">'
     '<assign name="n" expr="n + dialog.n"/></block></form>\n'
     '<form id="b"><block cond="n"/></form></prima>'
 )
-
-
 SCRIPT = (
     BEGIN + "<script>function twice(x) { return 2 * x; }</script>"
     '<form id="a"><block cond="|twice(1) &gt; 1"/></form></prima>'
 )
-
-
 RULE = (
     VOICE + '<form id="a"><field name="f"><grammar root="r"><rule id="|r"><item>x</item></rule>'
     '<rule id="s"><ruleref uri="#r"/></rule></grammar></field>'

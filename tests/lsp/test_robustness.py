@@ -193,11 +193,7 @@ def test_what_is_no_message_does_not_end_it() -> None:
 
 # Requests that are none -----------------------------------------------------------------------
 WHERE = {"textDocument": {"uri": "file:///none.xml"}, "position": {"line": 0, "character": 0}}
-
-
 SPAN = {"start": WHERE["position"], "end": WHERE["position"]}
-
-
 REQUESTS: dict[str, dict[str, Any]] = {
     **dict.fromkeys(
         (

@@ -17,7 +17,6 @@ from prima.errors import RunError
 from prima.pool import Died, spread
 
 
-# What happens to a process -------------------------------------------------------------------
 def square(number: int) -> int:
     return number * number
 

@@ -147,8 +147,6 @@ GUIDE = """<form id="panel">
   <on event="resumed"><log>resumed again</log></on>
   <block><speak>As I was saying,</speak><speak>two.</speak></block>
 </form>"""
-
-
 HELLO = """<form id="sleep"><on event="touch"><speak>Hello.</speak></on></form>"""
 
 

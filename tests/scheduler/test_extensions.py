@@ -18,8 +18,6 @@ from tests.helpers.stage import Stage, ask, command, move, restartable, say, sea
 from tests.invariants import check
 
 EVENT, LATER = 7, 8
-
-
 ALL = "prima+all"
 
 
@@ -90,8 +88,6 @@ def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> N
 DANCE = CommandType(
     "dance", "Dance", "", frozenset({"locomotion", "neck", "arm"}), motion="faithful"
 )
-
-
 DANCING = {**TABLE_4_2, "dance": DANCE}
 
 

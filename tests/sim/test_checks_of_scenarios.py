@@ -94,8 +94,6 @@ WORLD = """<world xmlns="urn:prima:world:1" version="1.0" id="w">
 <way from="a" to="b"/>
 {}
 </world>"""
-
-
 WALKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f"><block>
 <topological-move to="b"/><exit/></block></form></prima>"""
 
@@ -138,8 +136,6 @@ ASKING = (
     '<field name="x" type="boolean"><prompt>{}</prompt><noinput><exit/></noinput>'
     "<filled><exit/></filled></field></form></prima>"
 )
-
-
 VOICE = VXML.format(
     "",
     '<form><field name="x" type="boolean"><prompt>{}</prompt><filled>{}</filled></field></form>',

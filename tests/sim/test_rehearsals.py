@@ -149,8 +149,6 @@ COMES_BACK = """<person x="4.5" y="4"/>
     <walk x="1.2" y="0"/><wait for="5s"/><touch sensor="head"/></when>
   <answer to="Shall I come">Yes.</answer>
   <when on="enough" times="1000"><walk x="4.5" y="4"/></when>"""
-
-
 REACTS = """<watch name="near" when="sensor.human.distance &lt; 1.5"/>
   <form id="wait"><on event="near"><log>There.</log></on>
     <on event="touch"><goto next="#ask"/></on>

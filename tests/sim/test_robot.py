@@ -81,8 +81,6 @@ def test_a_device_that_fails_and_one_that_hangs_are_events(tmp_path: Path) -> No
 
 
 BREAKS = '<when at="0.7s"><fail device="{}" {}/></when>'
-
-
 AT_ONCE = {
     "a sentence": ("speaker", "<speak>One, two, three, four.</speak>"),
     "a question": (
@@ -150,8 +148,6 @@ WATCHING = """<form id="a">
   <watch name="low" when="sensor.battery?.level &lt; 15"/>
   <on event="low"><log>Low.</log></on>
   <on event="touch"><turn angle="90"/><turn angle="-90"/></on></form>"""
-
-
 TURNS = """<person x="4" y="0"/><when at="1s"><walk x="0.8" y="0"/><touch sensor="head"/></when>
   <when at="8s"><sensor name="battery.level" value="3"/></when>"""
 

@@ -97,8 +97,6 @@ WARD = """<world xmlns="urn:prima:world:1" version="1.0" id="ward">
   <wall x1="0" y1="1" x2="2.5" y2="1"/>
   <corner id="beds" x="4" y="0" radius="0.4" event="corner.beds"/>
 </world>"""
-
-
 GOES = '<topological-move to="bed"/><speak>Here we are.</speak>'
 
 
@@ -153,8 +151,6 @@ ROUND = Map(
     ways=[("hall", "crossing"), ("crossing", "room")],
     walls=[((-1.5, 1.5), (5.2, 1.5)), ((5.2, 1.5), (5.2, 7.5))],
 )
-
-
 BESIDE_THE_END = (5.171, 1.35)
 """Nearer to the walls' common end than the robot's radius."""
 

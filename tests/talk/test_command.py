@@ -16,7 +16,6 @@ from tests import ROOT
 from tests.helpers.talking import ASKS, DOCUMENTS, TICKS, TOUCHED, room, start
 
 
-# The command -----------------------------------------------------------------------
 def prima(
     folder: Path, given: bytes, *words: str, timeout: float = 60
 ) -> subprocess.CompletedProcess[bytes]:

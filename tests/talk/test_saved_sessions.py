@@ -18,13 +18,10 @@ from tests.helpers.talking import DOCUMENTS, start, type_in
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "25"))
 
 
-# Saving ----------------------------------------------------------------------------
 PLAYED = [
     "navigate-alone", "touched-on-the-way", "follow-during-navigation", "pizza-and-follow",
     "library-alone", "museum-alone", "emotions-alone", "leaving-the-museum", "picture-alone",
 ]  # fmt: skip
-
-
 LINES = [
     "Yes.", "No.", "Prof. Kidode's room.", "Come on, follow me.", "Never mind.", "", "/go",
     "a large pizza with cheese", "small", "The C Primer", "<&\"'> -- & ]]>", "/touch head",

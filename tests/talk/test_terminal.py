@@ -13,7 +13,6 @@ from prima import api
 from tests import ROOT
 from tests.helpers.talking import ASKS, TICKS, room
 
-# A terminal ------------------------------------------------------------------------
 pty = pytest.importorskip("pty")
 
 

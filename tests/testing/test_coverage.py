@@ -11,7 +11,6 @@ from prima.testing.running import Choice, run_all, run_one
 from prima.testing.telling import format_result
 from tests.helpers.testing import write
 
-# Coverage --------------------------------------------------------------------------
 EVERYTHING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="desk" xml:lang="en">
   <form id="ask">
     <var name="n" expr="0"/>

@@ -53,8 +53,6 @@ TRUE = [
     '<never event="touch.back"/>',
     '<never says="Floor 3" within="1s"/>',
 ]
-
-
 FALSE = {
     '<expect says="Going down"/>': 'Nearest: desk says "Going up." at',
     '<expect says="Bonjour"/>': "It never does.",

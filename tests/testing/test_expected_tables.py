@@ -15,7 +15,6 @@ from tests.helpers.command import prima
 from tests.helpers.testing import DESK, write
 
 
-# Expected tables -------------------------------------------------------------------
 def table_of(path: Path) -> str:
     return api.rehearse(path).table()
 

@@ -12,7 +12,6 @@ import pytest
 from tests.helpers.testing import FIRST, write
 
 
-# pytest ----------------------------------------------------------------------------
 def run_pytest(folder: Path, *args: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [

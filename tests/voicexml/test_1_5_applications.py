@@ -134,10 +134,6 @@ def test_a_version_2_0_document_runs() -> None:  # 1.5
     assert Call(text).play() == ["Hi."]
 
 
-def test_a_document_begins_with_its_first_dialog() -> None:  # 1.5.1
-    assert Call(f'{block("<log>one</log>")}<form id="b"><block/></form>').logs() == ["one"]
-
-
 def test_an_application_ends_where_no_dialog_follows() -> None:  # 1.5.1
     assert Call(block("<log>one</log>")).ended == "exit"
 

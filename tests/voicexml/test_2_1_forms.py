@@ -303,13 +303,9 @@ def test_mixed_initiative_fills_many_fields() -> None:
 
 QUICK = """<property name="timeout" value="{}"/>
 <form><field name="f"><option>tea</option><noinput/></field></form>"""
-
-
 CALLING = """<form>
 <transfer name="t" dest="tel:1" bridge="true" connecttimeout="{}"><filled><clear namelist="t"/>
 </filled></transfer></form>"""
-
-
 TURNS = """<var name="n" expr="0"/><form>
 <field name="f"><option>tea</option><prompt timeout="1ms" cond="n % 2"/>
 <prompt timeout="{}" cond="!(n % 2)"/><noinput><assign name="n" expr="n + 1"/><reprompt/></noinput>

@@ -16,7 +16,6 @@ from tests.helpers.dialogs import (
     Cases,
     ask,
     problems,
-    rule,
     run,
 )
 from tests.helpers.voice import Call, vxml
@@ -217,36 +216,6 @@ def test_rule(one: Case) -> None:
     one.holds()
 
 
-def test_a_document_scoped_menu_listens() -> None:  # 2.2
-    call = Call(
-        ask("<option>yes</option>")
-        + '<menu scope="document"><choice next="#n">news</choice></menu>'
-        '<form id="n"><block><log>news</log></block></form>'
-    )
-    call.answer("news")
-    assert call.logs() == ["news"]
-
-
-def test_a_menus_accept_is_that_of_its_choices() -> None:  # 2.2
-    call = Call(
-        '<menu accept="approximate"><prompt>Which?</prompt><choice event="a">local news</choice>'
-        '<choice event="b" accept="exact">world news</choice></menu>'
-        '<catch event="a b"><log expr="_event"/><exit/></catch>'
-    )
-    call.answer("news")
-    assert call.logs() == ["a"]
-
-
-def test_a_menu_numbers_choices_without_keys_of_their_own() -> None:  # 2.2
-    call = Call(
-        '<menu dtmf="true"><prompt>Which?</prompt><choice dtmf="0" event="z">zero</choice>'
-        '<choice event="a">one</choice><choice event="b">two</choice></menu>'
-        '<catch event="a b z"><log expr="_event"/><exit/></catch>'
-    )
-    call.answer("1")
-    assert call.logs() == ["a"]
-
-
 def test_a_choices_keys_may_be_many() -> None:  # 2.2
     call = Call(
         '<menu><prompt>Which?</prompt><choice dtmf="1 2" event="a">one</choice>'
@@ -264,23 +233,6 @@ def test_a_choice_leads_to_one_target(more: str) -> None:  # 2.2.2
         ["exclusive"],
         ["missing-attribute"],
     )
-
-
-def test_enumerate_lists_the_choices() -> None:  # 2.2.4
-    call = Call(
-        """<menu><prompt>Choose <enumerate/>.</prompt><choice event="a">red</choice>
-        <choice event="b">blue</choice></menu>"""
-    )
-    assert call.play() == ["Choose red; blue."]
-
-
-def test_enumerate_has_a_template_of_prompt_and_keys() -> None:  # 2.2.4
-    call = Call(
-        """<menu dtmf="true"><prompt><enumerate>For <value expr="_prompt"/>, press
-        <value expr="_dtmf"/>.</enumerate></prompt><choice event="a">red</choice>
-        <choice event="b">blue</choice></menu>"""
-    )
-    assert call.play() == ["For red, press 1. For blue, press 2."]
 
 
 def test_enumerate_counts_as_the_keys_do() -> None:  # 2.2.4
@@ -327,28 +279,12 @@ def test_the_choices_may_be_enumerated_in_a_sentence(tag: str) -> None:  # 2.2.4
     assert run(text).said() == ["Say one of tea; milk"]
 
 
-def test_an_exact_option_takes_no_part_of_itself() -> None:  # 2.2.5
-    call = Call(ask("<option>the big moose</option><nomatch><log>no</log><exit/></nomatch>"))
-    call.answer("moose")
-    assert call.logs() == ["no"]
-
-
 def test_an_approximate_option_takes_parts_in_their_order() -> None:  # 2.2.5
     call = Call(
         ask('<option accept="approximate">the big moose</option><nomatch><log>no</log></nomatch>')
     )
     call.answer("moose big", "big moose")
     assert call.logs() == ["no", "the big moose"]
-
-
-def test_a_choices_grammar_replaces_its_words() -> None:  # 2.2.5
-    call = Call(
-        f'<menu><prompt>Which?</prompt><choice event="a">{rule("football")}sports</choice>'
-        "<nomatch><log>no</log></nomatch></menu>"
-        '<catch event="a"><log expr="_event"/><exit/></catch>'
-    )
-    call.answer("sports", "football")
-    assert call.logs() == ["no", "a"]
 
 
 def test_a_menu_goes_where_its_choice_leads() -> None:

@@ -208,23 +208,6 @@ def test_rule(one: Case) -> None:
     one.holds()
 
 
-def test_a_param_takes_precedence_over_a_variables_expression() -> None:  # 2.3.4
-    call = Call(
-        """<form><subdialog name="r" src="#s"><param name="a" expr="1"/></subdialog></form>
-        <form id="s"><var name="a" expr="5"/><block><log expr="a"/><return/></block></form>"""
-    )
-    assert call.logs() == ["1"]
-
-
-def test_a_param_without_variable_is_error_semantic() -> None:  # 2.3.4
-    call = Call(
-        """<catch event="error.semantic"><log>bad</log><exit/></catch>
-        <form><subdialog name="r" src="#s"><param name="a" expr="1"/></subdialog></form>
-        <form id="s"><block><log>in</log><return/></block></form>"""
-    )
-    assert call.logs() == ["bad"]
-
-
 def test_a_subdialog_of_the_same_root_has_one_of_its_own() -> None:  # 2.3.4
     call = run(
         leaf(

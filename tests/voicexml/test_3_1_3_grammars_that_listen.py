@@ -10,7 +10,6 @@ from tests.helpers.dialogs import (
     FAIL,
     GO,
     GRAMMAR,
-    HOME,
     PASS,
     TRIP,
     YES,
@@ -34,14 +33,6 @@ case(
     <block><log expr="start"/></block></form>""",
     "from Osaka",
     logs=["Osaka"],
-)
-case(
-    "a field's grammar comes before a link's",
-    "3.1.4",
-    f"""<link event="odd">{HOME}</link><form><field name="f">{HOME}
-    <filled><log expr="f"/></filled></field></form>""",
-    "go home",
-    logs=["go home"],
 )
 case(
     "of two choices with the same words the first is taken",
@@ -201,11 +192,7 @@ def test_further_results_come_from_all_grammars_of_a_document() -> None:  # 3.1.
 
 
 THIS, OTHER = grammar("go", "out='this'"), grammar("go", "out='other'")
-
-
 LEAVES = f'<link event="left">{GO}</link>'
-
-
 BY_LINK = '<catch event="left"><log>link</log><exit/></catch>'
 
 

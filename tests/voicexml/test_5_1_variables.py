@@ -115,13 +115,6 @@ case(
     files={"other": f"{PAGE}<form><block><log expr='typeof x'/></block></form></vxml>"},
 )
 case(
-    "session variables are read only",
-    "5.1.2",
-    """<form><catch event="error.semantic"><log>semantic</log></catch>
-    <block><assign name="session.x" expr="1"/></block></form>""",
-    logs=["semantic"],
-)
-case(
     "a function of the root sees the root's variables",
     "5.1.2",
     f"""{LEAF}<var name="x" expr="'leaf'"/><form><block><log expr="f()"/></block></form></vxml>""",

@@ -272,15 +272,6 @@ def test_a_fragment_leads_to_a_dialog_of_another_document() -> None:  # 5.3.7
     assert call.logs() == ["b"]
 
 
-def test_a_fragment_that_is_not_there_is_error_badfetch() -> None:  # 5.3.7
-    call = Call(
-        '<catch event="error.badfetch"><log>none</log><exit/></catch>'
-        + block('<goto next="other.vxml#c"/>'),
-        other=vxml('<form id="a"><block/></form>'),
-    )
-    assert call.logs() == ["none"]
-
-
 def test_a_fragment_alone_keeps_the_documents_variables() -> None:  # 5.3.7
     call = Call(
         '<var name="a" expr="1"/><form><block><assign name="a" expr="2"/><goto next="#b"/></block>'
@@ -299,36 +290,10 @@ def test_a_goto_to_no_item_is_handled_in_the_dialogs_scope() -> None:  # 5.3.7
     assert call.logs() == ["pass"]
 
 
-def test_submit_fetches_a_document_of_the_folder() -> None:  # 5.3.8
-    call = Call(
-        block('<var name="a" expr="1"/><submit next="o.vxml" namelist="a"/>'),
-        o=vxml(block("<log>there</log>")),
-    )
-    assert call.logs() == ["there"]
-
-
-def test_submit_of_an_undeclared_variable_is_error_semantic() -> None:  # 5.3.8
-    call = Call(block('<submit next="o.vxml" namelist="none"/>'), o=vxml(block("")))
-    assert call.ended.startswith("error.semantic")
-
-
 def test_exit_gives_its_values_to_the_transcript() -> None:  # 5.3.9
     assert Call(block("<exit expr=\"'done'\"/>")).logs() == ['exit: "done"']
     call = Call(block('<var name="a" expr="[1]"/><exit namelist="a"/>'))
     assert (call.logs(), call.ended) == (['exit: {"a": [1]}'], "exit")
-
-
-def test_a_script_may_be_a_file() -> None:  # 5.3.12
-    call = Call(
-        '<script src="s.js"/>' + block('<log expr="f(2)"/>'),
-        **{"s.js": "function f(x) { return x + 1; }"},
-    )
-    assert call.logs() == ["3"]
-
-
-def test_a_script_that_is_not_there_is_error_badfetch() -> None:  # 5.3.12
-    call = Call(block('<script src="none.js"/>'))
-    assert call.ended.startswith("error.badfetch")
 
 
 def test_a_scripts_charset_is_accepted() -> None:  # 5.3.12
@@ -341,11 +306,6 @@ def test_a_scripts_charset_is_accepted() -> None:  # 5.3.12
 def test_a_scripts_text_may_be_cdata() -> None:  # 5.3.12
     call = Call(block('<script><![CDATA[var a = 1 < 2 && 3 > 2;]]></script><log expr="a"/>'))
     assert call.logs() == ["true"]
-
-
-def test_a_log_has_a_label_content_and_an_expression() -> None:  # 5.3.13
-    call = Call(block('<log label="note" expr="1 + 1">sum <value expr="3"/></log>'))
-    assert call.logs() == ["note: sum 3 2"]
 
 
 def test_submit_to_a_service_sends_and_the_reply_is_an_event() -> None:

@@ -87,44 +87,11 @@ def test_a_grammars_srcexpr_that_fails_is_error_semantic() -> None:  # 2.1, 2
     assert call.logs() == ["bad"]
 
 
-def test_foreach_says_its_content_for_each_element() -> None:  # 2.1, 6
-    assert said(
-        """<var name="a" expr="['x', 'y']"/>
-        <prompt>Now <foreach item="i" array="a">letter <value expr="i"/>,</foreach></prompt>"""
-    ) == ["Now letter x, letter y,"]
-
-
-def test_foreach_runs_executable_content() -> None:  # 2.1, 6
-    call = Call(block('<foreach item="i" array="[1, 2, 3]"><log expr="i"/></foreach>'))
-    assert call.logs() == ["1", "2", "3"]
-
-
-def test_foreach_over_no_array_is_error_semantic() -> None:  # 2.1, 6
-    call = Call(block('<foreach item="i" array="5"><log expr="i"/></foreach>'))
-    assert call.ended.startswith("error.semantic")
-
-
-def test_foreach_works_on_a_copy_of_the_array() -> None:  # 2.1, 6
-    call = Call(
-        block("""<var name="a" expr="[1, 2]"/><foreach item="i" array="a">
-        <script>a.push(9)</script><log expr="i"/></foreach>""")
-    )
-    assert call.logs() == ["1", "2"]
-
-
 def test_foreach_may_stand_in_foreach() -> None:  # 2.1, 6
     assert said(
         """<prompt><foreach item="i" array="[[1, 2], [3]]"><foreach item="j" array="i">
         <value expr="j"/></foreach>;</foreach></prompt>"""
     ) == ["1 2; 3;"]
-
-
-def test_a_subdialogs_source_may_be_an_expression() -> None:  # 2.1, 2
-    call = Call(
-        """<form><subdialog name="r" srcexpr="'#' + 's'"><filled><log expr="r.a"/></filled>
-        </subdialog></form><form id="s"><var name="a" expr="3"/><block><return namelist="a"/></block></form>"""
-    )
-    assert call.logs() == ["3"]
 
 
 def test_a_scripts_srcexpr_is_evaluated() -> None:  # 2.1, 3
@@ -291,14 +258,8 @@ def test_what_is_undefined_in_an_array_stays_so() -> None:  # 2.1, 6
 
 
 EACH = '<foreach item="i" array="[1]">'
-
-
 EXECUTABLE = ["<if cond='i'>x</if>", "<script>i</script>", "<log>x</log>", "<goto next='#f'/>"]
-
-
 MARKUP = ["<break/>", "<emphasis>x</emphasis>", "<s>x</s>", "<mark name='m'/>", "<desc>x</desc>"]
-
-
 BOTH = ["x", "<value expr='i'/>", "<audio src='a.wav'/>", f"{EACH}x</foreach>"]
 
 

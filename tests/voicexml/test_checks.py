@@ -48,11 +48,7 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
 
 
 FIELD = '<field name="a"{}><prompt>Q?</prompt>{}</field>'
-
-
 RULES = '<grammar version="1.0" root="r"{}><rule id="r">a</rule></grammar>'
-
-
 UNIVERSALS = '<property name="universals" value="all"/>'
 
 
@@ -232,8 +228,6 @@ def test_variables_of_the_application_root_are_declared(tmp_path: Path) -> None:
 
 
 ROBOT = ' xmlns:p="urn:prima:dialogue:1" xml:lang="en"'
-
-
 STANDING = [
     "<form><block>{}</block></form>",
     "<form><block><prompt>Look {}</prompt></block></form>",

@@ -19,8 +19,6 @@ PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
 <grammar src="g/tags.gram" type="application/abnf"/>
 </field></form></vxml>
 """
-
-
 TAGS = """#ABNF 1.0;
 language en;
 root $r;

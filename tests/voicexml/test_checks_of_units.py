@@ -56,7 +56,6 @@ def test_a_unit_stands_in_a_form_or_around_commands() -> None:
     assert "around the items of a <form>" in problem.remedy
 
 
-# Warnings -----------------------------------------------------------------------------------
 def warned(tmp_path: Path, text: str, **files: str) -> list[Problem]:
     """What validation says of a document."""
     for name, content in files.items():

@@ -14,10 +14,7 @@ from prima.script.engine import Engine
 from prima.script.evaluation import ScriptError
 from tests.helpers.old_documents import HEAD, run, said, scenario
 
-# The calendar of the run ----------------------------------------------------------------
 NOW = 1109671200000  # 2005-03-01T10:00:00Z
-
-
 DATES = [
     ("Date()", "Tue Mar 01 2005 10:00:00 GMT+0000 (UTC)"),
     ("new Date().toString()", "Tue Mar 01 2005 10:00:00 GMT+0000 (UTC)"),

@@ -12,8 +12,6 @@ from tests.helpers.voice import Call, vxml
 
 # What it owns ------------------------------------------------------------------------------
 TURNS = '<catch event="{}"><p:turn angle="90"/></catch>'
-
-
 GOES = '<catch event="{}"><p:topological-move to="hall"/></catch>'
 
 

@@ -255,15 +255,6 @@ SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world=
   <application src="app.vxml"/>{services}</scenario>"""
 
 
-@pytest.fixture
-def place(tmp_path: Path) -> Path:
-    """A folder with a world and a robot."""
-    demo = ROOT / "documents"
-    (tmp_path / "world.xml").write_bytes((demo / "worlds/room.xml").read_bytes())
-    (tmp_path / "robot.xml").write_bytes((demo / "robots/papero.xml").read_bytes())
-    return tmp_path
-
-
 def run(place: Path, app: str, services: str, hosts: list[str] | None = None) -> list[str]:
     (place / "app.vxml").write_text(vxml(app))
     (place / "s.xml").write_text(SCENARIO.format(services=services))

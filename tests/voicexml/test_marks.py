@@ -71,11 +71,8 @@ def test_by_a_device_that_tells_of_no_marks_the_last_one_counts() -> None:
     assert call.logs()[0] == "two undefined"
 
 
-# Resuming from a mark (X2) ----------------------------------------------------------------------
 STORY = f"""<form><block><prompt>{SECOND} <mark name="one"/> {SECOND} {SECOND} <mark name="two"/> {SECOND}
 </prompt></block></form>"""
-
-
 TOUCH = f"""<application src="{DEMO}/fa/follow.xml" kind="fa"/><answer to="What's the matter">Nothing.</answer>
 <when at="AT"><touch sensor="head"/></when>"""
 

@@ -12,8 +12,6 @@ from tests.helpers.old_documents import HEAD, problems, run, said, scenario
 from tests.helpers.voice import Call, vxml
 
 GRAMMAR = '<grammar root="r"{}><rule id="r"><one-of><item>red</item><item>blue</item></one-of></rule></grammar>'
-
-
 NO_NAMESPACE = (
     '<?xml version="1.0"?>\n<vxml version="2.0">\n<form><field name="f"><prompt>Well?</prompt>'
     '{}<filled>You said <value expr="f"/>.</filled></field></form></vxml>'

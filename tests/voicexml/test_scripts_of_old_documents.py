@@ -25,8 +25,6 @@ hours = 010;
 var words = escape('a b') + unescape('%21') + String.fromCharCode(65) + 'hello'.substr(1, 2);
 // -->
 ]]>"""
-
-
 FOUND = [
     ("counter", "6"), ("found", "one"), ("new Person('Bob').greet()", "Hi Bob"), ("sum(1, 2)", "3"),
     ("(sum(3), total)", "3"), ("j + ' ' + three + ' ' + message", "1 3 boom"), ("hours", "8"),

@@ -93,8 +93,6 @@ def _stuck(session: Session) -> list[str]:
 
 
 SAYING = ("face-human-and-speak", "turn-and-speak", "speak", "speak")
-
-
 PLAIN = (
     "<speak>Hello.</speak>",
     "<speak>Well.</speak>",
@@ -108,23 +106,17 @@ PLAIN = (
     '<point-by-hand angle="20"/>',
     '<gesture name="nod"/>',
 )
-
-
 MORE = (*PLAIN, *(f'<command type="{name}"/>' for name in DANCES))
 """What may be asked for outside units too."""
 
 
 NESTED = '<iu><speak>In.</speak><turn angle="1"/></iu>'
-
-
 NOW = (
     "<stop-moving/>",
     '<speak order="now">Wait.</speak>',
     '<turn angle="5" order="now"/>',
     '<topological-move to="room" order="now"/>',
 )
-
-
 LOOPS = (
     '<topological-move to="room"/>',
     '<set-position x="1" y="2"/>',
@@ -133,20 +125,10 @@ LOOPS = (
     "<active-sensing-human/>",
     "<tracking-human/>",
 )
-
-
 HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}</on></speak>'
-
-
 THROWN = "thrown.here"
-
-
 TURNS = ("suspended", "resumed")
-
-
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
-
-
 HINTS = re.compile(r' (stream|hold-for|channel|restartable)="[^"]*"')
 
 

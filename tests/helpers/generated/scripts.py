@@ -114,14 +114,8 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "set-position": {"x": 1.0, "y": 2.0},
     "set-position-and-direction": {"x": 1.0, "y": 2.0, "heading": 3.0},
 }
-
-
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
-
-
 GROUPED = tuple(name for name in PIECES if name not in ("q-and-a", "stop-moving"))
-
-
 ALL = (*TABLE_4_2, *DANCES)
 
 
@@ -335,8 +329,6 @@ _opens = st.builds(
     ),
     st.one_of(st.none(), st.integers(1, 5000)),
 )
-
-
 _deed: st.SearchStrategy[Deed] = st.integers(0, 19).flatmap(
     lambda kind: (
         _asks()
@@ -350,8 +342,6 @@ _deed: st.SearchStrategy[Deed] = st.integers(0, 19).flatmap(
         else st.just(Go())
     )
 )
-
-
 _deeds = st.lists(_deed, max_size=3).map(tuple)
 
 

@@ -43,8 +43,6 @@ def _own(name: str, *devices: str) -> CommandType:
 
 
 DANCES = ("dance", "spin", "waltz")
-
-
 TABLE: Mapping[str, CommandType] = {
     **TABLE_4_2,
     "dance": _own("dance", "locomotion", "neck", "arm"),
@@ -63,11 +61,7 @@ def without_arm() -> Mapping[str, CommandType]:
 
 
 LACKING = without_arm()
-
-
 baselines = st.sampled_from(("fifo", "fair", "fixed", "fixed:ea", "none"))
-
-
 extended: st.SearchStrategy[str] = st.one_of(
     st.sets(st.sampled_from(EXTENSIONS), min_size=1).map(
         lambda names: "+".join(("prima", *sorted(names)))
