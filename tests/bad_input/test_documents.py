@@ -1,4 +1,4 @@
-"""What is wrong with an application's document is told in its place, whatever it holds."""
+"""Wrong documents of applications: each error is reported in its place."""
 
 from __future__ import annotations
 

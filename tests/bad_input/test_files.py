@@ -1,4 +1,4 @@
-"""Files that are too large, missing or badly named, and what commands say of them."""
+"""Files that are too large, missing or badly named: every command reports them."""
 
 from __future__ import annotations
 

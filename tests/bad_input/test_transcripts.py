@@ -1,4 +1,4 @@
-"""Transcripts that were cut off, edited, or are none."""
+"""Transcripts that are cut off, edited, or no transcripts at all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is done with a document grows with its size: calls are counted, no time is taken."""
+"""Work on a document grows in proportion to its size; calls are counted, not time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Law as data: scenarios with their expected transcripts.
+"""Scenarios with their expected transcripts.
 
 Each folder of tests/cases is a case: ``expected.txt`` is the table that a person
 reads, ``expected.jsonl`` the whole transcript. A folder has its own

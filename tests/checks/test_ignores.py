@@ -1,4 +1,4 @@
-"""What authors ignore: comments in documents, prima.toml, and prima validate --strict."""
+"""Warnings that authors leave out: comments in documents, prima.toml, and prima validate --strict."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What parts of applications cost others, in seconds on each device."""
+"""Prices of parts of applications: how long they keep each device."""
 
 from __future__ import annotations
 

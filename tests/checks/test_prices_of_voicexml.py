@@ -1,4 +1,4 @@
-"""What parts of VoiceXML documents cost others, and that runs keep to it."""
+"""Prices of parts of VoiceXML documents, and runs that keep to them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told a second time because its content is cancelled and run again (O3)."""
+"""Content that a user would hear twice, because it is cancelled and run again (O3)."""
 
 from __future__ import annotations
 

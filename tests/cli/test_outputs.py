@@ -1,4 +1,4 @@
-"""What a command writes never replaces what somebody has written by hand, or what it reads."""
+"""Output files never replace files written by hand, or the input."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every robot has, tried without one: the ear, sight, sensors, speech with marks, the loop."""
+"""The ear, sight, sensors, speech with marks, the loop."""
 
 from __future__ import annotations
 

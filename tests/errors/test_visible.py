@@ -1,4 +1,4 @@
-"""What strangers write reaches terminals, pages and other tools' files as text, and as nothing else."""
+"""Text from documents and transcripts reaches terminals, pages and other tools' files as text only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many runs at once: what comes out is the same in however many processes."""
+"""Batches of runs: the same output in however many processes."""
 
 from __future__ import annotations
 

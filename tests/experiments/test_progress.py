@@ -1,4 +1,4 @@
-"""What a batch tells a terminal."""
+"""Progress of a batch on a terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each format is read by a reader that is not ours."""
+"""Each format, read by a library that is not part of the project."""
 
 from __future__ import annotations
 

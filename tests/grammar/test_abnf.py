@@ -1,4 +1,4 @@
-"""What a text in the ABNF form is refused for: every place, message and remedy."""
+"""Errors in grammars in the ABNF form: place, message and remedy of each."""
 
 from __future__ import annotations
 

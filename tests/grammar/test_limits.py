@@ -1,4 +1,4 @@
-"""Grammars, tags and utterances that are hostile come to an end, and what is long takes no long time."""
+"""Hostile grammars, tags and utterances come to an end, and long ones are quick."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The grammar engine: what a match tells, languages, encodings, elements inside a document."""
+"""The grammar engine: matches, languages, encodings, elements inside a document."""
 
 from __future__ import annotations
 

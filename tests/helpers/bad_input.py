@@ -1,4 +1,4 @@
-"""Documents and command lines of strangers: run, and seen to give a clear error."""
+"""Wrong documents and command lines: run, and checked for a clear error."""
 
 from __future__ import annotations
 

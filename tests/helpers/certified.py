@@ -1,4 +1,4 @@
-"""What a run has that its certificate does not allow: devices, waits of reactions, starvation."""
+"""Contradictions of a run to its certificate: devices, waits of reactions, starvation."""
 
 from __future__ import annotations
 

@@ -12,6 +12,9 @@ from prima.session import Session
 
 HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{kind}" id="{name}">'
 
+CAUGHT = '<on event="error.semantic"><log expr="_event"/></on>'
+"""A handler that logs the error."""
+
 
 def xml(body: str, kind: str = "fa", name: str = "app") -> bytes:
     return (HEAD.format(kind=kind, name=name) + body + "</prima>").encode()

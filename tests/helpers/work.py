@@ -1,4 +1,4 @@
-"""How much work something is, counted: it is the same however busy a machine is."""
+"""Work counted in steps, the same however busy a machine is."""
 
 from __future__ import annotations
 

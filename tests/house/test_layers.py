@@ -1,4 +1,4 @@
-"""The house plan, held by a test: each layer imports only what stands below it."""
+"""The layers: each imports only those below it."""
 
 from __future__ import annotations
 

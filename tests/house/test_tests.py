@@ -1,4 +1,4 @@
-"""Tests are where one looks for them: a folder for each room, a file for each subject."""
+"""The order of the tests: a folder for each room, a file for each subject."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events and errors: which handler takes them, and what nobody handles."""
+"""Events and errors: which handler takes them, and those that no handler takes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import re
 
 import pytest
 
-from tests.helpers.interpreting import CAUGHT
-from tests.helpers.robot import Bench, document
+from tests.helpers.robot import CAUGHT, Bench, document
 
 
 # Events and errors ----------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Questions: what is heard, what is an answer, and what nobody understood."""
+"""Questions: answers, links, silence, and utterances that no grammar takes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading documents: what is kept of it, what it leaves behind, and that no code is left out."""
+"""The reader of documents: its cache, and that it compiles all code."""
 
 from __future__ import annotations
 

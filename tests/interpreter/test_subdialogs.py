@@ -1,4 +1,4 @@
-"""Subdialogs: a context of their own, and what they give back."""
+"""Subdialogs: their own context, and the values they return."""
 
 from __future__ import annotations
 

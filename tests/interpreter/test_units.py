@@ -1,4 +1,4 @@
-"""Units around items, and what handlers need that they can reach (F6, U5)."""
+"""Units around items, and the devices of handlers that they can reach (F6, U5)."""
 
 from __future__ import annotations
 

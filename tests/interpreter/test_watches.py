@@ -9,8 +9,7 @@ from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
 from prima.interpreter.sensors import sensors_read
 from prima.messages import Loaded, Sensed, Unloaded
-from tests.helpers.interpreting import CAUGHT
-from tests.helpers.robot import Bench, document
+from tests.helpers.robot import CAUGHT, Bench, document
 
 
 def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> None:

@@ -1,4 +1,4 @@
-"""What hosts send can name no file, and a host that is silent or endless costs its application alone."""
+"""Replies of hosts can name no file; a silent or endless host harms only its own application."""
 
 from __future__ import annotations
 

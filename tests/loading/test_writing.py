@@ -1,4 +1,4 @@
-"""Files are there as a whole or not at all; what killed processes leave is cleaned up."""
+"""Files are written whole or not at all; leftovers of killed processes are removed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an editor proposes to write."""
+"""Completion in an editor."""
 
 from __future__ import annotations
 

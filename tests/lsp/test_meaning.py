@@ -1,4 +1,4 @@
-"""Hover, symbols, links, quick fixes: what an editor tells of a place in a document."""
+"""Hover, symbols, links and quick fixes in an editor."""
 
 from __future__ import annotations
 

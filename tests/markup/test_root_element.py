@@ -1,4 +1,4 @@
-"""What a file begins with, told without parsing it."""
+"""The root element of a file, found without parsing it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a release consists of: locked versions, a bill of materials, licences, and what it promises."""
+"""Releases: locked versions, a bill of materials, licences, and the promises of SECURITY.md."""
 
 from __future__ import annotations
 

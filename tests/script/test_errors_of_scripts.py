@@ -1,4 +1,4 @@
-"""What scripts throw: none of their code runs when it is told, as no limit holds then."""
+"""Values that scripts throw: reporting them runs none of their code, as no limit holds then."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Expressions that are evaluated in Python mean what the ECMAScript engine says they mean."""
+"""Expressions evaluated in Python have the value that the ECMAScript engine gives them."""
 
 from __future__ import annotations
 

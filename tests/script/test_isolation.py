@@ -1,4 +1,4 @@
-"""Code of strangers in processes of their own: what it costs when it does not come back."""
+"""Code of documents in processes of their own: code that never ends costs only its application."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What goes wrong in one application ends that application alone (E2)."""
+"""An error in one application ends that application alone (E2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one application may do to another: who says which is which, and what reaches whom."""
+"""Protection of applications from each other: which is the FA, and which messages reach whom."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with scenarios, worlds and what a scenario waits for, told before a run."""
+"""Errors in scenarios and worlds, reported before a run."""
 
 from __future__ import annotations
 

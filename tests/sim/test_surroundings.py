@@ -1,4 +1,4 @@
-"""What belongs to the robot's surroundings: entrances that offer an EA, dances on the way, other robots."""
+"""The robot's surroundings: entrances that offer an EA, dances on the way, other robots."""
 
 from __future__ import annotations
 

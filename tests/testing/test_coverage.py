@@ -1,4 +1,4 @@
-"""What runs have covered of documents."""
+"""Coverage of documents by runs."""
 
 from __future__ import annotations
 

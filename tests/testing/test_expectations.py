@@ -1,4 +1,4 @@
-"""What a scenario expects is found in its run, or told where it is missing."""
+"""Expectations of scenarios: found in the run, or reported where they are missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Transcripts of runs that were stopped from outside: what is there stays readable."""
+"""Transcripts of runs that were stopped from outside stay readable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What runs when items are filled: VoiceXML 2.0, 2.4."""
+"""The filled element: VoiceXML 2.0, 2.4."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What VoiceXML 2.1 adds: expressions for sources, marks, data, foreach, disconnect with names."""
+"""Additions of VoiceXML 2.1: expressions for sources, marks, data, foreach, disconnect with names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is checked in a VoiceXML document and told before a run: variables, questions, events, arguments."""
+"""Checks of one VoiceXML document before a run: variables, questions, events, arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is checked in several VoiceXML documents together, and in the files that they name."""
+"""Checks of several VoiceXML documents together, and of the files that they name."""
 
 from __future__ import annotations
 

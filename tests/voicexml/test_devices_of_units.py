@@ -1,4 +1,4 @@
-"""What units in VoiceXML documents own: all that their handlers need and they can reach (U5)."""
+"""Devices of units in VoiceXML documents: all that the handlers they can reach need (U5)."""
 
 from __future__ import annotations
 

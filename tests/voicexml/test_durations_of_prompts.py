@@ -1,4 +1,4 @@
-"""What prompts take in simulated time: pauses, rates, durations."""
+"""Durations of prompts in simulated time: pauses, rates, durations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a VoiceXML application asks of services and hosts (2.0, 5.3.8 and 6.1; 2.1, 5)."""
+"""Requests of VoiceXML applications to services and hosts (2.0, 5.3.8 and 6.1; 2.1, 5)."""
 
 from __future__ import annotations
 

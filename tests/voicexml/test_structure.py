@@ -1,4 +1,4 @@
-"""Elements and attributes as they may be written, and what is told of others."""
+"""Elements and attributes: those allowed, and errors in others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""URIs that are none, and grammars in files with a language or a scope."""
+"""Invalid URIs, and grammars in files with a language or a scope."""
 
 from __future__ import annotations
 
