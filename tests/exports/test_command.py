@@ -13,14 +13,15 @@ import pytest
 
 from prima import api
 from prima.exports import FORMATS, timeline
-from tests.helpers.exporting import SCENARIOS, check_all, end, exported, of, run, start
+from tests.helpers.command import prima
+from tests.helpers.exporting import SCENARIOS, check_all, end, exported, of, start
 
 
 @pytest.mark.parametrize("to", FORMATS)
 def test_the_command_writes_what_the_function_does(
     to: str, folder: Path, demo: api.Transcript
 ) -> None:
-    done = run("t.jsonl", "-o", f"t.{to}", folder=folder)
+    done = prima("export", "t.jsonl", "-o", f"t.{to}", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert done.stderr.startswith(f"t.{to}: 18 tiers with ") and not done.stdout
     assert (folder / f"t.{to}").read_bytes() == exported(demo, to)
@@ -56,30 +57,33 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
     ],
 )
 def test_wrong_usage_is_told(words: list[str], message: str, folder: Path) -> None:
-    done = run(*words, folder=folder)
+    done = prima("export", *words, cwd=folder)
     assert done.returncode == 2 and message in done.stderr
     assert "Traceback" not in done.stderr and not done.stdout
 
 
 def test_an_empty_file_and_one_with_its_head_alone(folder: Path, demo: api.Transcript) -> None:
     (folder / "empty.jsonl").write_text("")
-    done = run("empty.jsonl", "--to", "vtt", folder=folder)
+    done = prima("export", "empty.jsonl", "--to", "vtt", cwd=folder)
     assert done.returncode == 2 and "it has no records" in done.stderr
     check_all(api.Transcript(demo.records[:1], "head.jsonl"), folder)
 
 
 def test_a_transcript_that_was_cut_off_is_written_as_far_as_it_goes(tmp_path: Path) -> None:
     whole = api.rehearse(SCENARIOS / "follow-during-navigation-ja.xml").dumps().encode()
-    for length in range(20_000, 20_006):  # within a letter of several bytes, too
+    letter = next(at for at in range(20_000, len(whole)) if whole[at] >= 0xE0)  # of three bytes
+    newline = b"\n"
+    cut = f"cut.jsonl:{whole.count(newline, 0, letter) + 1}: the record is cut off"
+    for length in (letter, letter + 1, letter + 2):
         (tmp_path / "cut.jsonl").write_bytes(whole[:length])
-        done = run("cut.jsonl", "-o", "cut.csv", folder=tmp_path)
-        assert done.returncode == 2 and "cut.jsonl:103: the record is cut off" in done.stderr
+        done = prima("export", "cut.jsonl", "-o", "cut.csv", cwd=tmp_path)
+        assert done.returncode == 2 and cut in done.stderr
         assert "木戸出".encode() in (tmp_path / "cut.csv").read_bytes()
 
 
 def test_letters_that_are_none_are_told(tmp_path: Path, demo: api.Transcript) -> None:
     (tmp_path / "t.jsonl").write_bytes(demo.dumps().encode().replace(b"poster", b"p\xffster"))
-    done = run("t.jsonl", "--to", "csv", folder=tmp_path)
+    done = prima("export", "t.jsonl", "--to", "csv", cwd=tmp_path)
     assert done.returncode == 2 and "it is not UTF-8" in done.stderr
 
 

@@ -6,8 +6,6 @@ import csv
 import io
 import json
 import re
-import subprocess
-import sys
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -44,11 +42,6 @@ def of(found: Timeline, name: str) -> list[tuple[float, float, str]]:
     """A tier's marks: start and end in seconds, and the text."""
     tier = next(tier for tier in found.tiers if tier.name == name)
     return [(mark.start / 1000, mark.end / 1000, mark.text) for mark in tier.marks]
-
-
-def run(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "prima", "export", *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8")
 
 
 # A few records, as a transcript has them ------------------------------------------------------
