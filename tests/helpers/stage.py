@@ -173,3 +173,12 @@ class Stage:
     def told(self, app: str) -> list[str]:
         """What an application was told, as ``what`` or the event's name."""
         return [notice.event or notice.what for name, notice in self.notices if name == app]
+
+
+def inserted(stage: Stage) -> list[tuple[str, str]]:
+    """What the mediator has put in: for which AB, and the Command."""
+    return [
+        (record["inserted"], record["command"])
+        for record in stage.phases("request")
+        if record.get("inserted")
+    ]

@@ -14,19 +14,11 @@ from prima.messages import (
 )
 from tests.helpers.generated.scripts import Ask, Script, drive
 from tests.helpers.generated.world import TABLE, World
-from tests.helpers.stage import Stage, ask, command, move, restartable, say, search
+from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say, search
 from tests.invariants import check
 
 EVENT, LATER = 7, 8
 ALL = "prima+all"
-
-
-def inserted(stage: Stage) -> list[tuple[str, str]]:
-    return [
-        (record["inserted"], record["command"])
-        for record in stage.phases("request")
-        if record.get("inserted")
-    ]
 
 
 def test_x4_the_robot_faces_the_user_before_the_first_word() -> None:

@@ -9,18 +9,10 @@ from prima.messages import (
 )
 from tests.helpers.generated.scripts import Ask, Script, drive
 from tests.helpers.generated.world import World
-from tests.helpers.stage import Stage, ask, chain, command, move, say
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
 from tests.invariants import check
 
 EVENT = 7
-
-
-def inserted(stage: Stage) -> list[tuple[str, str]]:
-    return [
-        (record["inserted"], record["command"])
-        for record in stage.phases("request")
-        if record.get("inserted")
-    ]
 
 
 def at_a_panel(policy: str, *then: Command) -> Stage:
