@@ -57,6 +57,7 @@ class Prima:
         for now in range(self.now + 1, self.now + times + 1):
             self.session.step(now, event)
         self.now += times
+        self.session.drain_visits()  # as whoever drives a session does, after every instant
 
     def count(self) -> int:
         """The counter, read by the application itself; the trace has to be there too."""
