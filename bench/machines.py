@@ -87,6 +87,7 @@ class Alone:
         for now in range(self.now + 1, self.now + times + 1):
             self.app.event(now, Event("tick", now))
         self.now += times
+        self.app.visits.clear()
 
     def count(self) -> int:
         """The counter, read by the application itself."""
