@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -210,3 +211,31 @@ def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
     found = check(records, policy, calling=calling(loaded.cast.documents))
     expected = {1} if policy == "none" else set()
     assert numbers(found) <= expected, found
+
+
+STEPS = int(os.environ.get("PRIMA_STEPS", "2"))
+"""At how many steps of a scenario each device fails; 0 for all of them."""
+
+
+@pytest.mark.parametrize("how", ["fails", "hangs", "works again"])
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> None:
+    """The run ends as it would have, nothing of it is a defect, and the rules are kept."""
+    from prima import load_scenario, rehearse
+    from prima.loading.files import in_place_of_files
+
+    text, hangs = path.read_text(encoding="utf-8"), str(how == "hangs").lower()
+    whole = rehearse(load_scenario(path), "prima").records
+    times = sorted({round(one["time"] * 1000) for one in whole})
+    for device in sorted({device for one in whole for device in one.get("devices", ())}):
+        for time in Random(f"{path.stem} {how} {device}").sample(times, STEPS or len(times)):
+            happens = f'<when at="{time}ms"><fail device="{device}" hangs="{hangs}"/></when>'
+            if how == "works again":
+                happens += f'<when at="{time + 2500}ms"><repair device="{device}"/></when>'
+            failing = text.replace("</scenario>", f"{happens}</scenario>")
+            with in_place_of_files({path: failing.encode()}):
+                loaded = load_scenario(path)
+                made = rehearse(loaded, "prima")
+            found = check(made.records, calling=calling(loaded.cast.documents))
+            assert not found and not made.defects, (device, time, found, made.defects)
+            assert made.records[-1]["phase"] == "over", (device, time)
