@@ -219,7 +219,7 @@ class Node:
         text = self.attributes.get(attribute) if attribute else self.own_text
         if text is None:
             return self.place
-        before = text.split("\n")[: max(line, 1) - 1]
+        before = text.split("\n", line)[: line - 1] if line > 1 else ()
         characters = sum(len(one) + 1 for one in before) + max(column, 1) - 1
         return self.source.inside(self.index, attribute, min(characters, len(text)))
 

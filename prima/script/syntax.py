@@ -33,8 +33,13 @@ def script_error(error: Exception) -> ScriptError:
     return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
 
 
+DECLARE = "((F, read) => (body) => { new F(read(body)); })(Function, JSON.parse)"
+"""Compiles the body of a function, given as JSON; made once, as making it takes as long."""
 MOST_SOUND, LONG_CODE = 20_000, 500
 """How much code that has compiled is remembered, and beyond how many characters none is."""
+
+
+PLACE = re.compile(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)")
 
 
 class Syntax:
@@ -48,7 +53,7 @@ class Syntax:
             context.set_memory_limit(MEMORY_LIMIT)
             context.set_max_stack_size(STACK_LIMIT)
             context.set_time_limit(TIME_LIMIT)
-        self._context = context
+        self._declare = context.eval(DECLARE)
         self._sound: set[str] = set()
         """Expressions that have compiled."""
 
@@ -107,22 +112,24 @@ class Syntax:
 
     def _compile(self, code: str, body: str) -> None:
         try:
-            self._context.eval(f"(void new Function({json.dumps(body)}))")
+            self._declare(json.dumps(body))
         except (quickjs.JSException, quickjs.StackOverflow) as error:
             raise _placed(script_error(error), str(error), code) from None
 
 
 def _placed(failure: ScriptError, said: str, code: str) -> ScriptError:
-    """An error with its place in code, around which there is one line of ours."""
-    place = re.findall(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)", said)
-    if place:
-        line, column = max(int(place[0][0]) - 3, 1), int(place[0][1])
-        lines = code.split("\n")
-        if line > len(lines):
-            failure = ScriptError("it ends too early")
-            line, column = len(lines), len(lines[-1]) + 1
-        else:  # the engine counts bytes
-            seen = lines[line - 1].encode()[: column - 1]
-            column = len(seen.decode(errors="ignore")) + 1
-        failure.line, failure.column = line, column
+    """An error with its place in code, around which there are lines of ours; those are no place."""
+    failure.places, failure.line, failure.column = [], 0, 0
+    place = PLACE.search(said)
+    line, column = (int(place[1]) - 3, int(place[2])) if place else (0, 0)
+    if line <= 0:
+        return failure
+    lines = code.split("\n")
+    if line > len(lines):
+        failure = ScriptError("it ends too early")
+        line, column = len(lines), len(lines[-1]) + 1
+    else:  # the engine counts bytes
+        seen = lines[line - 1].encode()[: column - 1]
+        column = len(seen.decode(errors="ignore")) + 1
+    failure.line, failure.column = line, column
     return failure

@@ -39,6 +39,8 @@ from prima.script.known import Known
 from prima.script.parse import parse_expression
 
 STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+SLIPS = re.compile(r"[^\x00-\x7f]|\$\{|=\s+=|\b(?:and|or|not)\b")
+"""What a common slip has in it."""
 WIDEST = 60
 """Characters of code that a message quotes."""
 
@@ -185,6 +187,8 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
 
 def _remedy(code: str) -> str:
     """What to write for a wrong expression, where that is a common slip."""
+    if not SLIPS.search(code):
+        return ""
     from prima.markup.slips import half
 
     bare = STRINGS.sub("", code)
