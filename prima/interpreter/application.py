@@ -14,7 +14,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import FORM_STEPS, Visit
 from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
@@ -398,8 +398,6 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
             if isinstance(transfer, GoForm):
                 self.leave(frame)
                 form = self.document.forms[transfer.form]
-                if not form.bare:  # else nothing more can happen until the next event
-                    self.count_step(form.node)
                 pending = self.begin(self.frame_for(form, frame))
             elif isinstance(transfer, GoOut):
                 raise transfer
@@ -514,7 +512,8 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         self.visits.append(Visit(self.name, self.now, "enter", form.node, form.id))
         self.note(form.node)
         if frame.form.bare and not (frame.fresh or frame.called_by):
-            return None
+            return None  # nothing more can happen until the next event
+        self.count_step(form.node, FORM_STEPS)
         frame.stalled = frame.entering = False
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)

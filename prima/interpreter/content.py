@@ -267,6 +267,7 @@ class Executor:
         """Undefine form items and reset their counters (VoiceXML 5.3.3)."""
         frame = fiber.frame
         names = act.names or [item.name for item in all_items(frame.form.items)]
+        self.owner.count_step(act.node, len(names))
         items = {item.name for item in all_items(frame.form.items)}
         for name in names:
             scope = next(

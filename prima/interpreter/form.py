@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from prima.interpreter.bounds import FORM_STEPS
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -89,7 +90,7 @@ class Algorithm:
                 return
             if item is None:
                 return
-            self.owner.count_step(item.node)
+            self.owner.count_step(item.node, FORM_STEPS)
             frame.item = item
             yield from self._catching(frame, fiber, item, self._visit(frame, fiber, item))
             frame.item = unit
@@ -241,7 +242,6 @@ class Algorithm:
             if isinstance(transfer, GoForm):
                 self.owner.leave(frame)
                 form = self.owner.document.forms[transfer.form]
-                self.owner.count_step(form.node)
                 pending = self.owner.begin(self.owner.frame_for(form, frame))
             elif isinstance(transfer, GoItem):
                 pending = self.owner.go_item(frame, transfer)

@@ -26,7 +26,7 @@ MANY = 8
 """Processes at work from which on those that nobody needs any more are looked for."""
 PASSED_ON = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT")
 """Variables of the environment without which some Pythons do not start."""
-CALL_SECONDS = 20e-6
+CALL_SECONDS = 35e-6
 """What a call costs besides the work that is done there, on both sides."""
 ENDING_SECONDS = 5.0
 """How long a process that has closed its pipe may take to end."""

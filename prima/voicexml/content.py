@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -141,6 +142,10 @@ class Content(Speaker):
         """Undefine variables, and reset what counts visits of form items (5.3.3)."""
         items = self.owner.items(context)
         names = node.get("namelist").split()
+        self.owner.count_step(node, len(names) or len(items))
+        named = defaultdict(list)
+        for item in items:
+            named[item.get("name")].append(item)
         for item in items if not names else ():
             context.visited.discard(item.index)
             self.forget(item, context)
@@ -158,9 +163,8 @@ class Content(Speaker):
                 self.engine.unset(scope, name)
             except ScriptError as error:  # the session's
                 raise self.failure(error, node, "namelist") from None
-            for item in items if scope is scopes.get("dialog") else ():
-                if item.get("name") == name:
-                    self.forget(item, context)
+            for item in named[name] if scope is scopes.get("dialog") else ():
+                self.forget(item, context)
 
     def forget(self, item: Node, context: Context) -> None:
         """Reset a form item: its variable, prompt counter and event counters."""

@@ -81,9 +81,9 @@ class Machine:
         """What the application wants."""
         return self.owner.actions  # type: ignore[return-value]
 
-    def count_step(self, node: Node) -> None:
+    def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
-        self.owner.count_step(node)
+        self.owner.count_step(node, steps)
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""

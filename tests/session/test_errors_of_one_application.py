@@ -154,5 +154,26 @@ def test_a_dialog_that_begins_again_and_again_ends_soon() -> None:
     assert failure.endswith("it loops without ever waiting") and len(call.logs()) < 2_000
 
 
+@pytest.mark.parametrize(
+    ("forms", "most"),
+    [
+        ('<form id="f"><subdialog name="s" src="#g"/><block><goto next="#f"/></block></form>', 2_000),
+        ('<form id="f"><block name="b"><clear/></block></form>', 2_000),
+        ('<form id="f">{}<block name="b"><clear/></block></form>', 100),
+    ],
+)  # fmt: skip
+def test_what_begins_again_and_again_asks_the_engine_a_bounded_number_of_times(
+    forms: str, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A form, an item and each name of a clear take more work than other content."""
+    begun: list[tuple[str, str]] = []
+    monkeypatch.setattr(
+        Interpreter, "note", lambda _self, node, what="in": begun.append((node.tag, what))
+    )
+    items = "".join(f'<block name="b{i}" cond="false"/>' for i in range(400))
+    bench = Bench(forms.format(items) + '<form id="g"><block><return/></block></form>')
+    assert begun.count(("block", "in")) <= most and bench.session.failures
+
+
 def test_memory_that_leaves_none_for_an_error_is_told_as_such() -> None:
     assert reason("[uninitialized]", 0.5) == "it used too much memory"
