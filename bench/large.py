@@ -119,6 +119,10 @@ FAMILIES: dict[str, Family] = {
         lambda i, n: f'<form id="f{i}"><subdialog name="s" src="#f{min(i + 1, n - 1)}"/><block><speak>A</speak><return/></block>'
         f'<on event="touch.head"><goto next="#f{min(i + 1, n - 1)}"/></on></form>\n', after='<form id="last"><block><return/></block></form>'
     ),
+    "forms in a ring beside handlers that go on": _ours(
+        lambda i, n: f'<form id="f{i}"><block><speak>A</speak><goto next="#f{(i + 1) % n}"/></block></form>'
+        f'<on event="touch.s{i}"><goto next="#f{i}"/></on>\n'
+    ),
     "handlers that go to items": _inside("form", lambda i, n: f'<block name="b{i}"/>'
         f'<on event="touch.s{i}"><clear namelist="b{n - 1 - i}"/><goto nextitem="b{i}"/></on>\n'
     ),

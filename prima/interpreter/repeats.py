@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain, islice
 from posixpath import basename
 
 from prima.errors import Hint, Problem
@@ -42,6 +43,8 @@ SAID_AGAIN = TOLD_TWICE.says(
 
 OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error", "emergency")
 """What begins an event that comes of what the application itself does, or ends everything."""
+MOST_FOUND = 5_000
+"""Of which something may be told: a list of problems ends long before."""
 STEPS_OF_AN_ITEM = 20
 """Steps for which it counts to look at an item."""
 REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
@@ -84,7 +87,8 @@ def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Prob
         remedy: what to do about it.
     """
     ways = Ways(sources)
-    found = [one for source in sources for one in _Leavings(source, ways).back()]
+    backs = chain.from_iterable(_Leavings(source, ways).back() for source in sources)
+    found = [*islice(backs, MOST_FOUND)]  # as many handlers may lead to each of as many forms
     told: set[int] = set()
     for one in sorted(found, key=lambda one: not one.certain):
         if one.certain or id(one.way.node) not in told:  # of a guess one example will do
@@ -161,7 +165,7 @@ class _Leavings:
         """The forms to which a document's handler leads, by which goto, and whether certainly."""
         found: dict[Target, tuple[Goto, bool]] = {}
         for certain in (True, False):
-            for way in leaving.gotos if self._ways.contents.left > 0 or certain else ():
+            for way in leaving.gotos if self._ways.contents.left > 0 else ():
                 targets = self._source.leads(way) if way.item is None else ()
                 for target in targets:
                     forms = self._ways.reached(target, guess=not certain)
