@@ -14,7 +14,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import FORM_STEPS, Visit
+from prima.interpreter.bounds import Visit
 from prima.interpreter.content import Executor
 from prima.interpreter.elements import (
     Declare,
@@ -30,6 +30,7 @@ from prima.interpreter.elements import (
 from prima.interpreter.form import Algorithm, confidence_level
 from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
+from prima.interpreter.owner import FORM_STEPS
 from prima.interpreter.places import source
 from prima.interpreter.plain import PlainEngine, is_plain
 from prima.interpreter.protocol import App

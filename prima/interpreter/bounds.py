@@ -20,8 +20,6 @@ Evaluator = TypeVar("Evaluator", bound="AnyEngine | PlainEngine")
 """What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
-FORM_STEPS = 10
-"""As many of them is the work of beginning a form's own content, or a form item."""
 MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
 """Characters that an application may say, log, send and pass on in one instant, and in a run."""
 MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000

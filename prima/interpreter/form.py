@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from prima.interpreter.bounds import FORM_STEPS
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -18,7 +17,7 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.frame import Content, Fiber, Frame, GoForm
-from prima.interpreter.owner import Owner
+from prima.interpreter.owner import FORM_STEPS, Owner
 from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied, select_item, select_prompts
 from prima.interpreter.transfers import (

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from prima.interpreter.plain import PlainEngine
     from prima.script.isolated import AnyEngine
 
+FORM_STEPS = 10
+"""As many pieces of content is the work of beginning a form's own content, or a form item."""
+
 
 class Contents(Protocol):
     """Runs content."""
