@@ -69,7 +69,7 @@ class ScenarioItem(pytest.Item):
         import os
 
         from prima.testing.running import Choice, run_one
-        from prima.testing.telling import format_result
+        from prima.testing.summary import format_result
 
         self.result = run_one(os.path.relpath(self.path), Choice())
         if self.result.status != "passed":

@@ -23,7 +23,7 @@ from prima import api
 from prima.errors.visible import HARMFUL
 from prima.lsp import naming, server
 from prima.lsp.complete import complete
-from prima.lsp.desk import Desk, path_of
+from prima.lsp.descriptions import RULES, VOICEXML_ATTRIBUTES
 from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import marks
@@ -32,7 +32,7 @@ from prima.lsp.problems import check, spots
 from prima.lsp.scan import Page
 from prima.lsp.tables import VOCABULARIES, resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
-from prima.lsp.words import RULES, VOICEXML_ATTRIBUTES
+from prima.lsp.workspace import Workspace, path_of
 
 ROOT = Path(__file__).parent.parent
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n'
@@ -746,12 +746,12 @@ def test_quick_fixes(editor: Editor, case: str) -> None:
 
 def test_nothing_is_done_about_a_name_that_is_cut() -> None:
     text = BEGIN + f'<form id="a"><block cond="{"q" * 1_000}"><exit/></block></form></prima>'
-    desk = Desk()
-    desk.put("file:///x.xml", text)
-    path = next(iter(desk.open))
-    (found,) = spots(desk, path, check(desk, path)[path])
+    workspace = Workspace()
+    workspace.put("file:///x.xml", text)
+    path = next(iter(workspace.open))
+    (found,) = spots(workspace, path, check(workspace, path)[path])
     assert found.problem.code == "undeclared-variable" and "[...]" in found.problem.remedy
-    assert fixes(desk.open[path].page.lines, found.problem) == []
+    assert fixes(workspace.open[path].page.lines, found.problem) == []
 
 
 # Robustness --------------------------------------------------------------------------------
@@ -820,17 +820,17 @@ def test_a_defect_ends_one_request_alone(caplog: pytest.LogCaptureFixture) -> No
     assert "ZeroDivisionError" in caplog.text
 
 
-def everything(desk: Desk, path: Path, offset: int) -> None:
+def everything(workspace: Workspace, path: Path, offset: int) -> None:
     """Ask everything about a place."""
-    page = desk.open[path].page
-    complete(desk, path, offset)
-    hover(desk, path, offset)
-    naming.definitions(desk, path, offset)
-    naming.references(desk, path, offset)
-    naming.renamable(desk, path, offset)
+    page = workspace.open[path].page
+    complete(workspace, path, offset)
+    hover(workspace, path, offset)
+    naming.definitions(workspace, path, offset)
+    naming.references(workspace, path, offset)
+    naming.renamable(workspace, path, offset)
     outline(page)
-    links(desk, path)
-    for one in spots(desk, path, check(desk, path)[path]):
+    links(workspace, path)
+    for one in spots(workspace, path, check(workspace, path)[path]):
         assert 0 <= one.start <= one.end <= len(page.text)
         for _, changes in fixes(page.lines, one.problem):
             assert all(0 <= c.start <= c.end <= len(page.text) for c in changes)
@@ -857,10 +857,10 @@ def test_every_question_about_a_mangled_document_has_an_answer(data: st.DataObje
     text = text[:start] + written + text[end:]
     if data.draw(st.booleans()):
         text = text[: start + len(written)]
-    desk = Desk()
-    path = desk.put("file:///nowhere/at/all/x.xml", text)
+    workspace = Workspace()
+    path = workspace.put("file:///nowhere/at/all/x.xml", text)
     assert path is not None
-    everything(desk, path, min(start + len(written), len(text)))
+    everything(workspace, path, min(start + len(written), len(text)))
 
 
 @settings(max_examples=300, deadline=None)
@@ -892,10 +892,10 @@ def test_tags_of_any_text_are_inside_it_and_in_order(text: str) -> None:
 
 def test_a_long_text_without_end_takes_no_long_time() -> None:
     for text in ("<a " * 20_000, "<" * 50_000, '<a b="' * 20_000, "<!--" * 20_000, "</a>" * 20_000):
-        desk = Desk()
-        path = desk.put("file:///nowhere/x.xml", BEGIN + text)
+        workspace = Workspace()
+        path = workspace.put("file:///nowhere/x.xml", BEGIN + text)
         assert path is not None
-        everything(desk, path, len(BEGIN) + 10)
+        everything(workspace, path, len(BEGIN) + 10)
 
 
 # Words and the command line --------------------------------------------------------------

@@ -30,7 +30,7 @@ from prima.testing.finding import find, is_scenario
 from prima.testing.golden import difference
 from prima.testing.junit import cobertura, junit
 from prima.testing.running import Choice, Result, run_all, run_one
-from prima.testing.telling import format_result
+from prima.testing.summary import format_result
 from prima.testing.tracing import States, states_of
 from prima.transcript.run import run_of
 from prima.transcript.table import format_rows

@@ -3,63 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from prima.certificate.model import Delay, Starving
 from prima.checks.prices import Gap, Outline, Price, Reaction, worst
 from prima.checks.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
 from prima.checks.prices.model import Loop, State, devices_of
-from prima.errors import Place
 from prima.interpreter.selection import takes
-
-
-@dataclass(slots=True)
-class Delay:
-    """How long one reaction of an application may wait for the other, and for what of it."""
-
-    event: str
-    devices: tuple[str, ...]
-    """The devices that both need."""
-    lasts: int
-    """The longest wait (ms), as far as it is known."""
-    what: str
-    place: Place | None
-    """The part that lasts longest; None where only the rest makes it wait."""
-    listens: bool = False
-    """Whether the user may speak in it: what they say comes on top."""
-    after: list[Place] = field(default_factory=list)
-    """The other's reactions to the same event, for which it waits as a whole (F2)."""
-    everything: bool = False
-    """Whether it waits for all that the other does in one go, as what drives may (K1, K2)."""
-    each: int | None = 0
-    """How much longer (ms) for each other event that the other reacts to meanwhile; None where
-    that has no bound."""
-    whole: bool = False
-    """Whether it waits for all that the other does in one go: then it is longer, too, for each
-    event whose reaction the other has begun before and not ended."""
-    unknown: list[Gap] = field(default_factory=list)
-    endless: list[Gap] = field(default_factory=list)
-    response: Delay | None = None
-    """How long its first word or movement towards the user may wait; None where it has none."""
-
-    @property
-    def known(self) -> bool:
-        """Whether the wait is never longer than ``lasts``."""
-        return not self.unknown and not self.endless
-
-
-@dataclass(frozen=True, slots=True)
-class Starving:
-    """What Commands that are no reactions may wait for without a bound."""
-
-    place: Place
-    what: str
-    rule: str
-    devices: tuple[str, ...]
-    """Commands on these devices wait."""
-    leaving: bool = False
-    """Whether, whatever their devices, those wait that leave the user (K1)."""
-    everything: bool = False
-    """Whether, whatever their devices, all wait: it may hold the floor (F2)."""
 
 
 def related(one: Reaction, other: Reaction) -> bool:

@@ -171,7 +171,7 @@ def _paint(text: str, status: str) -> str:
 def _report(results: list[Result]) -> None:
     """Each result in a line, then what was not as expected."""
     from prima.cli.common import clean
-    from prima.testing.telling import format_result, row
+    from prima.testing.summary import format_result, row
 
     wide = max(len(result.path) for result in results)
     for result in results:
@@ -188,7 +188,7 @@ def _finish(
 ) -> None:
     from prima.testing.coverage import coverage_data, format_coverage
     from prima.testing.running import result_data
-    from prima.testing.telling import counts, summary
+    from prima.testing.summary import counts, summary
 
     if form == "json":
         print_json(

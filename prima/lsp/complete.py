@@ -11,7 +11,7 @@ from pathlib import Path
 
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import DEVICES, TABLE_4_2
-from prima.lsp.desk import Desk, Found, Text
+from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.names import dialect
 from prima.lsp.scan import Attr, Page, Tag
@@ -28,7 +28,7 @@ from prima.lsp.tables import (
     roots,
     values,
 )
-from prima.lsp.words import EVENTS, SESSION, VOICEXML_EVENTS
+from prima.lsp.workspace import Found, Text, Workspace
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler.policy import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
@@ -69,19 +69,21 @@ class Proposal:
     doc: str = ""
 
 
-def complete(desk: Desk, path: Path, offset: int, typed: str = "") -> list[Proposal]:
+def complete(workspace: Workspace, path: Path, offset: int, typed: str = "") -> list[Proposal]:
     """What may be written at an offset; ``typed`` is the sign that has made the editor ask."""
-    text = desk.text(path)
+    text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return []
-    return list(_Completion(desk, path, text, offset, typed).proposals())[:MOST]
+    return list(_Completion(workspace, path, text, offset, typed).proposals())[:MOST]
 
 
 class _Completion:
     """One question for what may be written."""
 
-    def __init__(self, desk: Desk, path: Path, text: Text, offset: int, typed: str) -> None:
-        self.desk, self.path, self.text = desk, path, text
+    def __init__(
+        self, workspace: Workspace, path: Path, text: Text, offset: int, typed: str
+    ) -> None:
+        self.workspace, self.path, self.text = workspace, path, text
         self.page: Page = text.page
         self.offset, self.typed = offset, typed
 
@@ -236,7 +238,7 @@ class _Completion:
         if use.how in ("#", "uri"):
             file, sign, _ = attr.value.partition("#")
             sign = f"{file}#"
-            target = self.desk.target(self.path, file) if file and use.how == "uri" else None
+            target = self.workspace.target(self.path, file) if file and use.how == "uri" else None
             path = target or self.path
         for found in self._known(path, use.kinds, tag):
             name = found.mark.name
@@ -249,7 +251,7 @@ class _Completion:
                 yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
-        found = self.desk.known(path, kinds)
+        found = self.workspace.known(path, kinds)
         if kinds == ("rule",) and path == self.path:
             grammar = tag.inside("grammar")
             home = grammar.start if grammar else -1
@@ -265,13 +267,13 @@ class _Completion:
             ("service", ("reply.", "error.service.")),
             ("device", ("error.device.",)),
         ):
-            for found in self.desk.known(self.path, (kind,)):
+            for found in self.workspace.known(self.path, (kind,)):
                 for begin in begins:
                     known.setdefault(begin + found.mark.name, _where(self, found))
         if tag.parent is not None and tag.parent.key in TABLE_4_2:
             for begin in ("end.", "cancel."):
                 known[begin + tag.parent.key] = EVENTS[begin[:-1]]
-        for found in self.desk.known(self.path, ("event",)):
+        for found in self.workspace.known(self.path, ("event",)):
             known.setdefault(found.mark.name, _where(self, found))
         for mark in self.text.marks if own else ():
             if mark.kind == ("event",) and mark.start != attr.first:
@@ -283,7 +285,7 @@ class _Completion:
 
     def _commands(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
         span = self._span(attr)
-        for found in self.desk.known(self.path, ("command",)):
+        for found in self.workspace.known(self.path, ("command",)):
             yield Proposal(
                 found.mark.name, "name", *span, found.mark.name, detail=_where(self, found)
             )
@@ -301,7 +303,7 @@ class _Completion:
             called = holder.get("src").strip()
             for form in self.page.forms.get(called[1:], ()) if called[:1] == "#" else ():
                 found += [one.get("name") for one in form.children if one.key == "var"]
-        for one in self.desk.known(self.path, ("command",)) if holder.key == "command" else ():
+        for one in self.workspace.known(self.path, ("command",)) if holder.key == "command" else ():
             if one.mark.name == holder.get("type"):
                 arguments = one.mark.tag.children
                 found += [child.get("name") for child in arguments if child.key == "argument"]
@@ -310,8 +312,8 @@ class _Completion:
     def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
         """Documents of the workspace, as seen from this one."""
         span, folder = self._span(attr), self.path.parent
-        for path in self.desk.files():
-            text = self.desk.text(path)
+        for path in self.workspace.files():
+            text = self.workspace.text(path)
             if path == self.path or text is None:
                 continue
             if wanted and dialect(text.top) not in wanted:
@@ -353,7 +355,8 @@ class _Completion:
             known = self._visible(tag)
         elif of == "sensor":
             known = {
-                one.mark.name: _where(self, one) for one in self.desk.known(self.path, ("reading",))
+                one.mark.name: _where(self, one)
+                for one in self.workspace.known(self.path, ("reading",))
             }
         elif of in MEMBERS:
             known = dict.fromkeys(MEMBERS[of], of)

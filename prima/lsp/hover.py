@@ -8,11 +8,11 @@ from pathlib import Path
 
 from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
-from prima.lsp.desk import Desk, Found
+from prima.lsp.descriptions import EVENTS, RULES, SESSION, VOICEXML_EVENTS
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import Page, Tag
 from prima.lsp.tables import about_attribute, attributes
-from prima.lsp.words import EVENTS, RULES, SESSION, VOICEXML_EVENTS
+from prima.lsp.workspace import Found, Workspace
 from prima.markup.vocabulary import Element
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
@@ -30,9 +30,9 @@ class Meaning:
     end: int
 
 
-def hover(desk: Desk, path: Path, offset: int) -> Meaning | None:
+def hover(workspace: Workspace, path: Path, offset: int) -> Meaning | None:
     """What the word at an offset means, or None."""
-    text = desk.text(path)
+    text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return None
     page = text.page
@@ -45,7 +45,7 @@ def hover(desk: Desk, path: Path, offset: int) -> Meaning | None:
         return _element(tag, tag.start + 1, tag.name_end)
     mark = mark_at(text.marks, offset)
     if mark is not None:
-        return Meaning(_name(desk, path, mark), mark.start, mark.end)
+        return Meaning(_name(workspace, path, mark), mark.start, mark.end)
     return _attribute(page, tag, offset) if tag is not None else None
 
 
@@ -111,14 +111,14 @@ def _bound(kind: str, value: float) -> str:
     return f"{value / 1000:g}s" if value >= 1000 else f"{value:g}ms"
 
 
-def _name(desk: Desk, path: Path, mark: Mark) -> str:
+def _name(workspace: Workspace, path: Path, mark: Mark) -> str:
     """A name with where it is declared."""
     lines = [f"**{mark.kind[0]} `{mark.name}`**"]
     known = _known(mark)
     if known:
         lines.append(known)
-    given = desk.given(path, mark)
-    lines += [_declaration(desk, path, found) for found in given[:5]]
+    given = workspace.given(path, mark)
+    lines += [_declaration(workspace, path, found) for found in given[:5]]
     if not given and not known:
         lines.append("Nothing here declares it.")
     return "\n\n".join(lines)
@@ -140,8 +140,8 @@ def _known(mark: Mark) -> str:
     return ""
 
 
-def _declaration(desk: Desk, path: Path, found: Found) -> str:
-    text = desk.text(found.path)
+def _declaration(workspace: Workspace, path: Path, found: Found) -> str:
+    text = workspace.text(found.path)
     if text is None:
         return ""
     line, _ = text.page.lines.position(found.mark.start)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from prima.lsp.desk import Desk
 from prima.lsp.scan import Page, Tag
+from prima.lsp.workspace import Workspace
 
 NAMING = ("id", "name", "event", "src", "command", "sensor", "type", "item")
 SHOWN = {
@@ -88,10 +88,10 @@ def _part(tag: Tag) -> Part:
     )
 
 
-def links(desk: Desk, path: Path) -> list[Link]:
+def links(workspace: Workspace, path: Path) -> list[Link]:
     """The files that a document names and that are there."""
     return [
         Link(start, end, target)
-        for target, start, end in desk.named(path)
-        if target.is_file() or target in desk.open
+        for target, start, end in workspace.named(path)
+        if target.is_file() or target in workspace.open
     ]

@@ -9,10 +9,10 @@ from pathlib import Path
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, in_order
 from prima.loading.files import in_place_of_files
-from prima.lsp.desk import Desk
 from prima.lsp.scan import Page
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
 from prima.lsp.text import Lines
+from prima.lsp.workspace import Workspace
 
 TAG = re.compile(r"</?[^\s<>/]*")
 WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
@@ -41,15 +41,15 @@ def is_ours(page: Page) -> bool:
     )
 
 
-def check(desk: Desk, path: Path) -> dict[Path, list[Problem]]:
+def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
     """All problems that a document brings to light, by the file in which they are.
 
     The texts of open documents count in place of their files.
     """
-    text = desk.text(path)
+    text = workspace.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with in_place_of_files(desk.unsaved()):
+    with in_place_of_files(workspace.unsaved()):
         try:
             problems = loading.validate([path])
         except DocumentError as error:
@@ -90,9 +90,9 @@ def spot(lines: Lines, problem: Problem) -> Spot:
     return Spot(problem, start, end)
 
 
-def spots(desk: Desk, path: Path, problems: list[Problem]) -> list[Spot]:
+def spots(workspace: Workspace, path: Path, problems: list[Problem]) -> list[Spot]:
     """Problems of a file with the pieces of its text that they are about."""
-    text = desk.text(path)
+    text = workspace.text(path)
     if text is None:
         return []
     return [spot(text.lines, problem) for problem in in_order(problems)]

@@ -21,7 +21,6 @@ from prima.errors import Problem, in_order
 from prima.errors.visible import visible
 from prima.lsp import naming
 from prima.lsp.complete import Proposal, complete
-from prima.lsp.desk import Desk, Text, path_of
 from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import dialect
@@ -29,6 +28,7 @@ from prima.lsp.outline import Part, links, outline
 from prima.lsp.problems import Spot, check, spot, spots
 from prima.lsp.scan import Page
 from prima.lsp.text import Lines
+from prima.lsp.workspace import Text, Workspace, path_of
 
 SOON, LATER = 0.005, 0.25
 """Seconds after a change until its document is looked through, and those that it concerns."""
@@ -104,7 +104,7 @@ class Server(LanguageServer):
             protocol_cls=Protocol,
             converter_factory=_converter,
         )
-        self.desk = Desk()
+        self.documents = Workspace()
         self.told: dict[Path, dict[Path, list[Problem]]] = {}
         """Problems by the open document that brought them to light, and by their file."""
         self.waiting: dict[Path, asyncio.TimerHandle] = {}
@@ -132,11 +132,11 @@ class Server(LanguageServer):
 
     def location(self, place: naming.Spot) -> lsp.Location | None:
         """A piece of a document."""
-        text = self.desk.text(place.path)
+        text = self.documents.text(place.path)
         if text is None:
             return None
         return lsp.Location(
-            self.desk.uri(place.path), self.range(text.lines, place.start, place.end)
+            self.documents.uri(place.path), self.range(text.lines, place.start, place.end)
         )
 
     def locations(self, places: list[naming.Spot]) -> list[lsp.Location]:
@@ -145,7 +145,7 @@ class Server(LanguageServer):
 
     def asked(self, params: Any) -> tuple[Path, Text, int] | None:
         """The document and the offset that a request is about."""
-        found = self.desk.asked(params.text_document.uri)
+        found = self.documents.asked(params.text_document.uri)
         if found is None or params.position.line >= len(found[1].lines.starts):
             return None
         path, text = found
@@ -162,10 +162,10 @@ class Server(LanguageServer):
 
     def _check(self, path: Path) -> None:
         self.waiting.pop(path, None)
-        if path not in self.desk.open:
+        if path not in self.documents.open:
             return
         try:
-            self.tell(path, check(self.desk, path))
+            self.tell(path, check(self.documents, path))
         except Exception:  # the next change may be looked through again
             logger.exception("a document cannot be looked through")
 
@@ -183,11 +183,11 @@ class Server(LanguageServer):
 
     def publish(self, file: Path) -> None:
         """Publish all problems of a file."""
-        text = self.desk.text(file)
-        found = spots(self.desk, file, self.problems(file))
+        text = self.documents.text(file)
+        found = spots(self.documents, file, self.problems(file))
         self.text_document_publish_diagnostics(
             lsp.PublishDiagnosticsParams(
-                self.desk.uri(file),
+                self.documents.uri(file),
                 [self.diagnostic(text.lines, one) for one in found] if text else [],
                 text.version if text else None,
             )
@@ -208,10 +208,10 @@ class Server(LanguageServer):
         """Open documents whose problems may change with a document."""
         return [
             other
-            for other, text in self.desk.open.items()
+            for other, text in self.documents.open.items()
             if other != path
             and dialect(text.top) in ("scenario", "world")
-            and path in self.desk.reading(other)
+            and path in self.documents.reading(other)
         ]
 
     # Edits --------------------------------------------------------------------
@@ -222,24 +222,24 @@ class Server(LanguageServer):
         """Edits of documents, and a file that is moved after them."""
         by_file: dict[Path, list[lsp.TextEdit]] = {}
         for edit in found:
-            text = self.desk.text(edit.path)
+            text = self.documents.text(edit.path)
             if text is not None:
                 place = self.range(text.lines, edit.start, edit.end)
                 by_file.setdefault(edit.path, []).append(lsp.TextEdit(place, edit.text))
         if move is None:
-            changes = {self.desk.uri(path): some for path, some in by_file.items()}
+            changes = {self.documents.uri(path): some for path, some in by_file.items()}
             return lsp.WorkspaceEdit(changes=changes) if changes else None
         parts: list[Any] = [
             lsp.TextDocumentEdit(
                 lsp.OptionalVersionedTextDocumentIdentifier(
-                    self.desk.uri(path),
-                    self.desk.open[path].version if path in self.desk.open else None,
+                    self.documents.uri(path),
+                    self.documents.open[path].version if path in self.documents.open else None,
                 ),
                 list(some),
             )
             for path, some in by_file.items()
         ]
-        parts.append(lsp.RenameFile(self.desk.uri(move[0]), self.desk.uri(move[1])))
+        parts.append(lsp.RenameFile(self.documents.uri(move[0]), self.documents.uri(move[1])))
         return lsp.WorkspaceEdit(document_changes=parts)
 
     @property
@@ -281,7 +281,7 @@ def _safely(function: Callable[[Server, Any], Answer]) -> Callable[[Server, Any]
 
 
 def _initialized(server: Server, params: lsp.InitializedParams) -> None:
-    server.desk.folders = _folders(server)
+    server.documents.folders = _folders(server)
     workspace = server.client_capabilities.workspace
     watching = workspace.did_change_watched_files if workspace else None
     if watching and watching.dynamic_registration:
@@ -315,23 +315,23 @@ def _folders(server: Server) -> list[Path]:
 
 
 def _folders_changed(server: Server, params: lsp.DidChangeWorkspaceFoldersParams) -> None:
-    server.desk.folders = _folders(server)
-    server.desk.forget()
+    server.documents.folders = _folders(server)
+    server.documents.forget()
 
 
 def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     document = params.text_document
-    path = server.desk.put(document.uri, document.text, document.version)
+    path = server.documents.put(document.uri, document.text, document.version)
     if path is not None:
         server.look_through(path, SOON)
 
 
 def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
-    known = server.desk.asked(params.text_document.uri)
+    known = server.documents.asked(params.text_document.uri)
     if known is None or not params.content_changes:
         return
     text = server.workspace.get_text_document(params.text_document.uri).source
-    path = server.desk.put(params.text_document.uri, text, params.text_document.version)
+    path = server.documents.put(params.text_document.uri, text, params.text_document.version)
     if path is not None:
         server.look_through(path, SOON)
         for other in server.concerned(path):
@@ -340,28 +340,28 @@ def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
 
 def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     path = path_of(params.text_document.uri)
-    if path is None or path not in server.desk.open:
+    if path is None or path not in server.documents.open:
         return
     told = server.told.pop(path, {})
     concerned = server.concerned(path)
-    uri = server.desk.uri(path)
-    server.desk.drop(params.text_document.uri)
+    uri = server.documents.uri(path)
+    server.documents.drop(params.text_document.uri)
     for file in {path, *told}:
         server.publish(file)
-    if uri != server.desk.uri(path):
+    if uri != server.documents.uri(path):
         server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
     for other in concerned:  # what is on the disk counts again
         server.look_through(other, LATER)
 
 
 def _files_changed(server: Server, params: lsp.DidChangeWatchedFilesParams) -> None:
-    server.desk.forget()
-    for path in server.desk.open:
+    server.documents.forget()
+    for path in server.documents.open:
         server.look_through(path, LATER)
 
 
 def _saved(server: Server, params: lsp.DidSaveTextDocumentParams) -> None:
-    server.desk.forget()
+    server.documents.forget()
 
 
 # Questions ------------------------------------------------------------------------------
@@ -373,7 +373,7 @@ def _completion(server: Server, params: lsp.CompletionParams) -> lsp.CompletionL
         return None
     path, text, offset = asked
     typed = params.context.trigger_character if params.context else None
-    found = complete(server.desk, path, offset, typed or "")
+    found = complete(server.documents, path, offset, typed or "")
     items = [_item(server, text.page, one, n) for n, one in enumerate(found)]
     return lsp.CompletionList(is_incomplete=False, items=items)
 
@@ -399,7 +399,7 @@ def _item(server: Server, page: Page, one: Proposal, number: int) -> lsp.Complet
 
 def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
     asked = server.asked(params)
-    found = hover(server.desk, asked[0], asked[2]) if asked else None
+    found = hover(server.documents, asked[0], asked[2]) if asked else None
     if asked is None or found is None:
         return None
     return lsp.Hover(
@@ -412,7 +412,7 @@ def _definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Locati
     asked = server.asked(params)
     if asked is None:
         return None
-    return server.locations(naming.definitions(server.desk, asked[0], asked[2])) or None
+    return server.locations(naming.definitions(server.documents, asked[0], asked[2])) or None
 
 
 def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Location] | None:
@@ -421,7 +421,7 @@ def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Locatio
         return None
     path, _, offset = asked
     own = params.context.include_declaration
-    return server.locations(naming.references(server.desk, path, offset, own)) or None
+    return server.locations(naming.references(server.documents, path, offset, own)) or None
 
 
 def _highlight(
@@ -433,7 +433,7 @@ def _highlight(
     path, text, offset = asked
     return [
         lsp.DocumentHighlight(server.range(text.lines, one.start, one.end))
-        for one in naming.references(server.desk, path, offset)
+        for one in naming.references(server.documents, path, offset)
         if one.path == path
     ]
 
@@ -442,7 +442,7 @@ def _prepare_rename(
     server: Server, params: lsp.PrepareRenameParams
 ) -> lsp.PrepareRenamePlaceholder | None:
     asked = server.asked(params)
-    found = naming.renamable(server.desk, asked[0], asked[2]) if asked else None
+    found = naming.renamable(server.documents, asked[0], asked[2]) if asked else None
     if asked is None or found is None:
         return None
     page = asked[1].page
@@ -456,7 +456,7 @@ def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | Non
     if asked is None:
         return None
     try:
-        found, move = naming.rename(server.desk, asked[0], asked[2], params.new_name)
+        found, move = naming.rename(server.documents, asked[0], asked[2], params.new_name)
     except naming.Refused as error:
         raise JsonRpcException(str(error), REQUEST_FAILED) from None
     if move is not None and not server.moves_files:
@@ -470,12 +470,12 @@ def _will_move(server: Server, params: lsp.RenameFilesParams) -> lsp.WorkspaceEd
     for file in params.files:
         old, new = path_of(file.old_uri), path_of(file.new_uri)
         if old is not None and new is not None:
-            found += naming.moved(server.desk, old, new)
+            found += naming.moved(server.documents, old, new)
     return server.edits(found)
 
 
 def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol] | None:
-    found = server.desk.asked(params.text_document.uri)
+    found = server.documents.asked(params.text_document.uri)
     if found is None:
         return None
     page = found[1].page
@@ -494,18 +494,20 @@ def _symbol(server: Server, page: Page, part: Part) -> lsp.DocumentSymbol:
 
 
 def _links(server: Server, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink] | None:
-    found = server.desk.asked(params.text_document.uri)
+    found = server.documents.asked(params.text_document.uri)
     if found is None:
         return None
     path, text = found
     return [
-        lsp.DocumentLink(server.range(text.lines, one.start, one.end), server.desk.uri(one.target))
-        for one in links(server.desk, path)
+        lsp.DocumentLink(
+            server.range(text.lines, one.start, one.end), server.documents.uri(one.target)
+        )
+        for one in links(server.documents, path)
     ]
 
 
 def _actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction] | None:
-    found = server.desk.asked(params.text_document.uri)
+    found = server.documents.asked(params.text_document.uri)
     if found is None:
         return None
     path, text = found

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from prima.devices.vocabulary import ROBOT
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.lsp.scan import Page, Tag
-from prima.lsp.words import VOICEXML_ATTRIBUTES
 from prima.markup.vocabulary import (
     Attribute,
     Element,

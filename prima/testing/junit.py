@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from prima.errors.visible import visible
 from prima.testing.coverage import Coverage, Covered
 from prima.testing.running import Result
-from prima.testing.telling import counts, format_result
+from prima.testing.summary import counts, format_result
 
 
 def junit(results: Iterable[Result]) -> bytes:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from prima.certificate.finding import Delay, Starving
+from prima.certificate.model import Certificate, Delay, Starving
 from prima.checks.prices import Gap, Price
 from prima.language.commands import PATIENCE_MS
-
-if TYPE_CHECKING:
-    from prima.certificate import Certificate
 
 RESPONSE = "first word or movement towards the user"
 MOST_REASONS = 5

@@ -113,7 +113,7 @@ def uri_of(path: Path) -> str:
     return path.as_uri() if path.is_absolute() else quote(str(path))
 
 
-class Desk:
+class Workspace:
     """All documents that may be asked about."""
 
     def __init__(self) -> None:
