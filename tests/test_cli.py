@@ -234,7 +234,7 @@ def test_the_documents_are_copied_to_a_new_folder_and_run_there(tmp_path: Path) 
     ran = prima("run", folder / "scenarios" / "touched-on-the-way.xml")
     assert ran.returncode == 0
     again = prima("documents", folder)
-    assert (again.returncode, "is there already" in again.stderr) == (2, True)
+    assert (again.returncode, "already exists" in again.stderr) == (2, True)
 
 
 def test_the_price_of_a_held_stream_is_told(tmp_path: Path) -> None:

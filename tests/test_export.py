@@ -567,7 +567,7 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["t.jsonl"], "say in what format: --to csv, eaf, mcap, textgrid or vtt"),
+        (["t.jsonl"], "Name a format: --to csv, eaf, mcap, textgrid or vtt"),
         (["t.jsonl", "--to", "textgird"], 'Did you mean "textgrid"?'),
         (["t.jsonl", "--to", "pdf"], "Name csv, eaf, mcap, textgrid or vtt."),
         (["none.jsonl", "--to", "csv"], "none.jsonl: cannot be read"),
@@ -578,7 +578,7 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
         (["t.jsonl", "-o", "t.TextGrid", "--lang", "a=en"], "Languages go with eaf; textgrid"),
         (["t.jsonl", "--to", "eaf", "--lang", "en", "--lang", "ja"], "two languages of all: en"),
         (["t.jsonl", "--to", "eaf", "--lang", "folow=ja"], 'Did you mean "follow"?'),
-        (["."], "say in what format"),
+        (["."], "Name a format"),
         ([".", "--to", "vtt"], "cannot be read: Is a directory"),
     ],
 )

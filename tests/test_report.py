@@ -434,7 +434,7 @@ def test_a_cut_transcript_is_reported_and_told(folder: Path) -> None:
         ([], "Name a scenario, or a transcript"),
         (["a.jsonl", "--policy", "fifo", "-o", "r.html"], "this is a transcript"),
         ([SCENARIO, "--policy", "fif", "-o", "r.html"], "fifo"),
-        ([SCENARIO, "--scenario", SCENARIO, "-o", "r.html"], "brings its own map"),
+        ([SCENARIO, "--scenario", SCENARIO, "-o", "r.html"], "has its own map"),
         ([SCENARIO, SCENARIO, "--policy", "fifo", "--policy", "none"], "These are 4 runs"),
         (["none.jsonl"], "No such file"),
         (["a.jsonl", "-o", "a.jsonl"], "write elsewhere"),

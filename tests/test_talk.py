@@ -213,7 +213,7 @@ def test_an_application_that_fails_is_told_and_the_session_goes_on(tmp_path: Pat
     talk.line("/load ea")
     assert paper.made[before].what == "starts ea"
     talk.line("/load ea")
-    assert paper.told[-1] == '"ea" is there already. Take it out with /unload.'
+    assert paper.told[-1] == '"ea" is already loaded. Remove it with /unload.'
     type_in(talk, "/unload ea", "/unload ea")
     assert paper.told[-1] in ('"ea" is not there. Put it in with /load.',) or talk.game.over
 
@@ -862,4 +862,4 @@ def test_applications_are_talked_to_in_another_world_and_on_another_robot(tmp_pa
         refused = prima(tmp_path, b"", "--ea", "ea.xml", *more)
         assert refused.returncode in (1, 2) and told in refused.stderr.decode(), refused.stderr
     refused = prima(tmp_path, b"", str(path), "--world", str(world))
-    assert refused.returncode == 2 and b"A scenario names its own world" in refused.stderr
+    assert refused.returncode == 2 and b"a scenario names its own" in refused.stderr

@@ -24,11 +24,13 @@ from prima.errors import DocumentError, RunError, UsageError
 from prima.sim.happenings import When
 from prima.sim.person import PHASES, Person
 from prima.sim.scenario import read_scenario
-from prima.testing.checking import check, make_run, triggers
+from prima.testing.checking import check
 from prima.testing.coverage import Coverage, merge, total
+from prima.testing.facts import make_run
 from prima.testing.finding import find, is_scenario
 from prima.testing.golden import difference
 from prima.testing.junit import cobertura, junit
+from prima.testing.matching import triggers
 from prima.testing.running import Choice, Result, run_all, run_one
 from prima.testing.summary import format_result
 from prima.testing.tracing import States, states_of
@@ -148,9 +150,9 @@ FALSE = {
     '<expect state="ride" at="end"/>': "desk has ended then: exit",
     '<expect state="ride" at="1s" within="0s"/>': 'desk is in "ask" then',
     '<expect ends="desk" reason="unloaded"/>': "It ends with exit",
-    '<expect says="Floor 3" on="touch.back"/>': "is never there: the event touch.back",
-    '<expect says="Floor 3" on="touch" count="2"/>': "comes only once: the event touch",
-    '<never says="Floor 3" on="touch.back"/>': "is never there",
+    '<expect says="Floor 3" on="touch.back"/>': "never happens: the event touch.back",
+    '<expect says="Floor 3" on="touch" count="2"/>': "happens only once: the event touch",
+    '<never says="Floor 3" on="touch.back"/>': "never happens",
     '<never says="Floor 3"/>': "It does at",
     '<never state="ride"/>': "desk is in it from",
     '<never finishes="gesture" on="reply"/>': "It does at",
@@ -477,7 +479,7 @@ def test_scenarios_are_found_in_folders(tmp_path: Path) -> None:
     assert find([str(path), str(tmp_path)]) == [str(path)]
     with pytest.raises(UsageError, match="no such file"):
         find([str(tmp_path / "none")])
-    with pytest.raises(UsageError, match="holds no scenarios"):
+    with pytest.raises(UsageError, match="contains no scenarios"):
         find([str(ROOT / "docs")])
     assert not is_scenario(tmp_path)
 
@@ -504,7 +506,7 @@ def test_a_process_that_is_ended_ends_the_tests(tmp_path: Path) -> None:
         first.kill()
 
     threading.Timer(2, end_one).start()
-    with pytest.raises(RunError, match="ended from outside"):
+    with pytest.raises(RunError, match="was killed"):
         list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2))
 
 
@@ -825,7 +827,7 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
     assert find(["."]) == ["own.xml"]
     assert find([str(workshop)]) == [str(workshop / "own.xml")]
     assert find(["drafts", "more/wrong-b.xml"]) == ["drafts/a.xml", "more/wrong-b.xml"]
-    with pytest.raises(UsageError, match=r"more: holds no scenarios.*pyproject\.toml leaves some"):
+    with pytest.raises(UsageError, match=r"more: contains no scenarios.*pyproject\.toml excludes some"):
         find(["more"])
 
 
@@ -834,7 +836,7 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
     [
         ('ingore = ["a"]', r'has no "ingore"\. Did you mean "ignore"\?'),
         ('ignore = "drafts"', r'write ignore = \["drafts"\]'),
-        ("ignore = [1]", r"is a list of paths"),
+        ("ignore = [1]", r"must be a list of paths"),
         ("ignore = [", r"pyproject\.toml: cannot be read"),
     ],
 )

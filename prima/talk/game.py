@@ -305,7 +305,7 @@ class Game:
             app = session.apps.get(doing.values.get("application", ""))
             there = app is not None and app.name in session.mediator.memory.apps and not app.over
             if app is not None and doing.name == "load" and there:
-                raise UsageError(f'"{app.name}" is there already. Take it out with /unload.')
+                raise UsageError(f'"{app.name}" is already loaded. Remove it with /unload.')
             if app is not None and doing.name == "unload" and not there:
                 raise UsageError(f'"{app.name}" is not there. Put it in with /load.')
 
