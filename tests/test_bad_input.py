@@ -377,7 +377,7 @@ def test_problems_of_all_files_and_none_is_lost(prima: Prima, tmp_path: Path) ->
     (tmp_path / "empty").mkdir()
     said = prima("validate", bad, "no.xml", good, tmp_path)
     said.check(2, f"{bad}:1:1", "no.xml: cannot be read: No such file")
-    prima("validate", "empty").check(2, "empty: holds no documents")
+    prima("validate", "empty").check(2, "empty: contains no documents")
     data = json.loads(prima("validate", "--format", "json", bad).check(1).out)
     assert data[0]["code"] == "wrong-namespace" and data[0]["remedy"].startswith("Begin with")
 
@@ -918,7 +918,7 @@ def test_a_record_that_lacks_something_is_no_defect_of_prima(
         write(tmp_path, "bad.jsonl", "".join([lines[0], lacking, *lines[1:]]))
         done = prima(*READERS[reader])
         assert done.check(done.code).code in (0, 1, 2), lacking
-        assert done.code < 2 or " lacks what its phase has." in done.err, lacking
+        assert done.code < 2 or " lacks a field of its phase." in done.err, lacking
 
 
 def inbound(phase: str, **fields: object) -> Callable[[str], str]:

@@ -201,7 +201,10 @@ def test_two_scenarios_of_one_name_are_refused(stage: Path) -> None:
     shutil.copy("a/one.xml", "a/one.scn")
     done = prima("a/one.xml", "a/one.scn", "-o", "runs")
     assert done.returncode == 2
-    assert "a/one.scn: its transcript would be that of a/one.xml, runs/a/one.jsonl." in done.stderr
+    assert (
+        "a/one.scn: its transcript has the same name as that of a/one.xml, runs/a/one.jsonl."
+        in done.stderr
+    )
     assert not Path("runs").exists()
 
 
@@ -216,7 +219,7 @@ def test_what_somebody_else_has_written_stays(stage: Path, name: str) -> None:
     write(name, "my notes\n")
     done = prima("a/one.xml", "b/one.xml", "-o", "runs")
     assert done.returncode == 2
-    assert f"{name}: this was not written by a batch; move it away." in done.stderr
+    assert f"{name}: not written by a batch; move it away." in done.stderr
     assert Path(name).read_text() == "my notes\n"
     assert "b/one.jsonl" in files("runs")
 
@@ -255,13 +258,13 @@ USAGES = [
     (["a", "--ea", "a/hello.xml"], "Name a scenario, or applications with --fa and --ea."),
     (["--ea", "a/hello.xml", *POLICIES], "name one run; for several, write scenarios."),
     (["--ea", "a/hello.xml", "--workers", "2"], "name one run; for several, write scenarios."),
-    (["empty"], "empty: holds no scenarios"),
+    (["empty"], "empty: contains no scenarios"),
     (["--from", "empty"], "empty: cannot be read: Is a directory."),
     (["--from", "no"], "no: cannot be read: No such file or directory."),
-    (["--from", "a/one.xml"], "a/one.xml: this is no list of scenarios: one path stands in each"),
+    (["--from", "a/one.xml"], "a/one.xml: not a list of scenarios: write one path per line"),
     (["--from", "nothing"], "nothing: names no scenarios: write their paths, one per line."),
-    (["--from", "/dev/zero"], "/dev/zero: this is no list of scenarios"),
-    (["a", "-o", "nothing"], "nothing: this is a file; the transcripts of several runs go into"),
+    (["--from", "/dev/zero"], "/dev/zero: not a list of scenarios"),
+    (["a", "-o", "nothing"], "nothing: this is a file; several transcripts need a folder"),
     (["a", "-o", "nothing/runs"], "nothing/runs: cannot be written: Not a directory."),
     (["a", "-o", "runs.jsonl"], "runs.jsonl: several transcripts go into a folder: -o runs/."),
     (["a", "-o", ""], "-o: name the folder that the transcripts go into."),
@@ -406,7 +409,7 @@ def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.Mon
     rows = list(run_batch(Plan(["a", "b/one.xml"]), Options()))
     assert [row.exit for row in rows] == [3, 3, 3, 0]
     assert [row.messages for row in rows[:3]] == [
-        ["its process was ended by the signal SIGKILL; was there no memory left?"],
+        ["its process was killed by the signal SIGKILL; was there no memory left?"],
         ["its process ended with code 3."],
         ["its process ended with code 11."],
     ]
@@ -519,7 +522,7 @@ def test_a_worker_that_is_killed_is_told_and_the_others_go_on(stage: Path) -> No
     out, errors = made.communicate(timeout=SECONDS)
     assert made.returncode == 3
     assert out.splitlines()[-1] == "runs: 4; fine: 2; exit code 3: 2"
-    assert errors.count("its process was ended by the signal SIGKILL") == 2
+    assert errors.count("its process was killed by the signal SIGKILL") == 2
 
 
 # Taking a batch up again ------------------------------------------------------------------------

@@ -211,7 +211,7 @@ def test_a_record_that_lacks_something_is_told() -> None:
     for record in records:
         if record["phase"] == "request":
             del record["tree"]
-    with pytest.raises(UsageError, match="lacks what its phase has"):
+    with pytest.raises(UsageError, match="lacks a field of its phase"):
         make([api.Transcript(records, "bad.jsonl")])
 
 

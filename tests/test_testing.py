@@ -827,7 +827,9 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
     assert find(["."]) == ["own.xml"]
     assert find([str(workshop)]) == [str(workshop / "own.xml")]
     assert find(["drafts", "more/wrong-b.xml"]) == ["drafts/a.xml", "more/wrong-b.xml"]
-    with pytest.raises(UsageError, match=r"more: contains no scenarios.*pyproject\.toml excludes some"):
+    with pytest.raises(
+        UsageError, match=r"more: contains no scenarios.*pyproject\.toml excludes some"
+    ):
         find(["more"])
 
 

@@ -14,7 +14,7 @@ import click
 
 from prima import __version__
 from prima.cli.common import escape_for_people, tell
-from prima.cli.failures import INTERRUPTED, report
+from prima.cli.failures import INTERRUPTED, exit_code
 from prima.errors import did_you_mean
 
 COMMANDS = {
@@ -100,5 +100,5 @@ def main() -> None:
         tell("prima: interrupted")
         code = INTERRUPTED
     except (Exception, SystemExit) as error:
-        code = report(error)
+        code = exit_code(error)
     sys.exit(code if isinstance(code, int) else 0)

@@ -15,7 +15,7 @@ from prima.errors import DocumentError, RunError, UsageError, listed
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
 
 
-def report(error: BaseException) -> int:
+def exit_code(error: BaseException) -> int:
     """Print the message of an exception to stderr; return the exit code.
 
     Raises:

@@ -1,7 +1,7 @@
-"""Many runs: scenarios under policies, spread over the cores, each with a transcript of its own.
+"""Batches: scenarios under policies, spread over the cores, each with its own transcript.
 
-A run that is wrong, fails or dies takes no other along. Beside each transcript a ledger says
-what it was made of, so that a batch that was ended can be taken up again (docs/batch.md).
+A run that fails or dies does not affect the others. Beside each transcript a ledger names the
+inputs of its run, so that an interrupted batch can be resumed (docs/batch.md).
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.loading import Loaded
 
-# The parent of a batch runs nothing itself: what only runs need is imported where it is used.
+# The parent runs nothing itself, so it imports only what it needs.
 
 TRANSCRIPT, LEDGER = ".jsonl", ".run.json"
-"""How the names of a run's files end."""
+"""Suffixes of a run's files."""
 MOST_MESSAGES = 10
-"""Messages that a row has at most."""
+"""Maximum number of messages of a row."""
 MOST_LEDGER = 1_000_000
-"""Characters that are read of a ledger."""
+"""Maximum length of a ledger (characters)."""
 FULL = (errno.ENOSPC, errno.EROFS, getattr(errno, "EDQUOT", errno.ENOSPC))
-"""Errors of writing that every further run would meet as well."""
+"""Write errors that would affect every further run."""
 MOST_DIGESTS = 10_000
-"""Digests of files that are kept at most."""
+"""Maximum number of digests in memory."""
 
 
 @dataclass(slots=True)
 class Row:
-    """What became of one run."""
+    """The result of one run."""
 
     scenario: str
     policy: str | None
-    """None where none is named and the scenario cannot be read."""
+    """None if none is named and the scenario cannot be read."""
     exit: int = 0
-    """0 fine; 1 documents are wrong; 2 it cannot be read or written; 3 an error or a limit."""
+    """0 fine; 1 documents have errors; 2 unreadable or unwritable; 3 an error or a limit."""
     ended: str | None = None
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``; None if it did not."""
     records: int = 0
@@ -68,7 +68,7 @@ class Row:
     messages: list[str] = field(default_factory=list)
     """What went wrong."""
     earlier: bool = False
-    """Whether an earlier batch has made the run."""
+    """Whether the run was made by an earlier batch."""
     full: bool = False
     """Whether nothing more can be written."""
 
@@ -78,12 +78,12 @@ KEPT = (
     "reactions", "reaction_mean", "reaction_max",
     "responses", "response_mean", "response_max", "messages",
 )  # fmt: skip
-"""What a ledger keeps of a row; the rest follows from the job."""
+"""The fields of a row that a ledger keeps; the rest follows from the job."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A run to make: a scenario, a policy (None for its own), the files without their endings."""
+    """A run to make: a scenario, a policy (None for its own), its files without suffix."""
 
     scenario: str
     policy: str | None
@@ -92,25 +92,25 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What all runs of a batch have in common."""
+    """Options shared by all runs of a batch."""
 
     bound: int | None = None
     hosts: tuple[str, ...] = ()
     resume: bool = False
     limits: Mapping[str, int] = field(default_factory=dict)
     isolate: str = "ea"
-    """Whose scripts get a process of their own (``prima.api.rehearse``)."""
+    """Which scripts run in a process of their own (see ``prima.api.rehearse``)."""
     parts: str = ""
-    """The folder in which transcripts grow."""
+    """The folder for unfinished transcripts."""
     patience: int | None = None
-    """Rule E6's bound (ms), where it is not the scenario's."""
+    """Rule E6's bound (ms), if not the scenario's."""
 
 
-# What is run ----------------------------------------------------------------------------
+# Plans ----------------------------------------------------------------------------------
 
 
 class Plan(Iterable[Job]):
-    """The runs of a batch: each scenario under each policy, in the order they are named."""
+    """The runs of a batch: each scenario under each policy, in order."""
 
     def __init__(
         self, paths: Iterable[str], policies: Iterable[str] = (), output: str = ""
@@ -118,13 +118,13 @@ class Plan(Iterable[Job]):
         """Plan a batch.
 
         Args:
-            paths: scenarios, and folders that stand for all scenarios in them.
-            policies: policies; without one, each scenario's own.
-            output: the folder for the transcripts, if they shall be written.
+            paths: scenarios, and folders of scenarios.
+            policies: policies; by default each scenario's own.
+            output: the folder for the transcripts, if they are written.
 
         Raises:
-            UsageError: there is no such policy, a folder holds no scenario, or two
-                transcripts would have one name.
+            UsageError: a policy is unknown, a folder has no scenario, or two
+                transcripts would have the same name.
         """
         self.policies: list[str | None] = list(dict.fromkeys(policies)) or [None]
         self.output = output
@@ -142,7 +142,7 @@ class Plan(Iterable[Job]):
                 yield Job(scenario, policy, self._stem(scenario, policy))
 
     def _stem(self, scenario: str, policy: str | None) -> str:
-        """The path of a run's files, without their endings."""
+        """The path of a run's files, without suffix."""
         if not self.output:
             return ""
         stem = os.path.join(self.output, stem_of(scenario))
@@ -155,18 +155,18 @@ class Plan(Iterable[Job]):
             if other != scenario:
                 name = os.path.join(self.output, stem_of(scenario))
                 raise UsageError(
-                    f"{scenario}: its transcript would be that of {other}, {name}{TRANSCRIPT}."
+                    f"{scenario}: its transcript has the same name as that of {other}, {name}{TRANSCRIPT}."
                     " Run one of them with another folder after -o."
                 )
 
 
 def stem_of(scenario: str) -> str:
-    """Where a scenario's transcript stands in the folder for them, without its ending.
+    """The path of a scenario's transcript in the output folder, without suffix.
 
-    As the scenario stands in the folder that one works in, or else in the file system.
+    It is the scenario's path from the current folder, or else from the file system's root.
     """
     path, here = os.path.abspath(scenario), os.getcwd()
-    with suppress(ValueError):  # of two drives
+    with suppress(ValueError):  # on different drives
         if os.path.commonpath([path, here]) == here:
             path = os.path.relpath(path, here)
     return os.path.splitext(os.path.splitdrive(path)[1].lstrip(os.sep))[0]
@@ -184,7 +184,7 @@ def _check_policies(policies: Sequence[str | None]) -> None:
 
 
 def _gathered(paths: Iterable[str]) -> list[str]:
-    """The scenarios named, with those of folders among them; each file once."""
+    """The scenarios named, and those in folders named; each file once."""
     found: dict[str, str] = {}
     for path in paths:
         inside = [path]
@@ -202,12 +202,12 @@ def run_batch(
     options: Options,
     workers: int = 0,
 ) -> Generator[Row, None, None]:
-    """Make the runs of a plan; their rows come in its order. See :func:`prima.pool.spread`.
+    """Make the runs of a plan; yield their rows in order. See :func:`prima.pool.spread`.
 
     Args:
-        plan: what is run.
-        options: how.
-        workers: in how many processes; 0 for as many as there are cores.
+        plan: the runs.
+        options: their common options.
+        workers: the number of processes; 0 for the number of cores.
 
     Raises:
         UsageError: the folder for the transcripts cannot be written to, or is full.
@@ -237,10 +237,10 @@ def run_batch(
 
 @contextmanager
 def _parts(output: str) -> Iterator[str]:
-    """A folder for what is being written, which is gone afterwards.
+    """A temporary folder for unfinished files.
 
     Raises:
-        UsageError: there cannot be one.
+        UsageError: it cannot be made.
     """
     if not output:
         yield ""
@@ -251,7 +251,7 @@ def _parts(output: str) -> Iterator[str]:
         try:
             parts = held.enter_context(parts_folder(output))
         except FileExistsError:
-            message = "this is a file; the transcripts of several runs go into a folder."
+            message = "this is a file; several transcripts need a folder."
             raise UsageError(f"{output}: {message}") from None
         except OSError as error:
             raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
@@ -266,20 +266,20 @@ def _remove(parts: str) -> None:
 
 
 def _dead(job: Job, died: Died) -> Row:
-    """The row of a run whose process has ended."""
+    """The row of a run whose process died."""
     message = f"its process ended with code {died.code}."
     if died.code < 0:
         with suppress(ValueError):
             name = signal.Signals(-died.code).name
-            message = f"its process was ended by the signal {name}; was there no memory left?"
+            message = f"its process was killed by the signal {name}; was there no memory left?"
     return Row(job.scenario, job.policy, 3, messages=[message])
 
 
-# In the processes -------------------------------------------------------------------------
+# In worker processes -------------------------------------------------------------------------
 
 
 def _begin(options: Options) -> None:
-    """Take over the limits of the parent, which alone prints."""
+    """Apply the parent's limits, and silence stderr: only the parent prints."""
     from prima.markup.limits import LIMITS
 
     for name, number in options.limits.items():
@@ -288,7 +288,7 @@ def _begin(options: Options) -> None:
 
 
 def run_job(options: Options, job: Job) -> Row:
-    """Make one run, or see that it has been made; whatever goes wrong stands in the row."""
+    """Make one run, or find that it is up to date; errors are reported in its row."""
     try:
         if options.resume and job.stem and (row := _earlier(options, job)):
             return row
@@ -323,7 +323,7 @@ def _few(messages: list[str]) -> list[str]:
 
 
 def _run(options: Options, job: Job) -> Row:
-    """Make a run; its transcript has its name when it is complete, and then its ledger."""
+    """Make a run; rename its transcript, then its ledger, once complete."""
     from prima import api
     from prima.loading.files import in_place_of_files
 
@@ -360,7 +360,7 @@ def _run(options: Options, job: Job) -> Row:
 
 
 def _row(job: Job, loaded: Loaded, made: Transcript) -> Row:
-    """The row of a run that came to its end."""
+    """The row of a run that ended."""
     measure, summary = made.measure, made.summary()
     messages = [told_failure(failure) for failure in made.failures]
     if made.outcome == "limit":
@@ -386,7 +386,7 @@ def _row(job: Job, loaded: Loaded, made: Transcript) -> Row:
 
 
 def told_failure(failure: str) -> str:
-    """An application's failure, and how it may take what it has thrown itself."""
+    """An application's failure, with a hint if it throws an event that nothing handles."""
     event = failure.split(": ")[1]
     handling = ""
     if ":" not in event and not event.startswith("error."):
@@ -395,10 +395,10 @@ def told_failure(failure: str) -> str:
 
 
 def _make_room(job: Job) -> None:
-    """Take away what an earlier run wrote, so that nothing that is old passes for new.
+    """Remove the files of an earlier run, so that no old file is taken for a new one.
 
     Raises:
-        UsageError: something else is there.
+        UsageError: another program wrote them.
     """
     os.makedirs(os.path.dirname(job.stem), exist_ok=True)
     for ending, beginning in ((LEDGER, b'{"key":'), (TRANSCRIPT, b'{"time":0.0,"phase":"run"')):
@@ -407,19 +407,19 @@ def _make_room(job: Job) -> None:
             with path.open("rb") as stream:
                 data = stream.read(len(beginning)) if path.is_file() else b"?"
             if data not in (b"", beginning):
-                raise UsageError(f"{path}: this was not written by a batch; move it away.")
+                raise UsageError(f"{path}: not written by a batch; move it away.")
             path.unlink()
 
 
-# What a run was made of ---------------------------------------------------------------------
+# Inputs -----------------------------------------------------------------------------------
 
 
 class Inputs(Mapping[Path, bytes]):
-    """Notes every file that a run asks for, with its digest; it gives none itself."""
+    """Records the digest of every file that a run reads; provides none itself."""
 
     def __init__(self, scenario: str) -> None:
         self.digests: dict[str, str | None] = {}
-        """By paths from the scenario's folder; None for what is no file."""
+        """By paths from the scenario's folder; None if there is no such file."""
         self._folder = os.path.dirname(os.path.realpath(scenario))
 
     def __bool__(self) -> bool:
@@ -438,7 +438,7 @@ class Inputs(Mapping[Path, bytes]):
         return 0
 
     def look_at_sounds(self, loaded: Loaded) -> None:
-        """Note recordings, too, of which applications read the beginning alone."""
+        """Record audio files too, of which applications read only the beginning."""
         from prima.interpreter.elements import Document
 
         for document in loaded.cast.documents:
@@ -458,11 +458,11 @@ class Inputs(Mapping[Path, bytes]):
 
 
 _digests: dict[tuple[str, int, int, int], str] = {}
-"""Digests of files by path, time of change, size and number."""
+"""Digests of files by path, modification time, size and inode."""
 
 
 def file_digest(path: str | Path) -> str | None:
-    """A file's SHA-256, or None where there is no such file."""
+    """A file's SHA-256, or None if there is no such file."""
     try:
         state = os.stat(path)
         if not stat.S_ISREG(state.st_mode):
@@ -481,7 +481,7 @@ def file_digest(path: str | Path) -> str | None:
 def _rehearse(
     options: Options, loaded: Loaded, policy: str | None, sink: Callable[[str], object] | None
 ) -> Transcript:
-    """Run a scenario by the options that all runs have in common; records are not kept."""
+    """Run a scenario with the common options, without keeping its records."""
     from prima import api
 
     more = options.hosts, options.isolate, options.patience
@@ -489,7 +489,7 @@ def _rehearse(
 
 
 def _key(options: Options, job: Job) -> dict[str, Any]:
-    """What decides a run beside its files."""
+    """What determines a run, apart from its files."""
     return {
         "prima": __version__,
         "scenario": job.scenario,
@@ -502,7 +502,7 @@ def _key(options: Options, job: Job) -> dict[str, Any]:
 
 
 def _earlier(options: Options, job: Job) -> Row | None:
-    """The row of a run that an earlier batch has made of the same, if its transcript is whole."""
+    """The row of the same run in an earlier batch, if its inputs and transcript are unchanged."""
     try:
         with open(f"{job.stem}{LEDGER}", encoding="utf-8") as stream:
             ledger = json.loads(stream.read(MOST_LEDGER))
@@ -522,7 +522,7 @@ def _earlier(options: Options, job: Job) -> Row | None:
 
 
 def _sound(row: Row) -> bool:
-    """Whether what was read of a ledger can be shown."""
+    """Whether a row from a ledger has values of the right types."""
     whole = (
         row.exit,
         row.records,
@@ -541,7 +541,7 @@ def _sound(row: Row) -> bool:
     )
 
 
-# What is told -------------------------------------------------------------------------------
+# Output -----------------------------------------------------------------------------------
 
 
 COLUMNS = (
@@ -556,23 +556,23 @@ COLUMNS = (
     ("responses", 9),
     ("mean s", 6),
 )
-"""Headings after the scenario's, and how wide the columns are at least."""
+"""Headings after the scenario's, and minimum widths."""
 
 
 def row_data(row: Row) -> dict[str, Any]:
-    """A row as plain data, the same whenever and in however many processes the run was made."""
+    """A row as data for JSON; it does not depend on when or how the run was made."""
     data = asdict(row)
     del data["earlier"], data["full"]
     return data
 
 
 def format_head(wide: int) -> str:
-    """The headings, for scenarios whose paths are so many characters wide."""
+    """The headings, with a column of this width for scenarios."""
     return _line(["scenario", *(head for head, _ in COLUMNS)], wide)
 
 
 def format_row(row: Row, wide: int) -> str:
-    """A row of the table that people read."""
+    """A row of the table."""
     cells = [row.scenario, row.policy or "-", str(row.exit), row.ended or "-"]
     if row.ended is None:
         return _line(cells, wide)
@@ -590,6 +590,6 @@ def _line(cells: list[str], wide: int) -> str:
 
 
 def format_counts(exits: Mapping[int, int]) -> str:
-    """How many runs ended with which exit code."""
+    """The number of runs for each exit code."""
     parts = [f"runs: {sum(exits.values())}", f"fine: {exits.get(0, 0)}"]
     return "; ".join(parts + [f"exit code {one}: {exits[one]}" for one in sorted(exits) if one])

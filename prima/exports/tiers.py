@@ -35,7 +35,7 @@ def timeline(name: str, records: Iterable[Record]) -> Timeline:
     """Make the timeline of a transcript's records; ``name`` is for messages.
 
     Raises:
-        UsageError: a record lacks what its phase has, or it is too much for one file.
+        UsageError: a record lacks a field of its phase, or it is too much for one file.
     """
     run = run_of(records, name)
     if run.end * 1000 > LONGEST_MS:

@@ -182,7 +182,7 @@ def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str
     """Draw the Atomic Behaviors of a run, or those in working memory at a row of its table.
 
     Raises:
-        UsageError: there is no such row, a record lacks what its phase has, or it is too much.
+        UsageError: there is no such row, a record lacks a field of its phase, or it is too much.
     """
     from prima.graph import run
 
@@ -196,7 +196,7 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
     """Draw the history of a run's Communication Streams.
 
     Raises:
-        UsageError: a record lacks what its phase has, or it is too much.
+        UsageError: a record lacks a field of its phase, or it is too much.
     """
     from prima.graph import run
 

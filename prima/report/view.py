@@ -55,7 +55,7 @@ def view_of(transcript: Transcript, rows: list[Row], loaded: Loaded | None) -> V
     """All that a page shows of a transcript.
 
     Raises:
-        UsageError: a record lacks what its phase has, or the scenario is not the transcript's.
+        UsageError: a record lacks a field of its phase, or the scenario is not the transcript's.
     """
     walk, run = walk_of(transcript, loaded), transcript.run()
     head = run.head

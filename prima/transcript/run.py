@@ -364,7 +364,7 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
     """Fold records; ``name`` is the transcript's, for messages.
 
     Raises:
-        UsageError: a record lacks what its phase has.
+        UsageError: a record lacks a field of its phase.
     """
     fold = Fold()
     for number, record in enumerate(records, 1):
@@ -376,7 +376,7 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
         except (KeyError, TypeError, ValueError, AttributeError):
             lacks = True
         if lacks:
-            raise UsageError(f"{name}: record {number} lacks what its phase has.") from None
+            raise UsageError(f"{name}: record {number} lacks a field of its phase.") from None
     return fold.run()
 
 
