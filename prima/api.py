@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
     from prima.transcript.record import Entry
+    from prima.transcript.row import Row
     from prima.transcript.run import Run
-    from prima.transcript.table import Row
 
 # Modules that only some functions need are imported there, so that short commands start quickly.
 
@@ -128,7 +128,7 @@ def _made_of(name: str, entries: Iterable[Entry]) -> list[Row]:
     Raises:
         UsageError: a record lacks a field of its phase.
     """
-    from prima.transcript.table import make_rows
+    from prima.transcript.rows import make_rows
 
     try:
         return make_rows(entries)
@@ -224,7 +224,7 @@ def _unfinished(rehearsal: Rehearsal) -> list[str]:
 def _doing(app: Application, owed: bool) -> str:
     """The activity of an application; ``owed`` if a service has not answered it yet."""
     from prima.scheduler.behavior import RUNNING, WAITING
-    from prima.transcript.table import describe
+    from prima.transcript.row import describe
 
     for behavior in app.members.values():
         if behavior.state is RUNNING and behavior.unit is None:
@@ -434,7 +434,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     Raises:
         UsageError: there is no such row.
     """
-    from prima.transcript.why import told
+    from prima.transcript.why import explained
 
     rows = transcript.rows()
     if not rows:
@@ -443,7 +443,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     if not 0 <= number < len(rows):
         message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
         raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
-    return "\n".join(told(transcript.run(), rows[number]))
+    return "\n".join(explained(transcript.run(), rows[number]))
 
 
 __all__ = [

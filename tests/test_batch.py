@@ -21,17 +21,10 @@ import pytest
 from bench import batch as bench
 from prima import cli, pool
 from prima.errors import RunError, UsageError
-from prima.experiments.batch import (
-    Inputs,
-    Job,
-    Options,
-    Plan,
-    Row,
-    format_row,
-    run_batch,
-    run_job,
-    stem_of,
-)
+from prima.experiments.batch import run_batch, run_job
+from prima.experiments.ledger import Inputs
+from prima.experiments.plan import Job, Options, Plan, Row, stem_of
+from prima.experiments.rows import format_row
 from prima.pool import Died, spread
 
 ROOT = Path(__file__).parent.parent

@@ -900,7 +900,7 @@ WRONG = [
     (["t.jsonl", "--what", "states"], "has no states"),
     (["t.jsonl", "--row", "9999"], "There is no row 9999; the rows are 0 to"),
     (["t.jsonl", "--what", "streams", "--row", "1"], "--row goes with --what tree"),
-    (["app.xml", "-o", "app.xml", "--to", "dot"], "this is what the picture is made of"),
+    (["app.xml", "-o", "app.xml", "--to", "dot"], "the picture is made from this file"),
     (["app.xml", "-o", "no/where.svg"], "cannot be written"),
     (["cut.jsonl"], "cut.jsonl:4"),
     (["json.json"], "no transcript"),

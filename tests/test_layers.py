@@ -65,7 +65,7 @@ INSIDE = {
     ],
     "language": [{"values"}, {"commands"}, {"__init__"}],
     "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
-    "experiments": [{"batch", "study"}, {"__init__"}],
+    "experiments": [{"plan", "study"}, {"ledger", "rows"}, {"batch"}, {"__init__"}],
     "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [
         {"prelude"},

@@ -25,9 +25,9 @@ from prima.report.page import json_text, text
 from prima.report.view import language
 from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines
+from prima.transcript.row import Row
 from prima.transcript.rules import RULES
 from prima.transcript.run import run_of
-from prima.transcript.table import Row
 from tests.generated_report import long_run
 
 ROOT = Path(__file__).parent.parent
@@ -254,9 +254,9 @@ def test_a_transcript_that_was_cut_off_is_shown_as_far_as_it_goes(keep: int) -> 
 
 
 def test_too_much_is_refused_with_a_remedy() -> None:
-    with pytest.raises(UsageError, match="name one or two"):
+    with pytest.raises(UsageError, match="a report shows one run or compares two"):
         make([run()] * 3)
-    with pytest.raises(UsageError, match="name one or two"):
+    with pytest.raises(UsageError, match="a report shows one run or compares two"):
         make([])
     with pytest.raises(UsageError, match="one for each"):
         make([run()], [api.load_scenario(SCENARIO)] * 2)
@@ -439,7 +439,10 @@ def test_a_cut_transcript_is_reported_and_told(folder: Path) -> None:
         (["none.jsonl"], "No such file"),
         (["a.jsonl", "-o", "a.jsonl"], "write elsewhere"),
         (["a.jsonl", "-o", "nowhere/r.html"], "cannot be written"),
-        (["a.jsonl", "b.jsonl", "a.jsonl", "-o", "r.html"], "name one or two"),
+        (
+            ["a.jsonl", "b.jsonl", "a.jsonl", "-o", "r.html"],
+            "a report shows one run or compares two",
+        ),
         (["a.jsonl", "--scenario", "a.jsonl", "-o", "r.html"], "a.jsonl:1:1"),
         (["a.jsonl", "--scenari", "x"], "--scenario"),
     ],

@@ -14,8 +14,9 @@ from prima import api, cli
 from prima.errors import UsageError
 from prima.experiments.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.messages import Command, Emergency, Ended, Occurred
-from prima.transcript.criteria import Criteria, observe
+from prima.transcript.criteria import Criteria
 from prima.transcript.measures import Measure
+from prima.transcript.observer import observe
 from prima.transcript.record import Entry
 from prima.transcript.table import read_table
 from tests.robot import Bench, document

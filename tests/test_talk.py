@@ -23,7 +23,8 @@ from prima.talk.phrases import phrases
 from prima.talk.scene import comment
 from prima.talk.typed import COMMANDS, LONGEST_LINE, Names, complete, read_line
 from prima.transcript.lines import line as as_line
-from prima.transcript.table import Growing, Row
+from prima.transcript.row import Row
+from prima.transcript.rows import GrowingTable
 from tests.robot import document
 
 ROOT = Path(__file__).parent.parent
@@ -239,7 +240,7 @@ def test_the_surroundings_of_a_scenario_are_kept() -> None:
 )
 def test_rows_that_come_one_by_one_are_those_of_the_table(scenario: Path) -> None:
     made = api.rehearse(scenario)
-    growing = Growing()
+    growing = GrowingTable()
     instants: dict[float, list[Record]] = {}
     for record in made.records:
         instants.setdefault(record["time"], []).append(record)
@@ -253,7 +254,7 @@ def test_what_the_camera_saw_has_its_row_when_somebody_minds() -> None:
     seen: Record = {
         "time": 1.0, "phase": "event", "actor": "robot", "event": "human.found", "serial": 3,
     }  # fmt: skip
-    growing = Growing()
+    growing = GrowingTable()
     assert growing.add([seen]) == []
     minded: Record = {
         "time": 2.0, "phase": "request", "actor": "robot", "behavior": "a#1", "cause": 3,

@@ -17,16 +17,9 @@ from prima.cli import common
 from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped
-from prima.experiments.batch import (
-    Options,
-    Plan,
-    Row,
-    format_counts,
-    format_head,
-    format_row,
-    row_data,
-    run_batch,
-)
+from prima.experiments.batch import run_batch
+from prima.experiments.plan import Options, Plan, Row
+from prima.experiments.rows import format_counts, format_head, format_row, row_data
 from prima.pool import warm_up
 
 MOST_LISTED = 50_000_000

@@ -32,7 +32,7 @@ from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.api import Transcript
-    from prima.experiments.batch import Options
+    from prima.experiments.plan import Options
     from prima.loading import Loaded
 
 MOST_WORKERS = 256
@@ -146,7 +146,7 @@ def run(
     prima run documents/scenarios --policy prima --policy fifo -o runs/
     prima run documents/scenarios --policy prima --policy fifo -o runs/ --resume
     """
-    from prima.experiments.batch import Options
+    from prima.experiments.plan import Options
 
     raise_limits(limits)
     applications = bool(fas or eas)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
     from prima.messages import Record
     from prima.talk import Conversation, Game
-    from prima.transcript.table import Row
+    from prima.transcript.row import Row
 
 COLOURS = {"U": "cyan", "E": "yellow"}
 """Colours of rows, by who does it."""

@@ -12,9 +12,11 @@ from prima.api import Transcript, documents_folder, load_scenario, rehearse
 from prima.errors import UsageError
 from prima.messages import Json
 from prima.scheduler import policy as known
-from prima.transcript.criteria import Criteria, observe
+from prima.transcript.criteria import Criteria
 from prima.transcript.diff import compare
-from prima.transcript.table import Row, read_table
+from prima.transcript.observer import observe
+from prima.transcript.row import Row
+from prima.transcript.table import read_table
 
 POLICIES = (
     *reversed(known.POLICIES),

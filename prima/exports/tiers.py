@@ -26,9 +26,9 @@ from prima.exports.timeline import (
 from prima.language.values import LONGEST_MS
 from prima.messages import Json, Record
 from prima.transcript.record import Entry
+from prima.transcript.row import describe
 from prima.transcript.run import Run, run_of
 from prima.transcript.spans import Saying, Spell
-from prima.transcript.table import describe
 
 
 def timeline(name: str, records: Iterable[Record]) -> Timeline:

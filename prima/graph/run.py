@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from prima.graph.model import Graph, Node, clean
 from prima.transcript.colours import NOBODY, colours
 from prima.transcript.record import Entry
+from prima.transcript.row import describe
 from prima.transcript.run import Run
 from prima.transcript.run import until as run_until
 from prima.transcript.spans import Behavior, Piece, Stream, base
-from prima.transcript.table import describe
 
 NEVER = float("inf")
 

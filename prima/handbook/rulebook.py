@@ -17,9 +17,10 @@ from typing import Any
 from prima import api
 from prima.errors import UsageError, did_you_mean
 from prima.report import strip
+from prima.transcript.row import Row
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import Row, format_rows
+from prima.transcript.table import format_rows
 
 PAGE = "mediation.md"
 HEADING = re.compile(r"^## (?P<title>.+)$")

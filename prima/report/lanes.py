@@ -6,9 +6,9 @@ from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import Floor, Hold, State, base
-from prima.transcript.table import Row, describe
 
 MOST_APPS = 24
 """Applications that have a lane of their own; the others have none."""

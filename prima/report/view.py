@@ -11,10 +11,11 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import Walk, walk_of
+from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import LONGEST_SHOWN, Row, describe
-from prima.transcript.why import reasons
+from prima.transcript.table import LONGEST_SHOWN
+from prima.transcript.why import Reason, reasons
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -189,10 +190,7 @@ def language(text: str, japanese: bool = False) -> str:
 
 def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
     """Why each row came where it did, and what the ABs are that are named there."""
-    first: dict[str, int] = {}
-    for row in rows:
-        if row.behavior:
-            first.setdefault(base(row.behavior), row.number)
+    first = _first_rows(rows)
     places = {(row.time, row.kind): row.number for row in reversed(rows)}
     events = {
         serial: places[event.time, event.event]
@@ -210,18 +208,28 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
             why["outside"] = True
         if asked is not None and asked.cause in events:
             why["cause"] = events[asked.cause]
-        told: list[Json] = []
-        for reason in reasons(run, row, MOST_REASONS):
-            others = (base(name) for name in (*reason.lost, reason.by))
-            rivals = [one for one in others if one and one != base(row.behavior)]
-            for one in rivals:
-                if one not in names:
-                    names[one] = _named(one, run, first)
-            told.append([reason.time, shown(reason.text), _short(reason.rule), rivals])
-        if told:
+        if told := [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]:
             why["told"] = told
+        for name in (name for *_, rivals in told for name in rivals if name not in names):
+            names[name] = _named(name, run, first)
         whys.append(why)
     return whys, names
+
+
+def _first_rows(rows: Sequence[Row]) -> dict[str, int]:
+    """The number of each AB's first row."""
+    first: dict[str, int] = {}
+    for row in rows:
+        if row.behavior:
+            first.setdefault(base(row.behavior), row.number)
+    return first
+
+
+def _reason(reason: Reason, row: Row) -> list[Any]:
+    """A reason: time, text, rule, and the other ABs that it names."""
+    others = (base(name) for name in (*reason.lost, reason.by))
+    rivals = [one for one in others if one and one != base(row.behavior)]
+    return [reason.time, shown(reason.text), _short(reason.rule), rivals]
 
 
 def _named(name: str, run: Run, first: dict[str, int]) -> list[Json]:

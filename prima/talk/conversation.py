@@ -15,9 +15,9 @@ from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
+from prima.transcript.row import Row, describe
 from prima.transcript.run import run_of
-from prima.transcript.table import Row, describe
-from prima.transcript.why import told
+from prima.transcript.why import explained
 
 SHOWN = 6
 """Answers to a question that are shown."""
@@ -221,7 +221,7 @@ class Conversation:
         if rest and not (rest.isascii() and rest.isdigit() and int(rest[:9]) < len(rows)):
             raise UsageError(f'There is no row "{rest}"; the rows are 0 to {len(rows) - 1}.')
         row = rows[int(rest)] if rest else rows[-1]
-        self.screen.show("\n".join(told(run_of(self.game.records), row)))
+        self.screen.show("\n".join(explained(run_of(self.game.records), row)))
 
     def _who(self, rest: str) -> None:
         _nothing("who", rest)

@@ -23,7 +23,8 @@ from prima.talk.phrases import phrases
 from prima.talk.scene import Scene, comment, seconds, when
 from prima.talk.typed import Line, Names
 from prima.transcript.lines import finished
-from prima.transcript.table import Growing, Row
+from prima.transcript.row import Row
+from prima.transcript.rows import GrowingTable
 
 THINKING_MS = 1000
 """How long the user thinks before he answers a question, where time waits for him."""
@@ -103,7 +104,7 @@ class Game:
     def _begin(self) -> None:
         """Start the run from its beginning, with all that has been done so far."""
         self.rehearsal = Rehearsal(self.cast, self._chosen, None, self._web)
-        self.table = Growing()
+        self.table = GrowingTable()
         self.records: list[Record] = []
         """All records so far, times in seconds."""
         self.clock = 0

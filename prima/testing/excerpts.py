@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from prima.testing.facts import Window
-from prima.transcript.table import Row, format_head, format_row, shape_of
+from prima.transcript.row import Row
+from prima.transcript.table import format_head, format_row, shape_of
 
 AROUND = 2
 """Rows shown before and after the one that matters."""

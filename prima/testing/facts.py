@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from prima.testing.tracing import States
 from prima.transcript.record import Entry
+from prima.transcript.row import Row
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import Row
 
 
 @dataclass(slots=True)

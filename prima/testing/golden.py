@@ -9,7 +9,8 @@ from prima.errors import DocumentError, UsageError
 from prima.loading.files import read_file
 from prima.loading.writing import write_whole
 from prima.transcript.diff import Difference, compare, format_difference
-from prima.transcript.table import Row, format_rows, read_table, width
+from prima.transcript.row import Row
+from prima.transcript.table import format_rows, read_table, width
 
 LONGEST_DIFFERENCE = 200
 """Maximum number of lines of a difference."""

@@ -19,7 +19,7 @@ from prima.testing.coverage import Coverage, covered
 from prima.testing.facts import make_run
 from prima.testing.golden import difference, golden_of, read_golden
 from prima.testing.tracing import marks_of, states_of
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 
 Status = Literal["passed", "failed", "error", "invalid"]
 """As expected; not as expected; the run ended by an error; the documents have errors."""

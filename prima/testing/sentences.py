@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.sim.expectations import Expectation
 from prima.testing.facts import Window
-from prima.transcript.table import describe
+from prima.transcript.row import describe
 
 
 def subject(one: Expectation) -> str:

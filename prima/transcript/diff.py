@@ -11,7 +11,7 @@ from typing import Literal
 
 from prima.errors.visible import escaped, visible
 from prima.transcript.measures import Summary
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 
 DELAY = 0.5
 """Seconds by which a behaviour must come later, beyond what came before it, to count."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.transcript.criteria import Criteria, Observer
+from prima.transcript.criteria import Criteria
+from prima.transcript.observer import Observer
 from prima.transcript.record import Entry
 from prima.transcript.run import Run
 

@@ -12,7 +12,7 @@ from itertools import chain
 
 from prima.errors import UsageError
 from prima.messages import Record
-from prima.transcript.criteria import Observer
+from prima.transcript.observer import Observer
 from prima.transcript.record import Entry, lacking
 from prima.transcript.spans import (
     OPEN,
