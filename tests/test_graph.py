@@ -962,7 +962,7 @@ def test_a_transcript_with_strange_records_is_refused_or_drawn(tmp_path: Path) -
                 try:
                     picture(path, to, what)
                 except UsageError as error:
-                    assert re.search("lacks what its phase has| needs ", str(error))
+                    assert re.search("lacks a field of its phase| needs ", str(error))
 
 
 def test_too_many_states_are_refused_as_svg_and_taken_as_dot(tmp_path: Path) -> None:

@@ -159,7 +159,7 @@ def test_undo_takes_the_last_line_back_and_nothing_else() -> None:
     assert len(talk.game.lines) == 1
     type_in(talk, "/undo", "/undo")
     assert talk.game.lines == []
-    assert paper.told[-1] == "There is nothing to take back."
+    assert paper.told[-1] == "There is nothing to undo."
 
 
 def test_a_step_is_a_row(tmp_path: Path) -> None:
@@ -216,7 +216,7 @@ def test_an_application_that_fails_is_told_and_the_session_goes_on(tmp_path: Pat
     talk.line("/load ea")
     assert paper.told[-1] == '"ea" is already loaded. Remove it with /unload.'
     type_in(talk, "/unload ea", "/unload ea")
-    assert paper.told[-1] in ('"ea" is not there. Put it in with /load.',) or talk.game.over
+    assert paper.told[-1] in ('"ea" is not loaded. Load it with /load.',) or talk.game.over
 
 
 def test_the_scenarios_user_is_left_out_unless_he_is_wanted() -> None:
@@ -371,7 +371,7 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
     other = tmp_path / "thesis.xml"
     other.write_text("precious", encoding="utf-8")
     talk.line(f"/save {other}")
-    assert "is no saved session" in paper.told[-1]
+    assert "is not a saved session" in paper.told[-1]
     assert other.read_text(encoding="utf-8") == "precious"
     talk.line(f"/save {tmp_path}/new.xml")
     talk.line(f"/save {tmp_path}/new.xml")
@@ -387,7 +387,7 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("/tuch head", 'There is no command "/tuch". Did you mean "/touch"?'),
+        ("/tuch head", 'Unknown command "/tuch". Did you mean "/touch"?'),
         ("/touch", 'Write "/touch SENSOR".'),
         ("/touch hed", 'There is no touch sensor "hed". Did you mean "head"?'),
         ("/touch nose", 'There is no touch sensor "nose". There is back and head.'),
@@ -412,20 +412,20 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
         ("/stay here", 'Nothing follows "/stay".'),
         ("/wait", 'Write "/wait TIME", as in "/wait 3s".'),
         ("/wait 3", '"3" is not a time. Write a number with its unit: "500ms" or "2.5s".'),
-        ("/wait 3s /touch head", 'A line begins with what is done: "/touch head /wait 3s /say Stop."'),
-        ("/touch head /go", '"/go" stands alone on its line.'),
+        ("/wait 3s /touch head", 'A line begins with an action: "/touch head /wait 3s /say Stop."'),
+        ("/touch head /go", '"/go" must be alone on its line.'),
         ("/go on", 'Nothing follows "/go".'),
         ("/back", 'Write "/back TIME", as in "/back 5s".'),
         ("/back 900s", None),
         ("/why 99", 'There is no row "99"; the rows are 0 to 7.'),
         ("/why -1", None),
         ("/why \u00b2", None),
-        ("/help tuch", 'There is no command "/tuch". Did you mean "/touch"?'),
+        ("/help tuch", 'Unknown command "/tuch". Did you mean "/touch"?'),
         ("/save", 'Write "/save FILE", as in "/save visit.xml".'),
-        ("/save a\0b", "The line holds a character that is none: U+0000."),
-        ("a\x1b[31mb", "The line holds a character that is none: U+001B."),
-        ("x" * (LONGEST_LINE + 1), f"A line may have {LONGEST_LINE} letters; this one has more."),
-        ("\udcff", "The line holds a character that is none: U+DCFF."),
+        ("/save a\0b", "The line contains an invalid character: U+0000."),
+        ("a\x1b[31mb", "The line contains an invalid character: U+001B."),
+        ("x" * (LONGEST_LINE + 1), f"The line is longer than {LONGEST_LINE} characters."),
+        ("\udcff", "The line contains an invalid character: U+DCFF."),
         ("/say", 'Write "/say TEXT".'),
     ],
 )  # fmt: skip
@@ -566,7 +566,7 @@ def test_json_is_a_transcript_that_the_saved_session_repeats(tmp_path: Path) -> 
         "--save", "v.xml",
     )  # fmt: skip
     assert done.returncode == 1
-    assert b"cannot be taken back" in done.stderr
+    assert b"cannot be undone" in done.stderr
     (tmp_path / "t.jsonl").write_bytes(done.stdout)
     played = api.read(tmp_path / "t.jsonl")
     again = api.rehearse(tmp_path / "v.xml")
@@ -829,7 +829,7 @@ def test_what_nobody_listens_to_is_told(tmp_path: Path) -> None:
     asks.pass_time(100)
     asks.line("Now")
     asks.pass_time(2000)
-    assert "ea is still asking: it listens when it has spoken." in paper.told[-1]
+    assert "ea is still asking; it listens when it has finished." in paper.told[-1]
     answered, paper = start(room(tmp_path, ASKS))
     answered.line("Yes.")
     assert not any("Nobody listens" in told for told in paper.told)
