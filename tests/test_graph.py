@@ -20,10 +20,10 @@ from lxml import etree
 from prima import api
 from prima.errors import DocumentError, UsageError
 from prima.graph import FORMATS, cards, picture, run, states, text, treepicture
+from prima.graph.labels import condition, ordinal
 from prima.graph.layout import Link, arrange, distances
 from prima.graph.model import Edge, Graph, Node, clean
 from prima.graph.svg import SIZE, measure
-from prima.graph.words import condition, ordinal
 from prima.messages import Command, Record
 from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import Rehearsal
@@ -365,7 +365,7 @@ def test_voicexml_menus_links_submits_and_ends(tmp_path: Path) -> None:
     assert ways(graph, "last") == {"ends the application": ["the call is passed on", "at its end"]}
     assert ways(graph, "sub") == {
         "last call": ["subdialog d"],
-        "goes to what is not there: gone.vxml": ["then"],
+        "goes to a missing target: gone.vxml": ["then"],
     }
     assert ways(graph, "in any state") == {
         "ends the application": ['cancel (said "forget it"), hangs up']
@@ -399,7 +399,7 @@ def test_the_documents_of_an_application_are_drawn_together(tmp_path: Path) -> N
     assert ways(graph, "next.vxml#form 1") == {"a": ["then"]}
     assert ways(graph, "in any state of root.vxml and its leaf documents") == {"b": ['said "b"']}
     assert named(graph, "b").reached and not named(graph, "root.vxml#r").reached
-    assert ways(graph, "c") == {"goes to what is not there: ../out.vxml": ["then"]}
+    assert ways(graph, "c") == {"goes to a missing target: ../out.vxml": ["then"]}
 
 
 # The picture ---------------------------------------------------------------------------------
@@ -899,7 +899,7 @@ WRONG = [
     (["app.xml", "--row", "3"], "--row needs a transcript"),
     (["t.jsonl", "--what", "states"], "has no states"),
     (["t.jsonl", "--row", "9999"], "There is no row 9999; the rows are 0 to"),
-    (["t.jsonl", "--what", "streams", "--row", "1"], "--row goes with --what tree"),
+    (["t.jsonl", "--what", "streams", "--row", "1"], "--row works only with --what tree"),
     (["app.xml", "-o", "app.xml", "--to", "dot"], "the picture is made from this file"),
     (["app.xml", "-o", "no/where.svg"], "cannot be written"),
     (["cut.jsonl"], "cut.jsonl:4"),

@@ -114,14 +114,14 @@ INSIDE = {
         {"names"},
         {"workspace"},
         {"hover", "naming", "outline", "problems"},
-        {"complete", "fixes"},
+        {"complete", "fixes", "protocol"},
         {"server"},
         {"__init__"},
     ],
     "graph": [
         {"layout", "model"},
-        {"run", "svg", "words"},
-        {"thrown"},
+        {"labels", "run", "svg"},
+        {"throws"},
         {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
         {"worldmap"},
         {"__init__"},
@@ -182,8 +182,8 @@ ALONE = {
     "pydantic": {"transcript.record", "transcript.lines"},
     "click": {"cli"},
     "mcap": {"exports.mcap"},
-    "pygls": {"lsp.server"},
-    "lsprotocol": {"lsp.server"},
+    "pygls": {"lsp.protocol", "lsp.server"},
+    "lsprotocol": {"lsp.protocol", "lsp.server"},
 }
 """Libraries that one module or package alone knows."""
 

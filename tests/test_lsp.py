@@ -29,6 +29,7 @@ from prima.lsp.hover import hover
 from prima.lsp.names import marks
 from prima.lsp.outline import links, outline
 from prima.lsp.problems import check, spots
+from prima.lsp.protocol import Server
 from prima.lsp.scan import Page
 from prima.lsp.tables import VOCABULARIES, resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
@@ -813,7 +814,7 @@ def test_a_document_without_a_file_is_looked_through(editor: Editor) -> None:
 
 
 def test_a_defect_ends_one_request_alone(caplog: pytest.LogCaptureFixture) -> None:
-    def broken(_server: server.Server, _params: Any) -> int:
+    def broken(_server: Server, _params: Any) -> int:
         return 1 // 0
 
     assert server._safely(broken)(server.make_server(), None) is None

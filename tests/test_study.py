@@ -358,7 +358,7 @@ def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
         f' robot="{robot}"><robot at="charger"/><application src="{app}"/></scenario>'
     )
     (tmp_path / "s.txt").write_text("nothing\n")
-    with pytest.raises(UsageError, match="no table"):
+    with pytest.raises(UsageError, match="not a table"):
         list(study([tmp_path / "s.xml"]))
 
 

@@ -609,7 +609,7 @@ def test_what_is_piped_may_be_anything(tmp_path: Path) -> None:
     assert done.returncode == 1
     errors = done.stderr.decode()
     assert "not UTF-8" in errors
-    assert "2000 letters" in errors
+    assert "2000 characters" in errors
     assert "U+0000" in errors
     assert b"working memory" in done.stdout
 

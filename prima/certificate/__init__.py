@@ -1,4 +1,4 @@
-"""A certificate for a pair: what a place's application can do to the robot's own one."""
+"""Certificates: how an EA can affect an FA."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def certify(
 
 
 def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
-    """Commands that a robot cannot do, or devices of theirs that it has not."""
+    """Commands of an application that a robot does not have the devices for."""
     if not isinstance(document, Document):
         rows = profile.commands
         asked = set().union(*(part.names for part in told.parts)) - NO_COMMANDS
@@ -68,7 +68,7 @@ def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
 
 
 NO_COMMANDS = {"unit", "question", "recording", "call"}
-"""Parts of applications that are called otherwise than the Commands that they are."""
+"""Kinds of parts of applications that are not Commands."""
 
 
 def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> list[Certificate]:
@@ -92,7 +92,9 @@ def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> lis
         for name in names:
             document = read[name]
             if isinstance(document, Document) and document.kind != kind:
-                raise UsageError(f"{name}: is {other}; --with FA EA compares an FA with an EA.")
+                raise UsageError(
+                    f"{name}: this is {other}; --with FA EA compares an FA with an EA."
+                )
     return [certify(read[fa], read[ea], profile, others) for ea in eas for fa in fas]
 
 

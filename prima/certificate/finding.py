@@ -1,4 +1,4 @@
-"""What one application can do to another: how long its reactions wait, and what may starve."""
+"""How one application affects another: waits of its reactions, and starvation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def related(one: Reaction, other: Reaction) -> bool:
 
 
 def delays(own: Outline, theirs: Outline) -> list[Delay]:
-    """How long each reaction of ``own`` may wait for ``theirs``."""
+    """The waits of each reaction of ``own`` for ``theirs``."""
     mine: dict[str, list[Reaction]] = {}
     for reaction in own.reactions:
         for event in reaction.events:
@@ -101,7 +101,7 @@ def _begun_meanwhile(
 
 
 def _once(delay: Delay) -> Delay:
-    """A delay whose reasons are told once each."""
+    """A delay without duplicate reasons."""
     delay.unknown = list(dict.fromkeys(delay.unknown))
     delay.endless = list(dict.fromkeys(delay.endless))
     return delay
@@ -164,7 +164,7 @@ def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy |
 
 
 def _drives(mine: list[Price], theirs: Outline) -> bool:
-    """Whether something leaves the user, which the other may keep it from (K1, K2)."""
+    """Whether a Command leaves the user, and the other may prevent it (K1, K2)."""
     return any(one.leaves for one in mine) and any(not one.leaves for one in theirs.parts)
 
 
@@ -174,7 +174,7 @@ def _doings(theirs: Outline) -> Iterable[State]:
 
 
 def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline) -> None:
-    """All that is done in one go, and all that further events bring."""
+    """Add all activity without a wait, and that of further events."""
     delay.lasts += whole.lasts
     delay.unknown += whole.unknown
     delay.endless += whole.endless
@@ -200,7 +200,7 @@ def _first(reaction: Reaction, needed: frozenset[str]) -> int:
 
 
 def starving(own: Outline, theirs: Outline) -> list[Starving]:
-    """What of ``theirs`` may keep Commands of ``own`` that are no reactions waiting for ever."""
+    """The parts of ``theirs`` that may starve Commands of ``own`` other than reactions."""
     drives = any(part.leaves for part in own.parts)
     floors = _floors(theirs) if not drives else set(theirs.states)
     floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}

@@ -11,7 +11,7 @@ from prima.errors import Place
 
 @dataclass(slots=True)
 class Delay:
-    """How long one reaction of an application may wait for the other, and for what of it."""
+    """The wait of one reaction of an application for the other, and its cause."""
 
     event: str
     devices: tuple[str, ...]
@@ -20,7 +20,7 @@ class Delay:
     """The longest wait (ms), as far as it is known."""
     what: str
     place: Place | None
-    """The part that lasts longest; None where only the rest makes it wait."""
+    """The place of the longest part; None if only the rest causes the wait."""
     listens: bool = False
     """Whether the user may speak in it: what they say comes on top."""
     after: list[Place] = field(default_factory=list)
@@ -46,7 +46,7 @@ class Delay:
 
 @dataclass(frozen=True, slots=True)
 class Starving:
-    """What Commands that are no reactions may wait for without a bound."""
+    """A cause of an unbounded wait of Commands other than reactions."""
 
     place: Place
     what: str
@@ -61,7 +61,7 @@ class Starving:
 
 @dataclass(slots=True)
 class Certificate:
-    """What an EA can do to an FA on one robot, under the policy ``prima``. Times are in ms."""
+    """How an EA can affect an FA on one robot, under the policy ``prima``. Times are in ms."""
 
     fa: str
     ea: str
@@ -77,6 +77,6 @@ class Certificate:
     holds: list[tuple[Place, int]] = field(default_factory=list)
     starves: list[Starving] = field(default_factory=list)
     gaps: list[Gap] = field(default_factory=list)
-    """What the EA's documents do not tell."""
+    """What is unknown from the EA's documents."""
     lacks: dict[str, list[str]] = field(default_factory=dict)
-    """What the EA asks for and a robot has not, by robot; empty where it has all."""
+    """What the EA needs and a robot lacks, by robot; empty if it lacks nothing."""

@@ -1,4 +1,4 @@
-"""What may be written at a place of a text."""
+"""Completion."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from prima.scheduler.policy import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 MOST = 500
-"""Proposals of names that are given at once."""
+"""Maximum number of proposals."""
 END_TAG = re.compile(r"</([^\s<>]*)$")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
@@ -53,10 +53,10 @@ SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What may stand in place of a piece of the text.
+    """A proposal that replaces a piece of the text.
 
     ``kind`` is ``element``, ``attribute``, ``value``, ``name``, ``variable``, ``event``,
-    ``file`` or ``text``; in a ``snippet``, ``$1`` and ``$0`` are where one goes on writing.
+    ``file`` or ``text``; in a ``snippet``, ``$1`` and ``$0`` are tab stops.
     """
 
     label: str
@@ -70,7 +70,7 @@ class Proposal:
 
 
 def complete(workspace: Workspace, path: Path, offset: int, typed: str = "") -> list[Proposal]:
-    """What may be written at an offset; ``typed`` is the sign that has made the editor ask."""
+    """Proposals at an offset; ``typed`` is the character that triggered the request."""
     text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return []
@@ -78,7 +78,7 @@ def complete(workspace: Workspace, path: Path, offset: int, typed: str = "") -> 
 
 
 class _Completion:
-    """One question for what may be written."""
+    """One completion request."""
 
     def __init__(
         self, workspace: Workspace, path: Path, text: Text, offset: int, typed: str
@@ -88,7 +88,7 @@ class _Completion:
         self.offset, self.typed = offset, typed
 
     def proposals(self) -> Iterator[Proposal]:
-        """What fits."""
+        """The proposals that fit the place."""
         tag = self.page.tag_at(self.offset)
         if tag is None:
             return self._content()
@@ -125,7 +125,7 @@ class _Completion:
     def _elements(
         self, parent: Tag | None, start: int, end: int, tag: Tag | None
     ) -> Iterator[Proposal]:
-        """Elements that may stand in another; ``tag`` is what is there of one already."""
+        """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
         begin = "" if tag is not None else "<"
         alone = tag is None or (not tag.attributes and not tag.finished)
         if parent is None:
@@ -210,7 +210,7 @@ class _Completion:
             yield from self._plain(attr, self._parameters(tag))
 
     def _span(self, attr: Attr, words: bool = False) -> tuple[int, int]:
-        """What of a value a proposal replaces: all of it, or the word at the offset."""
+        """The part of a value that a proposal replaces: all of it, or the word at the offset."""
         start, end = attr.first, attr.last if attr.closed else self.offset
         if words:
             before = self.page.text[start : self.offset]
@@ -259,7 +259,7 @@ class _Completion:
         return found
 
     def _events(self, tag: Tag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
-        """Events that may come, or with ``own`` those that this document handles."""
+        """Events that may occur, or with ``own`` those that this document handles."""
         voice = dialect(self.page) == "voicexml"
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
         for kind, begins in (
@@ -294,7 +294,7 @@ class _Completion:
                 yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
 
     def _parameters(self, tag: Tag) -> list[str]:
-        """Names that a param may give: arguments of an added Command, variables of a form."""
+        """Names for a param: arguments of an added Command, variables of a form."""
         holder = tag.parent
         if holder is None:
             return []
@@ -310,7 +310,7 @@ class _Completion:
         return [name for name in found if name]
 
     def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
-        """Documents of the workspace, as seen from this one."""
+        """Documents of the workspace, as paths relative to this one."""
         span, folder = self._span(attr), self.path.parent
         for path in self.workspace.files():
             text = self.workspace.text(path)
@@ -327,7 +327,7 @@ class _Completion:
     # Variables ------------------------------------------------------------------
 
     def _visible(self, tag: Tag) -> dict[str, str]:
-        """Variables that an expression in an element may use, with where they are declared."""
+        """Variables visible to an expression in an element, with their declarations."""
         form = tag.inside("form", "menu")
         home = form.start if form else -1
         found: dict[str, str] = {}
@@ -367,7 +367,7 @@ class _Completion:
 
 
 def _where(asked: _Completion, found: Found) -> str:
-    """Where a name is given, as one says it to the author."""
+    """Where a name is defined, as text."""
     tag = found.mark.tag
     title = tag.get("title")
     at = "" if found.path == asked.path else f" in {found.path.name}"
@@ -375,7 +375,7 @@ def _where(asked: _Completion, found: Found) -> str:
 
 
 def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
-    """Values that stand in no table."""
+    """Values that are in no table."""
     if key == ("scenario", "scenario", "policy"):
         return ("prima", "prima+all", *BASELINES)
     if key == ("voicexml", "property", "name"):
@@ -384,7 +384,7 @@ def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
 
 
 def _snippet(choice: Choice) -> str:
-    """An element with what it needs, and places to go on at."""
+    """A snippet of an element with its required parts and tab stops."""
     element, place = choice.element, 1
     words = [choice.name]
     for name in _needed(choice.vocabulary, element):
@@ -396,7 +396,7 @@ def _snippet(choice: Choice) -> str:
 
 
 def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
-    """Attributes that an element cannot be without, or most often has."""
+    """Attributes that an element requires, or usually has."""
     needed = [item.name for item in element.attributes if item.required]
     if vocabulary is VOICEXML:
         for line in ALTERNATIVES.get(element.key, ()):
@@ -408,7 +408,7 @@ def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
 
 
 def _opening(choice: Choice) -> str:
-    """A whole new document."""
+    """A snippet of a new document."""
     namespace = choice.vocabulary.namespace
     begin = f'{choice.name} xmlns="{namespace}"'
     if choice.vocabulary is VOICEXML:

@@ -1,4 +1,4 @@
-"""What a word of a text means."""
+"""Hover: the meaning of a word in a text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from prima.markup.vocabulary import Element
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
 WORD = re.compile(r"[\w$.\-]+")
 MOST_LETTERS = 200
-"""Of a line of a document that is shown."""
+"""Maximum length of a line of a document that is shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Meaning:
 
 
 def hover(workspace: Workspace, path: Path, offset: int) -> Meaning | None:
-    """What the word at an offset means, or None."""
+    """The meaning of the word at an offset, or None."""
     text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return None
@@ -55,7 +55,7 @@ def _element(tag: Tag | None, start: int, end: int) -> Meaning | None:
 
 
 def element_text(element: Element) -> str:
-    """What an element is, with its source, its rules and its attributes."""
+    """The description of an element: meaning, source, rules and attributes."""
     lines = [f"**`<{element.tag}>`** {element.doc}"]
     if element.source:
         lines.append(f"*{_source(element.source)}*")
@@ -84,7 +84,7 @@ def _attribute(page: Page, tag: Tag, offset: int) -> Meaning | None:
 
 
 def attribute_text(element: Element, name: str) -> str:
-    """What an attribute is: its meaning, kind, default and bounds."""
+    """The description of an attribute: meaning, kind, default and bounds."""
     item, expression = attributes(element).get(name, (None, False))
     if item is None:
         return ""
@@ -112,7 +112,7 @@ def _bound(kind: str, value: float) -> str:
 
 
 def _name(workspace: Workspace, path: Path, mark: Mark) -> str:
-    """A name with where it is declared."""
+    """A name and its declarations."""
     lines = [f"**{mark.kind[0]} `{mark.name}`**"]
     known = _known(mark)
     if known:
@@ -125,7 +125,7 @@ def _name(workspace: Workspace, path: Path, mark: Mark) -> str:
 
 
 def _known(mark: Mark) -> str:
-    """What the language itself says of a name."""
+    """The description of a predefined name."""
     if mark.kind == ("variable",):
         return SESSION.get(mark.name, "")
     if mark.kind == ("command",) and mark.name in TABLE_4_2:

@@ -1,4 +1,4 @@
-"""Finding what a name means, who uses it, and giving it another name."""
+"""Definitions, references and renaming."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ RENAMED = {
     "gesture": "id",
     "application": "id",
 }
-"""Names that can be changed everywhere, with the simple type that a new one must be of."""
+"""Kinds of names that can be renamed, with the simple types of new names."""
 
 
-class Refused(Exception):
-    """A new name cannot be given; the message says why."""
+class RenameError(Exception):
+    """A renaming is impossible; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Spot:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A piece of a document and what shall stand there."""
+    """A piece of a document and its replacement."""
 
     path: Path
     start: int
@@ -56,7 +56,7 @@ def mark_of(workspace: Workspace, path: Path, offset: int) -> Mark | None:
 
 
 def definitions(workspace: Workspace, path: Path, offset: int) -> list[Spot]:
-    """Where what stands at an offset is given its name; the beginning of a file that is named."""
+    """The definitions of the name at an offset, or the beginning of the file named there."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         given = workspace.given(path, mark)
@@ -70,7 +70,7 @@ def definitions(workspace: Workspace, path: Path, offset: int) -> list[Spot]:
 
 
 def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[Found]:
-    """What raises an event, or gives the name in it: ``touch.head`` is the sensor head's."""
+    """What raises an event, or defines the name in it: ``touch.head`` belongs to a sensor."""
     known = workspace.known(path, ("event",), anywhere=False)
     found = [one for one in known if one.mark.name.startswith(f"{mark.name}.")]
     begin, _, last = mark.name.rpartition(".")
@@ -84,7 +84,7 @@ def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[Found]:
 def references(
     workspace: Workspace, path: Path, offset: int, declaration: bool = True
 ) -> list[Spot]:
-    """Where what stands at an offset is named; of a file, in all documents of the workspace."""
+    """All references to the name at an offset; of a file, in the whole workspace."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         return [
@@ -103,7 +103,7 @@ def references(
 
 
 def renamable(workspace: Workspace, path: Path, offset: int) -> Spot | None:
-    """What of the text at an offset can be given another name."""
+    """The piece of text at an offset that can be renamed."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         given = any(found.mark.defines for found in workspace.uses(path, mark))
@@ -119,10 +119,10 @@ def renamable(workspace: Workspace, path: Path, offset: int) -> Spot | None:
 def rename(
     workspace: Workspace, path: Path, offset: int, new: str
 ) -> tuple[list[Edit], tuple[Path, Path] | None]:
-    """Give what stands at an offset another name: the edits, and a file to be moved.
+    """Rename the name at an offset: the edits, and a file to move.
 
     Raises:
-        Refused: it cannot be called so.
+        RenameError: the new name is impossible.
     """
     if renamable(workspace, path, offset) is None:
         return [], None
@@ -133,16 +133,16 @@ def rename(
     try:
         read_value(RENAMED[kind], new)
     except ValueError as error:
-        raise Refused(f'"{new}" {error}') from None
+        raise RenameError(f'"{new}" {error}') from None
     uses = workspace.uses(path, mark)
     if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
-        raise Refused(f'There is a {kind} "{new}" already.')
+        raise RenameError(f'A {kind} "{new}" already exists.')
     edits = [Edit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 
 
 def _is_taken(workspace: Workspace, given: list[Found], new: str) -> bool:
-    """Whether something else has a name already where one of some definitions stands."""
+    """Whether a name is already taken where one of some definitions is."""
     places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
     for path in {one.path for one in given}:
         text = workspace.text(path)
@@ -159,16 +159,16 @@ def _move(
     link = _link_at(workspace, path, offset)
     target = workspace.target(path, new)
     if link is None or target is None:
-        raise Refused(f'"{new}" is not a file\'s name.')
+        raise RenameError(f'"{new}" is not a file\'s name.')
     if target == link[0]:
         return [], None
     if target.exists() or target in workspace.open:
-        raise Refused(f'There is a file "{new}" already.')
+        raise RenameError(f'A file "{new}" already exists.')
     return moved(workspace, link[0], target), (link[0], target)
 
 
 def moved(workspace: Workspace, old: Path, new: Path) -> list[Edit]:
-    """What documents must say once a file is called otherwise or stands elsewhere."""
+    """The edits of documents that name a file, once it is renamed or moved."""
     edits = []
     for path, start, end in workspace.naming(old):
         if path != old:

@@ -28,12 +28,12 @@ SHOWN = {
     **dict.fromkeys(("application", "service", "device", "adds", "gesture"), "object"),
     **dict.fromkeys(("when", "answer"), "event"),
 }
-"""Elements that a list of a document's parts shows, with what sort of thing each is."""
+"""Elements in the outline, with their kinds of symbols."""
 
 
 @dataclass(slots=True)
 class Part:
-    """An element in the list of a document's parts."""
+    """An element in the outline."""
 
     name: str
     detail: str
@@ -55,7 +55,7 @@ class Link:
 
 
 def outline(page: Page) -> list[Part]:
-    """The parts of a document, inside each other."""
+    """The outline of a document."""
     top: list[Part] = []
     made: dict[int, list[Part]] = {}
     for tag in page.tags:
@@ -89,7 +89,7 @@ def _part(tag: Tag) -> Part:
 
 
 def links(workspace: Workspace, path: Path) -> list[Link]:
-    """The files that a document names and that are there."""
+    """The existing files that a document names."""
     return [
         Link(start, end, target)
         for target, start, end in workspace.named(path)

@@ -1,4 +1,4 @@
-"""What is wrong with a document while it is written: what ``prima validate`` says of it."""
+"""The problems that ``prima validate`` reports, for documents being written."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """A problem with the piece of text that it is about."""
+    """A problem and its piece of text."""
 
     problem: Problem
     start: int
@@ -28,7 +28,7 @@ class Spot:
 
 
 def is_ours(page: Page) -> bool:
-    """Whether a text is, or is to become, a document of PRIMA's or VoiceXML's."""
+    """Whether a text is, or will be, a document of PRIMA or VoiceXML."""
     root = page.root
     if root is None:
         return False
@@ -42,9 +42,9 @@ def is_ours(page: Page) -> bool:
 
 
 def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
-    """All problems that a document brings to light, by the file in which they are.
+    """All problems found by validating a document, by file.
 
-    The texts of open documents count in place of their files.
+    The texts of open documents replace their files.
     """
     text = workspace.text(path)
     if text is None or not is_ours(text.top):
@@ -70,7 +70,7 @@ def _resolved(path: Path, file: str) -> Path:
 
 
 def spot(lines: Lines, problem: Problem) -> Spot:
-    """Where a problem begins and ends in a text."""
+    """The extent of a problem in a text."""
     text = lines.text
     start = lines.place(problem.place.line, problem.place.column)
     before, here = text[start - 1 : start], text[start : start + 1]
@@ -91,7 +91,7 @@ def spot(lines: Lines, problem: Problem) -> Spot:
 
 
 def spots(workspace: Workspace, path: Path, problems: list[Problem]) -> list[Spot]:
-    """Problems of a file with the pieces of its text that they are about."""
+    """Problems of a file with their pieces of text."""
     text = workspace.text(path)
     if text is None:
         return []

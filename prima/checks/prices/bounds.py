@@ -117,23 +117,24 @@ def loops(outline: Outline) -> list[Loop]:
 
 
 def _loops(outline: Outline) -> list[Loop]:
-    found = []
-    for states in _cycles(outline):
-        names = frozenset(state.name for state in states)
-        parts = [part for state in _with_called(outline, states) for part in state.parts]
-        first = min(states, key=lambda state: state.node.index)
-        told = [one for state in states for one in state.repeats]
-        if len(states) == 1 and first.name not in first.goes and told:
-            found.append(_loop(told[0].place, told[0].reason, parts, names))
-            continue
-        ways = [node for state in states for to, node in state.goes.items() if to in names]
-        place = min(ways, key=lambda node: node.index).place if ways else first.node.place
-        more = ", ..." if len(states) > MANY_STATES else ""
-        listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
-        follows = "follow one another" if len(states) > 1 else "follows itself"
-        what = f"{listed} {follows} without a wait for an event"
-        found.append(_loop(place, what, parts, names))
+    found = (_loop_of(outline, states) for states in _cycles(outline))
     return [loop for loop in found if loop.devices]
+
+
+def _loop_of(outline: Outline, states: list[State]) -> Loop:
+    """The loop of states that lead to each other, or of one that asks again and again."""
+    names = frozenset(state.name for state in states)
+    parts = [part for state in _with_called(outline, states) for part in state.parts]
+    first = min(states, key=lambda state: state.node.index)
+    repeats = [one for state in states for one in state.repeats]
+    if len(states) == 1 and first.name not in first.goes and repeats:
+        return _loop(repeats[0].place, repeats[0].reason, parts, names)
+    ways = [node for state in states for to, node in state.goes.items() if to in names]
+    place = min(ways, key=lambda node: node.index).place if ways else first.node.place
+    more = ", ..." if len(states) > MANY_STATES else ""
+    listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
+    follows = "follow one another" if len(states) > 1 else "follows itself"
+    return _loop(place, f"{listed} {follows} without a wait for an event", parts, names)
 
 
 def _with_called(outline: Outline, states: list[State]) -> list[State]:
@@ -167,34 +168,54 @@ def _cycles(outline: Outline) -> list[list[State]]:
 
 
 def _rings(outline: Outline) -> Iterator[list[str]]:
-    """The states in sets of those that lead to each other (Tarjan's strongly connected components)."""
-    number: dict[str, int] = {}
-    lowest: dict[str, int] = {}
-    kept: list[str] = []
-    done: set[str] = set()
+    """Sets of states that lead to each other (Tarjan's strongly connected components)."""
+    search = _RingSearch(outline)
     for start in outline.states:
-        way = [(start, iter(_ways(outline, start)))] if start not in number else []
-        while way:
-            name, left = way[-1]
-            if name not in number:
-                number[name] = lowest[name] = len(number)
-                kept.append(name)
-            to = next((one for one in left if one not in done), None)
+        yield from search.rings(start)
+
+
+class _RingSearch:
+    """Tarjan's algorithm, without recursion."""
+
+    def __init__(self, outline: Outline) -> None:
+        self._outline = outline
+        self._number: dict[str, int] = {}
+        self._lowest: dict[str, int] = {}
+        self._kept: list[str] = []
+        self._done: set[str] = set()
+
+    def rings(self, start: str) -> Iterator[list[str]]:
+        """The rings reached from a state that have not been returned before."""
+        path = [] if start in self._number else [self._enter(start)]
+        while path:
+            name, left = path[-1]
+            to = next((one for one in left if one not in self._done), None)
             if to is None:
-                way.pop()
-                if way:
-                    above = way[-1][0]
-                    lowest[above] = min(lowest[above], lowest[name])
-                if lowest[name] == number[name]:
-                    ring = [kept.pop()]
-                    while ring[-1] != name:
-                        ring.append(kept.pop())
-                    done.update(ring)
-                    yield ring
-            elif to in number:
-                lowest[name] = min(lowest[name], number[to])
+                path.pop()
+                if path:
+                    self._lower(path[-1][0], self._lowest[name])
+                yield from self._ring(name)
+            elif to in self._number:
+                self._lower(name, self._number[to])
             else:
-                way.append((to, iter(_ways(outline, to))))
+                path.append(self._enter(to))
+
+    def _enter(self, name: str) -> tuple[str, Iterator[str]]:
+        self._number[name] = self._lowest[name] = len(self._number)
+        self._kept.append(name)
+        return name, iter(_ways(self._outline, name))
+
+    def _lower(self, name: str, number: int) -> None:
+        self._lowest[name] = min(self._lowest[name], number)
+
+    def _ring(self, name: str) -> Iterator[list[str]]:
+        """The ring that a state closes, if it is the first of one."""
+        if self._lowest[name] == self._number[name]:
+            ring = [self._kept.pop()]
+            while ring[-1] != name:
+                ring.append(self._kept.pop())
+            self._done.update(ring)
+            yield ring
 
 
 def _ways(outline: Outline, name: str) -> list[str]:
