@@ -70,6 +70,38 @@ map_option = click.option(
 )
 MAPS = '--map works only with --fa and --ea. In a scenario write <application src="..." uri="https://..."/>.'
 """The error for ``--map`` with a scenario."""
+fa_option = click.option(
+    "--fa",
+    "fas",
+    multiple=True,
+    type=click.Path(),
+    help="Run this as the robot's application (FA).",
+)
+ea_option = click.option(
+    "--ea",
+    "eas",
+    multiple=True,
+    type=click.Path(),
+    help="Run this as the place's application (EA).",
+)
+bound_option = click.option(
+    "--bound",
+    type=click.IntRange(1),
+    help="Let no application wait longer than this many loops (rule E4).",
+)
+hosts_option = click.option(
+    "--allow-host",
+    "hosts",
+    metavar="HOST[:PORT]",
+    multiple=True,
+    help="Let VoiceXML documents fetch from this host. By default no network is used.",
+)
+isolate_option = click.option(
+    "--isolate",
+    type=click.Choice(["ea", "all", "none"]),
+    default="ea",
+    help="Run scripts in a separate process: for each EA, for each application, or for none.",
+)
 why_option = click.option(
     "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
 )

@@ -12,10 +12,15 @@ from click.exceptions import Exit
 from prima.cli.common import (
     MAPS,
     PATIENCE,
+    bound_option,
     check_output,
     columns,
     duration_option,
+    ea_option,
+    fa_option,
     format_option,
+    hosts_option,
+    isolate_option,
     limit_option,
     map_option,
     put,
@@ -42,20 +47,8 @@ FOLDER_ENDINGS = ("/", os.sep)
 
 @click.command()
 @click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1, type=click.Path())
-@click.option(
-    "--fa",
-    "fas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the robot's application (FA).",
-)
-@click.option(
-    "--ea",
-    "eas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the place's application (EA).",
-)
+@fa_option
+@ea_option
 @click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
 @click.option(
     "-o",
@@ -70,26 +63,11 @@ FOLDER_ENDINGS = ("/", os.sep)
     shell_complete=suggesting(*POLICIES),
     help=f"The mediator's policy: {USAGE}. Repeat for a run under each.",
 )
-@click.option(
-    "--bound",
-    type=click.IntRange(1),
-    help="Let no application wait longer than this many loops (rule E4).",
-)
+@bound_option
 @duration_option("--patience", PATIENCE)
 @why_option
-@click.option(
-    "--allow-host",
-    "hosts",
-    metavar="HOST[:PORT]",
-    multiple=True,
-    help="Let VoiceXML documents fetch from this host. By default no network is used.",
-)
-@click.option(
-    "--isolate",
-    type=click.Choice(["ea", "all", "none"]),
-    default="ea",
-    help="Run scripts in a separate process: for each EA, for each application, or for none.",
-)
+@hosts_option
+@isolate_option
 @click.option(
     "--from",
     "lists",

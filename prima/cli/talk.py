@@ -14,7 +14,10 @@ from prima.cli.common import (
     clean,
     coloured,
     columns,
+    ea_option,
+    fa_option,
     format_option,
+    hosts_option,
     limit_option,
     map_option,
     put,
@@ -42,20 +45,8 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 
 @click.command()
 @click.argument("scenario", type=click.Path(), required=False)
-@click.option(
-    "--fa",
-    "fas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the robot's application (FA).",
-)
-@click.option(
-    "--ea",
-    "eas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the place's application (EA).",
-)
+@fa_option
+@ea_option
 @click.option("--world", type=click.Path(), help="Let --fa and --ea run in this world.")
 @click.option("--robot", type=click.Path(), help="Let --fa and --ea run on this robot.")
 @click.option(
@@ -74,13 +65,7 @@ COLOURS = {"U": "cyan", "E": "yellow"}
     help=f"The mediator's policy: {USAGE}.",
 )
 @why_option
-@click.option(
-    "--allow-host",
-    "hosts",
-    metavar="HOST[:PORT]",
-    multiple=True,
-    help="Let VoiceXML documents fetch from this host. By default no network is used.",
-)
+@hosts_option
 @map_option
 @limit_option
 @format_option
