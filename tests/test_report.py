@@ -346,7 +346,7 @@ def test_a_run_that_comes_out_otherwise_has_only_its_reports() -> None:
 
 def test_another_scenario_is_refused() -> None:
     other = api.load_scenario(SCENARIOS / "leaving-the-museum.xml")
-    with pytest.raises(UsageError, match="is no file of the run"):
+    with pytest.raises(UsageError, match="is not a file of the run"):
         make([run()], [other])
     records = json.loads(json.dumps(run().records))
     records[0]["data"]["files"]["../fa/follow.xml"] = "0" * 64

@@ -10,7 +10,7 @@ import errno
 import json
 import os
 import signal
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
@@ -64,11 +64,20 @@ def run_batch(
             partial(_remove, parts),
         )
         with closing(made):
-            for job, result in made:
-                row = _dead(job, result) if isinstance(result, Died) else result
-                yield row
-                if row.full:
-                    raise UsageError("Nothing more can be written; make room, then --resume.")
+            yield from _rows(made)
+
+
+def _rows(made: Iterable[tuple[Job, Row | Died]]) -> Iterator[Row]:
+    """The rows of results.
+
+    Raises:
+        UsageError: the disk is full.
+    """
+    for job, result in made:
+        row = _dead(job, result) if isinstance(result, Died) else result
+        yield row
+        if row.full:
+            raise UsageError("Nothing more can be written; make room, then --resume.")
 
 
 @contextmanager

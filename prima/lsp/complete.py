@@ -29,7 +29,7 @@ from prima.lsp.tables import (
     values,
 )
 from prima.lsp.workspace import Found, Text, Workspace
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.vocabulary import Element, Vocabulary
 from prima.scheduler.policy import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
@@ -164,25 +164,17 @@ class _Completion:
             return
         given = {attr.name for attr in tag.attributes if attr is not now}
         bare = now is None or now.first < 0
-        names: list[tuple[str, Attribute | None, bool]] = [
-            (name, *entry) for name, entry in attributes(element).items()
-        ]
-        if tag.parent is None:
-            names += [(name, None, False) for name in ("xmlns", "xml:lang")]
-        for name, item, expression in names:
+        for name, (item, expression) in attributes(element).items():
             other = name.removesuffix("-expr") if expression else f"{name}-expr"
-            if name in given or (other in given and item is not None and item.dynamic):
+            if name in given or (other in given and item.dynamic):
                 continue
-            yield Proposal(
-                name,
-                "attribute",
-                start,
-                end,
-                f'{name}=""' if bare else name,
-                f'{name}="$1"$0' if bare else "",
-                "required" if item is not None and item.required else "",
-                attribute_text(element, name) if item is not None else "",
-            )
+            detail = "required" if item.required else ""
+            doc = attribute_text(element, name)
+            yield _attribute(name, start, end, bare, detail, doc)
+        if tag.parent is None:
+            for name in ("xmlns", "xml:lang"):
+                if name not in given:
+                    yield _attribute(name, start, end, bare)
 
     # Values -------------------------------------------------------------------
 
@@ -364,6 +356,14 @@ class _Completion:
             known = dict.fromkeys(SHADOWS, of)
         for name, detail in known.items():
             yield Proposal(name, "variable", start, end, name, detail=detail)
+
+
+def _attribute(
+    name: str, start: int, end: int, bare: bool, detail: str = "", doc: str = ""
+) -> Proposal:
+    """An attribute; ``bare`` if it needs a value."""
+    insert, snippet = (f'{name}=""', f'{name}="$1"$0') if bare else (name, "")
+    return Proposal(name, "attribute", start, end, insert, snippet, detail, doc)
 
 
 def _where(asked: _Completion, found: Found) -> str:

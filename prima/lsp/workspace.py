@@ -6,7 +6,6 @@ import os
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote, unquote, urlsplit
@@ -354,21 +353,33 @@ def _walk(roots: Iterable[Path], most: int) -> Iterator[Path]:
     folders = files = 0
     while waiting and folders < most:
         folders += 1
-        with suppress(OSError, ValueError):
-            for entry in sorted(os.scandir(waiting.popleft()), key=lambda entry: entry.name):
-                if _is_searched(entry):
-                    waiting.append(entry.path)
-                elif _is_document(entry):
-                    files += 1
-                    if files > MOST_FILES:
-                        return
-                    yield Path(entry.path).resolve()
+        entries = _entries(waiting.popleft())
+        waiting += [entry.path for entry in entries if _is_searched(entry)]
+        found = [Path(entry.path).resolve() for entry in entries if _is_document(entry)]
+        yield from found[: MOST_FILES - files]
+        files += len(found)
+        if files > MOST_FILES:
+            return
+
+
+def _entries(folder: str) -> list[os.DirEntry[str]]:
+    """The entries of a folder by name; none if it cannot be read."""
+    try:
+        return sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except (OSError, ValueError):
+        return []
 
 
 def _is_searched(entry: os.DirEntry[str]) -> bool:
     hidden = entry.name.startswith(".") or entry.name in SKIPPED
-    return entry.is_dir(follow_symlinks=False) and not hidden
+    try:
+        return not hidden and entry.is_dir(follow_symlinks=False)
+    except OSError:
+        return False
 
 
 def _is_document(entry: os.DirEntry[str]) -> bool:
-    return entry.name.lower().endswith(SUFFIXES) and entry.is_file()
+    try:
+        return entry.name.lower().endswith(SUFFIXES) and entry.is_file()
+    except OSError:
+        return False

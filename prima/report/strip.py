@@ -1,4 +1,4 @@
-"""A part of a run over time, in letters: a lane for each application, events above, floor below."""
+"""A part of a run as a text timeline: events, a lane for each application, floor."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 @dataclass(slots=True)
 class Delay:
-    """An event, and how long (s) until an application's first Command because of it started."""
+    """An event, and the time (s) until an application's first Command because of it."""
 
     event: str
     serial: int
@@ -23,20 +23,20 @@ class Delay:
 
 @dataclass(slots=True)
 class Criteria:
-    """What a run did to units, streams and the channel, and how soon it answered."""
+    """The effects of a run on units, streams and the channel, and its reaction times."""
 
     units_cut: int = 0
     """Behaviors that lost a device to another application while they ran."""
     restarts: int = 0
     """Behaviors that gave way because their author allowed it (X2)."""
     broken: int = 0
-    """Streams broken by no reaction."""
+    """Streams broken other than by a reaction."""
     broken_waiting: int = 0
     """Waits for a server into which another application came by no reaction (first pattern)."""
     unfaced: int = 0
     """Conversations begun without the channel (second pattern)."""
     left: int = 0
-    """Conversations that the robot went away from before they were over."""
+    """Conversations that the robot left before their end."""
     reactions: int = 0
     """Events that some application reacted to."""
     reaction_mean: float = 0.0
@@ -46,4 +46,4 @@ class Criteria:
     response_mean: float = 0.0
     response_max: float = 0.0
     delays: list[Delay] = field(default_factory=list)
-    """How soon each application answered each event."""
+    """The delay of each application's reaction to each event."""

@@ -12,7 +12,7 @@ from prima.transcript.record import Entry
 
 @dataclass(slots=True)
 class _Tree:
-    """A Communication Stream as far as a user can tell."""
+    """A Communication Stream as a user perceives it."""
 
     name: str
     app: str
@@ -67,7 +67,7 @@ class _Wait:
 
 @dataclass(slots=True)
 class _Event:
-    """Something that applications may react to."""
+    """An event that applications may react to."""
 
     name: str
     time: float
@@ -86,7 +86,7 @@ MOST_STREAMS = 256
 
 
 class Observer:
-    """Goes through the records of one run, in order; it remembers what goes on, and no more.
+    """Counts the criteria of one run in bounded memory.
 
     Args:
         delays: whether each reaction is kept in the result, beside their number and times.
@@ -129,7 +129,7 @@ class Observer:
         }
 
     def add(self, record: Entry) -> None:
-        """Take in one record."""
+        """Add one record."""
         self._now = record.time
         if do := self._do.get(record.phase):
             do(record)
@@ -145,7 +145,7 @@ class Observer:
         self._end(record, again=True)
 
     def result(self) -> Criteria:
-        """What has been counted so far."""
+        """The result so far."""
         found = self.found
         unfaced = found.unfaced + sum(tree.unfaced for tree in self._trees.values())
         return replace(

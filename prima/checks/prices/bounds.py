@@ -1,4 +1,4 @@
-"""How long an application goes on without waiting for an event, and where it may never end."""
+"""Bounds: how long an application runs without waiting for an event, and endless loops."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from prima.checks.prices.model import Gap, Loop, Outline, Price, Reaction, State
 from prima.errors import Place
 
 MANY_STATES = 8
-"""Of states that follow one another, so many are named."""
+"""Maximum number of states named in a loop."""
 MOST_COMPARED = 1_000_000
-"""Reactions times states beyond which no reaction is followed alone."""
+"""Limit of reactions times states above which reactions are not followed separately."""
 
 
 @dataclass(slots=True)
 class Busy:
-    """What an application may do in one go: its length (ms), and why it may be longer."""
+    """Activity without a wait: its duration (ms), and why it may be longer."""
 
     lasts: int = 0
     endless: list[Gap] = field(default_factory=list)
@@ -26,14 +26,14 @@ class Busy:
 
 
 def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
-    """All states that some lead to without a wait, themselves included.
+    """All states reachable without a wait, including the start states.
 
-    What a subdialog leads to comes back to whoever may have called it.
+    A subdialog returns to all its possible callers.
     """
     before, callers = _backwards(outline)
     found: set[str] = set()
     leading: set[str] = set()
-    """States that lead to one that has been found: who calls them is come back to."""
+    """States that lead to one that has been found; they may return to their callers."""
     onward, backward = [*starts], list[str]()
     while onward or backward:
         if onward:
@@ -50,7 +50,7 @@ def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
 
 
 def _backwards(outline: Outline) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
-    """By states, those that lead to them in one step, and those that call them."""
+    """The predecessors and the callers of each state."""
     before: dict[str, list[str]] = {}
     callers: dict[str, list[str]] = {}
     for name, state in outline.states.items():
@@ -70,7 +70,7 @@ def _after(outline: Outline, reaction: Reaction) -> list[State]:
 
 
 def busy_after(outline: Outline, reaction: Reaction) -> Busy:
-    """How long an application is busy because of an event at most."""
+    """The longest activity caused by an event."""
     return _busy(outline, _after(outline, reaction))
 
 
@@ -85,7 +85,7 @@ def busy_after_each(outline: Outline, reactions: Sequence[Reaction]) -> list[Bus
 
 
 def busy_at_all(outline: Outline) -> Busy:
-    """How long an application is busy in one go at most, whatever begins it."""
+    """The longest activity without a wait, whatever starts it."""
     does = [reaction.does for reaction in outline.reactions]
     return _busy(outline, [*outline.states.values(), *does, *outline.wakes])
 
@@ -110,7 +110,7 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
 
 
 def loops(outline: Outline) -> list[Loop]:
-    """Cycles of states without a wait, and questions that are asked again without an end."""
+    """Cycles of states without a wait, and questions repeated endlessly."""
     if outline.loops is None:
         outline.loops = _loops(outline)
     return outline.loops
@@ -138,7 +138,7 @@ def _loop_of(outline: Outline, states: list[State]) -> Loop:
 
 
 def _with_called(outline: Outline, states: list[State]) -> list[State]:
-    """Some states, and those that their subdialogs lead to: they are done in every round."""
+    """Some states, and those that their subdialogs lead to, which run in every round."""
     called: set[str] = set()
     left = [callee for state in states for callee in state.calls]
     while left:
@@ -157,7 +157,7 @@ def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) ->
 
 
 def _cycles(outline: Outline) -> list[list[State]]:
-    """The states that lead back to themselves, by what leads round together."""
+    """The cycles of states."""
     order = {name: at for at, name in enumerate(outline.states)}
     rings = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
     return [
@@ -219,6 +219,6 @@ class _RingSearch:
 
 
 def _ways(outline: Outline, name: str) -> list[str]:
-    """The states that one leads to in one step."""
+    """The successors of a state."""
     state = outline.states[name]
     return [to for to in (*state.goes, *state.calls) if to in outline.states]
