@@ -903,7 +903,7 @@ WRONG = [
     (["app.xml", "-o", "app.xml", "--to", "dot"], "the picture is made from this file"),
     (["app.xml", "-o", "no/where.svg"], "cannot be written"),
     (["cut.jsonl"], "cut.jsonl:4"),
-    (["json.json"], "no transcript"),
+    (["json.json"], "not a transcript"),
 ]
 
 

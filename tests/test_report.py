@@ -254,9 +254,9 @@ def test_a_transcript_that_was_cut_off_is_shown_as_far_as_it_goes(keep: int) -> 
 
 
 def test_too_much_is_refused_with_a_remedy() -> None:
-    with pytest.raises(UsageError, match="a report shows one run or compares two"):
+    with pytest.raises(UsageError, match="A report shows one run or compares two"):
         make([run()] * 3)
-    with pytest.raises(UsageError, match="a report shows one run or compares two"):
+    with pytest.raises(UsageError, match="A report shows one run or compares two"):
         make([])
     with pytest.raises(UsageError, match="one for each"):
         make([run()], [api.load_scenario(SCENARIO)] * 2)
