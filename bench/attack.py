@@ -7,7 +7,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tests.attacks import ATTACKS, attempt
+from tests.helpers.attacks import ATTACKS, attempt
 
 
 def main() -> int:

@@ -10,6 +10,7 @@ from bench import (
     batch,
     isolation,
     large,
+    live,
     matching,
     mediation,
     peers,
@@ -436,6 +437,36 @@ def isolated() -> list[Row]:
     ]
 
 
+def lives() -> list[Row]:
+    """Live runs: see :mod:`bench.live`."""
+    return [
+        Row(
+            "Live: from an event to its order, ten applications",
+            "ms",
+            Call(live.event_to_order),
+            most=1,
+            rounds=3,
+        ),
+        Row(
+            "Live: how late instants are, 99th percentile",
+            "ms",
+            Call(live.lateness),
+            most=10,
+            rounds=3,
+        ),
+        Row("Live: a core while nothing happens", "of it", Call(live.idle), most=0.02, rounds=1),
+        Row(
+            "Live: memory after 24 hours over that after one",
+            "times",
+            Call(live.growth, (24,), (3,)),
+            most=1.1,
+            rounds=1,
+        ),
+        Row("Live: journal, an instant of ten records", "µs", Call(live.journal_cost, (False,))),
+        Row("Live: the same with --sync", "µs", Call(live.journal_cost, (True,))),
+    ]
+
+
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Events": events,
     "Load": loads,
@@ -448,4 +479,5 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Editor": editor,
     "Large documents": large_ones,
     "Isolation": isolated,
+    "Live": lives,
 }

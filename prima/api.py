@@ -384,6 +384,9 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
     head = transcript.records[0]
     if head["phase"] != "run":
         raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
+    if head["data"].get("redacted"):
+        message = "what users said was left out of this journal, so it cannot be run again."
+        raise UsageError(f"{transcript.name}: {message}")
     if scenario is None:
         from prima.live.visit import reloaded
 

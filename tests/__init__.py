@@ -1,6 +1,13 @@
-"""The tests."""
+"""The tests: a folder for each room of the package, and some beside them (`tests/house`)."""
 
+from pathlib import Path
+
+import pytest
 from hypothesis import settings
 
+ROOT = Path(__file__).resolve().parent.parent
+"""The checkout."""
+
+pytest.register_assert_rewrite("tests.helpers", "tests.invariants")
 settings.register_profile("untimed", deadline=None)  # a busy machine is no fault
 settings.load_profile("untimed")

@@ -32,8 +32,8 @@ SCHEDULER = ROOT / "prima" / "scheduler"
 RULES = ROOT / "tests" / "scheduler"
 TESTS = (
     *sorted(RULES.glob("test_*.py")),
-    ROOT / "tests" / "test_figures.py",
-    ROOT / "tests" / "test_cases.py",
+    ROOT / "tests" / "cases" / "test_figures.py",
+    ROOT / "tests" / "cases" / "test_cases.py",
 )
 """The tests that hold the rules, the quickest first."""
 NOT_TRIED = "not test_a_test_named_after_the_rule and not replaying"

@@ -63,6 +63,7 @@ FASTEST = 1000.0
 @click.option(
     "--sync", is_flag=True, help="Have each instant on the disk before it is carried out."
 )
+@click.option("--redact", is_flag=True, help="Leave out of the journal what users say.")
 @click.option(
     "--driver",
     "drivers",
@@ -97,6 +98,7 @@ def live(
     until: int | None,
     late: int | None,
     sync: bool,
+    redact: bool,
     drivers: tuple[str, ...],
     policy: str | None,
     bound: int | None,
@@ -129,9 +131,8 @@ def live(
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps)
     _check_usage(chosen, journal, output, checks)
     web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
-    settings = Settings(
-        policy, bound, patience, isolate, speed, until, sync, drivers=drivers, web=web
-    )
+    settings = Settings(policy, bound, patience, isolate, speed, until, sync, web=web)
+    settings.drivers, settings.redact = drivers, redact
     if late is not None:
         settings.late = late or None
     if checks:

@@ -17,6 +17,27 @@ from prima.messages import Emergency, Inbound, Json, Narrated, Record
 from prima.session import Session
 from prima.transcript.lines import finished, line, read_lines
 
+REDACTED = "[redacted]"
+"""What stands for what a user has said."""
+SPOKEN = ("utterance", "alternatives", "recorded", "text")
+"""Where the data of records have what a user has said."""
+
+
+def redacted(record: Record) -> Record:
+    """A record without what users say: its time, and what grammars made of it, stay.
+
+    Such a journal can be shown and measured; it cannot be run again, nor gone on with.
+    """
+    if record["phase"] == "run":
+        return {**record, "data": {**record["data"], "redacted": True}}
+    data = record.get("data")
+    if isinstance(data, dict) and any(name in data for name in SPOKEN):
+        kept = {name: value for name, value in data.items() if name not in SPOKEN}
+        record = {**record, "data": kept or None}
+    if record["phase"] == "event" and record["event"] == "speech":
+        record = {**record, "text": REDACTED}
+    return record
+
 
 class Journal:
     """A file that grows by each instant's records.
@@ -99,6 +120,9 @@ def read_broken(path: str) -> Broken:
     records = list(read_lines(path, text.splitlines(keepends=True)))
     if records[-1]["phase"] == "over":
         raise UsageError(f"{path}: this run has ended; there is nothing to go on with.")
+    if records[0].get("data", {}).get("redacted"):
+        message = "what users said was left out of this journal, so its run cannot go on."
+        raise UsageError(f"{path}: {message}")
     if "live" not in records[0].get("data", {}):
         raise UsageError(f"{path}: this is not the journal of a live run.")
     return Broken(path, records, kept)

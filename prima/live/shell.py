@@ -137,15 +137,14 @@ class Shell:
                     self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
 
     def _spawn(self, what: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.ensure_future(self._contained(what))
+        task = asyncio.ensure_future(what)
         self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(self._note_end)
 
-    async def _contained(self, what: Coroutine[Any, Any, None]) -> None:
+    def _note_end(self, task: asyncio.Task[None]) -> None:
         """A driver that fails in the background does not end the run."""
-        try:
-            await what
-        except Exception as error:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()):
             self._warn(f"A driver has failed: {_why(error)}.")
 
     def _lose(self, driver: Driver) -> None:
@@ -204,5 +203,5 @@ async def open_driver(driver: Driver) -> None:
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {error}") from None
 
 
-def _why(error: Exception) -> str:
+def _why(error: BaseException) -> str:
     return str(error) or type(error).__name__

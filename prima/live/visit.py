@@ -18,7 +18,7 @@ from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
-from prima.live.journal import Broken, Journal, catch_up, going_on, known
+from prima.live.journal import Broken, Journal, catch_up, going_on, known, redacted
 from prima.live.shell import LATE_MS, Shell
 from prima.loading import Loaded, load_scenario, stage
 from prima.loading.files import in_place_of_files, read_file
@@ -139,6 +139,8 @@ class Settings:
     """Whether each instant is on the disk before it is carried out."""
     late: int | None = LATE_MS
     """How late (ms) an instant may be before that is told."""
+    redact: bool = False
+    """Whether what users say is left out of journal and rows."""
     drivers: tuple[str, ...] = ()
     """Python files that define drivers."""
     web: Web | None = None
@@ -175,6 +177,8 @@ class Visit:
         """
 
         def keep(records: list[Record]) -> None:
+            if self.settings.redact:
+                records = [redacted(record) for record in records]
             if self.journal is not None:
                 self.journal.write(records)
             sink(records)

@@ -519,7 +519,7 @@ def stage(
             _refuse_same_id(given)
         raise
     problems = [one for one in loaded.problems if one.code != "other-kind"]
-    for (kind, _), document in zip(given, loaded.cast.documents, strict=True):
+    for (kind, _), document in zip(given, loaded.cast.documents, strict=False):
         own, place = document.node.get("kind"), document.node.attribute_place("kind")
         remedy = f'Name it with --{own}, or write kind="{kind}".'
         problems += _other_kind(document, "The document", f"--{kind} names it", place, remedy)

@@ -194,3 +194,62 @@ def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
     ran = prima("live", "--robot", ROBOT, "--ea", hello, "-o", "/dev/full")
     assert ran.returncode == 3
     assert "/dev/full: cannot be written: No space left on device" in ran.stderr
+
+
+def test_the_driver_of_the_documentation_works(hello: str, tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "live.md").read_text()
+    code = page.split("```python\n")[1].split("```")[0]
+    (tmp_path / "my_robot.py").write_text(code)
+    words = ["--driver", str(tmp_path / "my_robot.py")]
+    away = prima(
+        "live", *words, "--robot", robot_with(tmp_path, '<driver kind="my-robot"/>'), "--ea", hello
+    )
+    assert (away.returncode, 'write its address="..."' in away.stderr) == (3, True)
+    robot = robot_with(tmp_path, '<driver kind="my-robot" address="here"/>')
+    ran = prima("live", *words, "--robot", robot, "--ea", hello, "-o", str(tmp_path / "a.jsonl"))
+    assert ran.returncode == 0, ran.stderr
+    assert "stop everything here" in ran.stdout
+    assert prima("replay", str(tmp_path / "a.jsonl")).returncode == 0
+
+
+def test_what_users_say_can_be_left_out_of_the_journal(tmp_path: Path) -> None:
+    scenario, journal = "documents/scenarios/library-alone.xml", tmp_path / "visit.jsonl"
+    ran = prima("live", "--redact", "--speed", "50", scenario, "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    records = [json.loads(text) for text in journal.read_text().splitlines()]
+    spoken = [one for one in records if one.get("event") == "speech"]
+    assert spoken
+    assert {one["text"] for one in spoken} == {"[redacted]"}
+    answers = [one["data"] for one in records if one.get("outcome") == "filled"]
+    assert answers
+    assert all("utterance" not in data and "value" in data for data in answers)
+    for words in (["replay", str(journal)], ["live", "--resume", str(journal)]):
+        refused = prima(*words)
+        assert refused.returncode == 2
+        assert "left out of this journal" in refused.stderr or "has ended" in refused.stderr
+
+
+def test_an_area_of_the_site_brings_its_application(tmp_path: Path) -> None:
+    world = tmp_path / "site.xml"
+    (tmp_path / "hello.xml").write_text(HELLO)
+    world.write_text(
+        """<world xmlns="urn:prima:world:1" version="1.0" id="site">
+  <place id="hall" x="1" y="1"/><place id="shop" x="4" y="1"/><way from="hall" to="shop"/>
+  <area id="the-shop" title="the shop" x1="3" y1="0" x2="5" y2="2"
+        application="hello.xml"/>
+</world>"""
+    )
+    goes = HELLO.replace('kind="ea"', 'kind="fa"').replace('id="hello"', 'id="goes"')
+    goes = goes.replace('<turn angle="30"/>', '<topological-move to="shop"/>')
+    (tmp_path / "goes.xml").write_text(goes)
+    words = ["--robot", ROBOT, "--world", str(world), "--fa", str(tmp_path / "goes.xml")]
+    journal = tmp_path / "visit.jsonl"
+    ran = prima("live", *words, "--speed", "20", "--until", "20s", "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    records = [json.loads(text) for text in journal.read_text().splitlines()]
+    loads = [one for one in records if one["phase"] == "load" and one.get("inbound")]
+    assert [(one["app"], (one.get("data") or {}).get("place")) for one in loads] == [
+        ("goes", None),
+        ("hello", "the shop"),
+    ]
+    assert prima("replay", str(journal)).returncode == 0

@@ -10,9 +10,16 @@ from dataclasses import replace
 import pytest
 
 from prima.language.commands import TABLE_4_2
-from prima.messages import Command, Step
+from prima.messages import (
+    Command,
+    Step,
+)
 from prima.scheduler import rules
-from tests.stage import Stage, ask, command, move, say, search
+from tests.helpers.generated.plays import Play, perform
+from tests.helpers.generated.world import World
+from tests.helpers.plays import HEAD, told
+from tests.helpers.stage import Stage, ask, command, move, say, search
+from tests.invariants import check
 
 EVENT = 7
 
@@ -113,3 +120,30 @@ def test_k1_one_part_that_searches_is_enough(searches: bool) -> None:
 def test_k2_leaving_commands_have_low_priority() -> None:
     low = {name for name, row in TABLE_4_2.items() if row.priority == 0}
     assert low == {"topological-move", "set-position", "set-position-and-direction"}
+
+
+def test_a_question_in_a_unit_keeps_the_robot_from_leaving() -> None:
+    # Without the <iu> the question goes first, having the higher priority (S2a), and K1 holds
+    # the move. In a unit it starts after the selection: the robot drives off for one loop.
+    asks = '<field name="q" type="boolean"><prompt>Well?</prompt></field>'
+    moves = '<block><topological-move to="room"/></block>'
+    documents = (
+        HEAD.format("fa", f'<form id="f1"><iu>{asks}</iu></form>'),
+        HEAD.format("ea", f'<form id="f1">{moves}</form>'),
+    )
+    run = perform(Play(documents, (0, 0), (), World()))
+    assert check(run.records) == []
+
+
+def test_the_same_question_without_a_unit_keeps_the_robot_from_leaving() -> None:
+    asks = '<field name="q" type="boolean"><prompt>Well?</prompt></field>'
+    moves = '<block><topological-move to="room"/></block>'
+    documents = (
+        HEAD.format("fa", f'<form id="f1">{asks}</form>'),
+        HEAD.format("ea", f'<form id="f1">{moves}</form>'),
+    )
+    run = perform(Play(documents, (0, 0), (), World()))
+    assert check(run.records) == []
+    question = told(run.records, "fa#1")
+    move = told(run.records, "ea#1.1")
+    assert move[0][0] >= question[-1][0] > 0

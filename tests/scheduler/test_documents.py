@@ -5,8 +5,16 @@ from __future__ import annotations
 import pytest
 
 from prima.interpreter.bounds import MOST_BRIEF
-from prima.messages import Ended, Failed, Occurred, Sensed
-from tests.robot import Bench, document
+from prima.messages import (
+    Ended,
+    Failed,
+    Loaded,
+    Occurred,
+    Sensed,
+    Unloaded,
+)
+from tests.helpers.plays import NESTED, stepped
+from tests.helpers.robot import Bench, document
 
 IDLE = '<form id="sleep"/>'
 
@@ -16,8 +24,6 @@ def pair(ea: str, fa: str = IDLE) -> Bench:
 
 
 # Entering and leaving states --------------------------------------------------------
-
-
 @pytest.mark.parametrize("way", ['<goto next="#b"/>', "<exit/>"])
 def test_o3_a_watch_that_is_true_on_entry_stops_the_entry(way: str) -> None:
     bench = pair(
@@ -75,8 +81,6 @@ def test_o3_in_a_window_the_conversation_keeps_its_stream_and_its_floor() -> Non
 
 
 # Orders --------------------------------------------------------------------------------
-
-
 def test_o2_what_is_wanted_now_does_not_wait_behind_speech() -> None:
     bench = pair(
         """<form id="walk">
@@ -134,7 +138,6 @@ def test_u5_a_unit_owns_what_a_handler_needs_that_is_reached_by_throw() -> None:
 
 
 # Streams that are broken ---------------------------------------------------------------
-
 GUIDE = """<form id="panel">
   <block><speak>One.</speak><speak>Two.</speak><exit/></block>
   <on event="suspended"><goto next="#again"/></on>
@@ -236,8 +239,6 @@ def test_c2_whoever_does_not_ask_is_told_nothing() -> None:
 
 
 # Reactions to what the transcript names ------------------------------------------------
-
-
 def test_c5_a_reaction_to_an_end_has_a_cause_of_its_own() -> None:
     bench = pair(
         """<form id="a">
@@ -290,8 +291,6 @@ def test_e2_brief_commands_with_time_between_them_are_no_loop() -> None:
 
 
 # What happens ----------------------------------------------------------------------------
-
-
 def test_c6_a_condition_is_raised_when_it_turns_true_and_armed_when_it_turns_false() -> None:
     bench = pair(
         """<watch name="dark" when="sensor.light &lt; 5"/><on event="dark"><log>dark</log></on>
@@ -359,3 +358,16 @@ def test_s5_the_same_inputs_give_the_same_records() -> None:
         return [*bench.records]
 
     assert records() == records()
+
+
+def test_an_application_that_is_loaded_again_gives_no_name_out_twice() -> None:
+    # What its former life still runs may make ABs when the new one has made some.
+    _, records = stepped(
+        NESTED.format("<speak>Zero.</speak>", ""),
+        (0, (Loaded("ea"),)),
+        (50, (Unloaded("ea"),)),
+        (60, (Loaded("ea"),)),
+        (100, (Ended("ea#3"),)),
+    )
+    names = [record["behavior"] for record in records if record["phase"] == "request"]
+    assert len(names) == len(set(names)) > 7

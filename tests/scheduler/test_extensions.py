@@ -8,23 +8,17 @@ from types import MappingProxyType
 import pytest
 
 from prima.language.commands import TABLE_4_2, Argument, CommandType
-from prima.messages import Command, Step
-from tests.stage import Stage, ask, command, move, say, search
+from prima.messages import (
+    Command,
+    Step,
+)
+from tests.helpers.generated.scripts import Ask, Script, drive
+from tests.helpers.generated.world import TABLE, World
+from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say, search
+from tests.invariants import check
 
 EVENT, LATER = 7, 8
 ALL = "prima+all"
-
-
-def restartable(what: Command) -> Command:
-    return replace(what, restartable=True)
-
-
-def inserted(stage: Stage) -> list[tuple[str, str]]:
-    return [
-        (record["inserted"], record["command"])
-        for record in stage.phases("request")
-        if record.get("inserted")
-    ]
 
 
 def test_x4_the_robot_faces_the_user_before_the_first_word() -> None:
@@ -86,8 +80,6 @@ def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> N
 DANCE = CommandType(
     "dance", "Dance", "", frozenset({"locomotion", "neck", "arm"}), motion="faithful"
 )
-
-
 DANCING = {**TABLE_4_2, "dance": DANCE}
 
 
@@ -225,3 +217,45 @@ def test_all_extensions_together_leave_a_plain_run_as_it_is() -> None:
         rests_on = {"restartable", "hold", "connect", "motion"}
         runs.append([{k: v for k, v in r.items() if k not in rests_on} for r in stage.records])
     assert runs[0] == runs[1]
+
+
+def test_x5_two_dances_are_not_composed_with_one_move() -> None:
+    # The move that has started last hides the first dance from the second.
+    stage = Stage("prima+x5", table=TABLE)
+    stage.request("ea", Command("dance"))
+    stage.select()
+    stage.at(50).request("ea", move(), cause=1)
+    stage.select()
+    stage.at(100).request("fa", Command("spin"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x5") == []
+
+
+def test_x5_two_moves_are_not_composed_with_one_dance() -> None:
+    stage = Stage("prima+x5", table=TABLE)
+    stage.request("ea", move())
+    stage.select()
+    stage.at(50).request("fa", Command("waltz"), cause=1)
+    stage.select()
+    stage.at(100).request("ea", command("set-position"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x5") == []
+
+
+def test_a_word_waits_for_the_user_also_while_the_way_back_is_gone() -> None:
+    # X4 was left out while something that X1 had put in for another branch was there.
+    sensing = Ask(("active-sensing-human",), ((),))
+    first = Ask(("face-human", "active-sensing-human"), ((), ()))
+    asked = (
+        Ask((("face-human",), "q-and-a"), ((), ()), connect=True),
+        Ask(("q-and-a",), ((),), connect=True),
+    )
+    script = Script(
+        ((), (), ()),
+        ((0, ((first,), (), (sensing,))), (0, ((sensing, sensing), (), asked))),
+        (),
+        World(),
+    )
+    for policy in ("prima+x1+x4", "prima+all"):
+        run = drive(script, policy)
+        assert check(run.records, policy) + run.problems == []

@@ -8,8 +8,21 @@ from __future__ import annotations
 import pytest
 
 from prima.language.commands import TABLE_4_2
-from prima.messages import Command, Group
-from tests.stage import Stage, ask, chain, command, move, say
+from prima.messages import (
+    Command,
+    Emergency,
+    Ended,
+    Group,
+    Loaded,
+    Occurred,
+    Step,
+)
+from tests.helpers.generated.plays import perform
+from tests.helpers.generated.scripts import Ask, Leave, Script, drive
+from tests.helpers.generated.world import World
+from tests.helpers.plays import NESTED, play, stepped, told
+from tests.helpers.stage import Stage, ask, chain, command, move, say
+from tests.invariants import check
 
 EVENT = 7
 
@@ -245,3 +258,73 @@ def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
     stage.at(20).mediator.emergency(False, False, 9)
     assert stage.select() == []
     assert stage.told("ea") == ["cancel.speak", "cancel.speak"]
+
+
+def test_a_unit_that_was_left_does_not_come_back_after_an_emergency() -> None:
+    # The unit is out of time, what runs in it finishes (U5); the emergency ends that, and
+    # with it the unit. Yet the unit is put back among the waiting ones, and starts again.
+    body = (
+        '<form id="f1"><iu longest="1ms"><block><speak>Hello.</speak></block></iu>'
+        '<on event="error"/></form>'
+    )
+    run = perform(play(body, (2, Emergency(True)), (3, Emergency(False))))
+    assert check(run.records) + run.problems == []
+
+
+def test_a_unit_that_is_left_during_an_emergency_is_concluded() -> None:
+    # The application leaves the unit because it is told of the emergency. The unit waits then
+    # for its release, starts again and keeps its devices for ever.
+    body = (
+        '<form id="f1"><iu><block><speak>Hello.</speak></block></iu>'
+        '<on event="emergency.stop"><goto next="#f2"/></on></form><form id="f2"/>'
+    )
+    run = perform(play(body, (1, Emergency(True)), (2, Emergency(False))))
+    assert check(run.records) + run.problems == []
+
+
+def test_a_group_that_was_given_up_ends_whole_in_an_emergency() -> None:
+    # The group (U4) is unheard since its state was left (O3). Halted, it is taken out of
+    # working memory, but not its Commands: its stream stays open, and so does its floor.
+    asked = Ask((("speak", "turn"),), ((),))
+    events = ((1, ((asked,), ())), (2, ((Leave(),), ())))
+    script = Script(((), ()), events, ((3, 1, True),), World())
+    run = drive(script)
+    assert check(run.records) + run.problems == []
+
+
+def test_a_play_meets_touches_units_and_emergencies_without_harm() -> None:
+    body = (
+        '<form id="f1"><iu><block><speak>Hello.</speak></block></iu>'
+        '<on event="touch"><turn angle="10"/></on></form>'
+    )
+    events = ((1, Occurred("touch")), (2, Emergency(True)), (900, Emergency(False)))
+    run = perform(play(body, *events))
+    assert check(run.records) + run.problems == []
+
+
+def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
+    # What runs in the inner unit is a part of the outer one, which fails as a whole (U4).
+    stage = Stage()
+    inner = Group([Step(say("In.")), Step(command("turn"))])
+    stage.request("ea", Group([Step(command("move-head")), Step(inner)]))
+    stage.select()
+    stage.at(100).mediator.failed("ea#2", "neck", "it fails")
+    stage.select()
+    assert stage.running == set()
+    assert check(stage.records, "prima") == []
+
+
+def test_a_unit_of_which_only_what_was_out_of_time_is_left_ends_in_an_emergency() -> None:
+    # The emergency gave up the inner unit, which was out of time; with it the outer one ended,
+    # and was then put back among the waiting ones.
+    session, records = stepped(
+        NESTED.format("", " longest='1s'"),
+        (0, (Loaded("ea"),)),
+        (100, (Ended("ea#3"),)),
+        (1200, ()),
+        (1500, (Emergency(True),)),
+        (3000, (Emergency(False),)),
+    )
+    assert told(records, "ea#4")[-1] == (1500, "cancel")
+    assert told(records, "ea#1")[-1] == (1500, "end")
+    assert session.idle

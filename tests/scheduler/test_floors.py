@@ -7,8 +7,16 @@ from __future__ import annotations
 
 import pytest
 
-from prima.messages import Command, Group, Step
-from tests.stage import Stage, ask, chain, command, move, say, search
+from prima.messages import (
+    Command,
+    Group,
+    Occurred,
+    Step,
+)
+from tests.helpers.generated.plays import perform
+from tests.helpers.plays import IN_ORDER, SEARCH, play
+from tests.helpers.stage import Stage, ask, chain, command, move, say, search
+from tests.invariants import check
 
 EVENT = 7
 
@@ -249,3 +257,10 @@ def test_f5_no_stop_where_something_else_takes_the_wheels_or_the_goal_is_met() -
     done.at(500).end("ea#1.1", goal=True)
     done.select()
     assert done.phases("stop") == []
+
+
+def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> None:
+    # The search turns the robot. What is wanted now says something, and moves nothing.
+    body = f'<form id="f1">{SEARCH}<on event="touch"><speak order="now">Wait.</speak></on></form>'
+    run = perform(play(body, (10, Occurred("touch", "user"))))
+    assert check(run.records, declared=IN_ORDER) == []

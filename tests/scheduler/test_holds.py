@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from tests.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, command, move, say
+from tests.invariants import check
 
 EVENT, LATER = 7, 8
 
@@ -117,3 +118,33 @@ def test_x3_in_a_window_what_is_wanted_now_continues_what_it_cancels() -> None:
     stage.at(200).end("ea#3", then=lambda: stage.request("ea", urgent))
     assert stage.select() == ["ea#4"]
     assert stage.phases("start")[-1]["tree"] == "ea:2"
+
+
+def test_x3_a_unit_joins_the_stream_that_is_held() -> None:
+    # Its stream stays held while the unit is of it, and its time runs out then.
+    stage = Stage("prima+x3")
+    stage.request("fa", say(), hold=5000)
+    stage.select()
+    stage.at(100).end("fa#1")
+    stage.select()
+    stage.at(200).open("fa", 1, "speaker")
+    stage.select()
+    stage.at(300).request("ea", command("turn"))
+    stage.select()
+    assert check(stage.records, "prima+x3") == []
+
+
+def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
+    # Both streams end in one instant; the one to be held comes first and finds the floor
+    # taken by the other, which ends then: nobody has it.
+    stage = Stage("prima+x3")
+    stage.request("ea", command("turn"), hold=5000)
+    stage.select()
+    stage.request("fa", say(), cause=1)
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.end("fa#1")
+    stage.select()
+    stage.at(200).request("fa", command("turn"))
+    assert stage.select() == []
+    assert check(stage.records, "prima+x3") == []

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from prima.language.commands import PATIENCE_MS
-from prima.messages import Command, Group, Step
-from tests.stage import Stage, ask, chain, command, say
+from prima.messages import (
+    Command,
+    Group,
+    Step,
+)
+from tests.helpers.generated.world import TABLE
+from tests.helpers.stage import Stage, ask, chain, command, move, restartable, say
+from tests.invariants import check
 
 EVENT = 7
-
-
-def restartable(what: Command) -> Command:
-    return replace(what, restartable=True)
 
 
 def test_x2_a_restartable_ab_gives_way_to_a_reaction_and_starts_again() -> None:
@@ -122,3 +122,95 @@ def test_x2_a_unit_starts_again_whole() -> None:
     stage.at(1100).end("ea#5")
     stage.settle()
     assert stage.told("ea")[-1] == "done"
+
+
+def test_x2_does_not_interrupt_what_has_just_been_preferred() -> None:
+    # Of two reactions to one event the first starts (S2f), and in the same selection the
+    # second, which it outranks, interrupts it.
+    stage = Stage("prima+x2")
+    stage.request("fa", steps=[Step(restartable(say("First."))), Step(say("Second."))], cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_an_earlier_reaction_does_not_interrupt_a_later_one_at_its_start() -> None:
+    stage = Stage("prima+x2")
+    stage.request("ea", say("First."), cause=1)
+    stage.request("fa", restartable(say("Second.")), cause=2)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_reaction_that_leaves_does_not_go_before_what_outranks_it() -> None:
+    # Two restartable Commands want the body; a reaction of low priority interrupts the one
+    # that runs, and the other, which outranks it by S2a, is passed over.
+    stage = Stage("prima+x2")
+    turn = restartable(command("turn"))
+    stage.request("ea", steps=[Step(turn), Step(restartable(command("turn")))])
+    stage.select()
+    stage.at(100).request("fa", move(), cause=1)
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_nothing_is_interrupted_for_a_reaction_that_is_held_back() -> None:
+    # The speaker is held back for the reaction that ranks first and waits for the body (S3):
+    # the other reaction interrupts the story, and must then wait for the first one (S3).
+    stage = Stage("prima+x2")
+    stage.request("ea", steps=[Step(restartable(say("A story."))), Step(command("turn"))])
+    stage.select()
+    stage.at(100).request("ea", say("Soon."), cause=1)
+    stage.request("fa", command("face-human-and-speak"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_unit_in_a_unit_is_interrupted_with_it() -> None:
+    # The unit inside is taken out, but what runs in it goes on: it is never told to stop.
+    stage = Stage("prima+x2")
+    inside = Group(chain(say("One."), say("Two.")))
+    stage.request("ea", Group([Step(inside)], restartable=True))
+    stage.select()
+    stage.at(100).request("fa", ask(), cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2") == []
+    orders = [(order.verb, order.behavior) for order in stage.orders]
+    assert orders == [("start", "ea#3"), ("interrupt", "ea#3"), ("start", "fa#1")]
+    stage.at(900).end("fa#1")
+    stage.select()
+    assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_a_motion_that_can_be_composed_is_in_nobodys_way() -> None:
+    # Of the move and the nod only the nod is in the dance's way (X5), and it is restartable.
+    stage = Stage("prima+x2+x5", table=TABLE)
+    nod = restartable(command("gesture"))
+    stage.request("ea", steps=[Step(move()), Step(nod)])
+    stage.select()
+    stage.at(100).request("fa", Command("dance"), cause=1)
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x2+x5") == []
+
+
+def test_x2_nothing_is_interrupted_where_a_composed_motion_stays_in_the_way() -> None:
+    # A move and a spin share the body (X5). The spin gives way; the move does not.
+    stage = Stage("prima+x2+x5", table=TABLE)
+    stage.request("ea", move())
+    stage.select()
+    stage.at(50).request("ea", restartable(Command("spin")), cause=1)
+    stage.select()
+    stage.at(100).request("fa", command("turn"), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x2+x5") == []
+
+
+def test_x2_what_is_linked_behind_what_waits_in_an_interrupted_unit_is_told_as_linked() -> None:
+    stage = Stage("prima+x2")
+    steps = [Step(say("One.")), Step(say("Two.")), Step(say("Three."), (1,))]
+    stage.request("ea", Group(steps, restartable=True))
+    stage.select()
+    stage.at(100).request("fa", say("Ouch."), cause=1)
+    assert stage.select() == ["fa#1"]
+    outcomes = [r["outcome"] for r in stage.phases("cancel")]
+    assert outcomes == ["running", "waiting", "linked"]
+    assert check(stage.records, "prima+x2") == []

@@ -5,8 +5,11 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
-from prima.messages import Group, Step
-from tests.stage import Stage, ask, command, move, say
+from prima.messages import (
+    Group,
+    Step,
+)
+from tests.helpers.stage import Stage, ask, command, move, say
 
 EVENT = 7
 
@@ -239,3 +242,22 @@ def test_o1_what_is_asked_for_in_a_unit_is_not_followed_outside() -> None:
     stage.at(20).request("ea", command("move-head", pan=1))
     stage.select()
     assert stage.phases("request")[-1]["parent"] == "ea#3", "the turn, which is linked still"
+
+
+def test_a_question_that_o2_leaves_running_finishes() -> None:
+    # Only a device in common cuts an AB short (O2); only leaving the state ends a question
+    # that listens (O3). Here a move of the same tree is cancelled, and the state goes on.
+    stage = Stage()
+    stage.request("ea", command("q-and-a"))
+    stage.request("ea", command("turn"))
+    stage.select()
+    stage.at(10)
+    stage.request("ea", command("stop-moving"))
+    stage.select()
+    assert "ea#1" in stage.running
+    stage.at(20).mediator.listening("ea#1")
+    stage.select()
+    assert [r["phase"] for r in stage.records if r.get("behavior") == "ea#1"] == [
+        "request",
+        "start",
+    ]

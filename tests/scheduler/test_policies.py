@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from prima.messages import Group, Step
-from tests.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, command, move, say
 
 EVENT = 7
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from prima.messages import Command, Step
-from tests.stage import Stage, ask, command, move, say
+from prima.messages import (
+    Command,
+    Group,
+    Step,
+)
+from tests.helpers.generated.scripts import Ask, Script, drive
+from tests.helpers.generated.world import World
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
+from tests.invariants import check
 
 EVENT = 7
-
-
-def inserted(stage: Stage) -> list[tuple[str, str]]:
-    return [
-        (record["inserted"], record["command"])
-        for record in stage.phases("request")
-        if record.get("inserted")
-    ]
 
 
 def at_a_panel(policy: str, *then: Command) -> Stage:
@@ -182,3 +181,79 @@ def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:
     assert stage.select() == ["ea#1.2"]
     assert [r["behavior"] for r in stage.phases("request") if r.get("inserted")] == ["fa#5"]
     assert stage.floor == ["fa:1", "ea:1"], "the way back waits for the wheels that ea takes (F3)"
+
+
+def ends(stage: Stage, behavior: str, x: float, y: float) -> None:
+    """An AB ends with the robot at a place."""
+    stage.end(behavior, x=x, y=y, heading=0.0)
+    stage.select()
+
+
+def test_x1_a_unit_that_goes_on_beneath_the_floor_does_not_resume_its_stream() -> None:
+    # F1 lets the unit finish. Its second Command counts as if the suspended stream had
+    # resumed, so that nothing is restored when it does.
+    stage = Stage("prima+x1")
+    stage.request("ea", move(), Group(chain(say("One."), say("Two."))), say("Three."))
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    stage.at(600).end("ea#4")
+    stage.select()
+    stage.at(700).end("ea#5")
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_a_held_stream_that_was_suspended_is_restored_too() -> None:
+    # A reaction breaks in while nothing of the held stream is in working memory.
+    stage = Stage("prima+x1+x3")
+    stage.request("ea", move(), say("One."), hold=5000)
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.at(600).end("ea#2")
+    stage.select()
+    stage.at(700).request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    stage.at(1000).request("ea", say("Two."), cause=2)
+    stage.select()
+    assert check(stage.records, "prima+x1+x3") == []
+
+
+def test_x1_branches_go_back_once() -> None:
+    # Each branch of the suspended stream is given a way back of its own.
+    stage = Stage("prima+x1")
+    steps = [
+        Step(move()),
+        Step(say("One."), (0,)),
+        Step(say("Two."), (1,)),
+        Step(command("gesture"), (1,)),
+    ]
+    stage.request("ea", steps=steps)
+    stage.select()
+    ends(stage.at(500), "ea#1.1", 4.0, 1.0)
+    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.select()
+    stage.at(700).end("ea#2")
+    stage.select()
+    ends(stage.at(900), "fa#1", 0.0, 0.0)
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_a_way_back_that_is_put_in_gives_up_neither_channel_nor_conversation() -> None:
+    # X1 puts a move, which leaves the user, before a conversation that resumes. K1 then took
+    # the stream for one that leaves him anyway, and another application's move went off; and F2
+    # took its place for a low one, so that neither went on where K1 kept the other.
+    sensing = "active-sensing-human"
+    talk = Ask(("q-and-a", "q-and-a", sensing), ((), (), ()))
+    reaction = Ask((sensing, sensing, "topological-move"), ((), (), ()))
+    asked = (Ask(("set-position",), ((),)), talk, Ask((sensing,), ((),)))
+    script = Script(
+        ((), ()), ((0, ((), ())), (0, (asked, ())), (4000, ((), (reaction,)))), (), World()
+    )
+    for policy in ("prima+x1", "prima+all"):
+        run = drive(script, policy)
+        assert check(run.records, policy) + run.problems == []
+        assert run.complete

@@ -37,7 +37,7 @@ from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.policy import Policy, Ranked
 from prima.session import Session
-from tests.rebinding import rebind
+from tests.helpers.rebinding import rebind
 
 Patch = Callable[[pytest.MonkeyPatch], None]
 MODULES = [
@@ -300,7 +300,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ),
     ("x6", "dropped", put(requests, "x6", nothing)),
 ]
-"""Those of the rules that decide in a run. V4 is the simulated camera's (tests/test_sim.py)."""
+"""Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""
 
 
 def named_after(rule: str) -> Iterator[Callable[[], None]]:

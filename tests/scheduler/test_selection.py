@@ -7,8 +7,15 @@ from __future__ import annotations
 
 import pytest
 
-from prima.messages import Step
-from tests.stage import Stage, ask, command, move, say
+from prima.messages import (
+    Occurred,
+    Step,
+)
+from tests.helpers.generated.plays import Play, perform
+from tests.helpers.generated.world import World
+from tests.helpers.plays import HEAD, IN_ORDER, SEARCH, play
+from tests.helpers.stage import TRACK, Stage, ask, command, move, say
+from tests.invariants import check
 
 EVENT = 7
 
@@ -213,3 +220,47 @@ def test_s4_abs_without_a_common_device_run_together() -> None:
     stage.request("ea", move())
     stage.request("fa", say("Hello."))
     assert sorted(stage.select()) == ["ea#1.1", "fa#1"]
+
+
+def test_of_those_who_have_waited_too_long_the_first_by_rank_starts_first() -> None:
+    """E4, S2d: whose stream is suspended goes before one that has just resumed."""
+    stage = Stage(apps=dict.fromkeys("abcd", "ea"), bound=1)
+    stage.request("c", say("One."), say("Two."))
+    stage.request("a", TRACK)
+    stage.select()
+    stage.at(10).request("b", steps=[Step(say("Three.")), Step(say("Four."))])
+    stage.select()
+    stage.at(20).request("d", command("gesture", name="nod"), cause=1)
+    stage.select()
+    for now, name, goal in (
+        (30, "c#1", True),
+        (40, "a#1.1", False),
+        (50, "d#1", True),
+        (60, "b#1", True),
+    ):
+        stage.at(now).end(name, goal)
+        stage.select()
+    started = [record["behavior"] for record in stage.records if record["phase"] == "start"]
+    assert started.index("c#2") == len(started) - 1
+
+
+def test_a_decision_names_no_loser_that_s3_keeps_back() -> None:
+    # Had the turn not started, "Hm." would still hold the speaker back from the search.
+    reaction = '<par><turn angle="5"/><speak>Hm.</speak></par>'
+    body = f'<form id="f1">{SEARCH}<on event="touch">{reaction}</on></form>'
+    run = perform(play(body, (10, Occurred("touch", "user"))))
+    assert check(run.records, declared=IN_ORDER) == []
+
+
+def test_s2c_what_cancels_a_tree_follows_nothing_that_has_ended() -> None:
+    # fa has waited for the wheels since 5 ms. What ea wants now cancels its own turn (O2):
+    # its parent has not ended, so the earlier request goes first (S2e).
+    waits = '<form id="f1"><on event="corner" reactive="false"><turn angle="5"/></on></form>'
+    urgent = (
+        '<form id="f1"><block><set-direction heading="5"/></block>'
+        '<on event="touch" reactive="false"><turn angle="5" order="now"/></on></form>'
+    )
+    documents = (HEAD.format("fa", waits), HEAD.format("ea", urgent))
+    events = ((5, Occurred("corner")), (10, Occurred("touch", "user")))
+    run = perform(Play(documents, (0, 0), events, World()))
+    assert check(run.records, declared=IN_ORDER) == []

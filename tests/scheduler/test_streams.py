@@ -5,7 +5,7 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
-from tests.stage import Stage, ask, say
+from tests.helpers.stage import Stage, ask, say
 
 EVENT = 7
 

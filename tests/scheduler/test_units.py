@@ -8,8 +8,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 from prima.language.commands import TABLE_4_2
-from prima.messages import Command, Group, OpenUnit, Step
-from tests.stage import Stage, ask, chain, command, move, say, search
+from prima.messages import (
+    Command,
+    Group,
+    OpenUnit,
+    Step,
+)
+from tests.helpers.generated.scripts import Ask, Go, Open, Script, drive
+from tests.helpers.generated.world import World
+from tests.helpers.stage import Stage, ask, chain, command, move, say, search
+from tests.invariants import check
 
 EVENT = 7
 
@@ -198,3 +206,10 @@ def test_u4_no_feedback_command_of_the_profile_runs_in_a_unit_either() -> None:
     stage.request("fa", search(), unit=1)
     stage.select()
     assert stage.told("fa") == ["error.semantic"]
+
+
+def test_a_script_opens_a_unit_and_goes() -> None:
+    unit = Open(frozenset({"speaker"}), None)
+    asked = Ask(("speak",), ((),))
+    run = drive(Script(((), ()), ((1, ((unit, asked, Go()), (asked,))),), (), World()))
+    assert check(run.records) + run.problems == []

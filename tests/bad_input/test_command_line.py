@@ -1,0 +1,232 @@
+"""Wrong usage, pipes, full disks and terminals."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.helpers.bad_input import (
+    SECONDS,
+    Prima,
+    Result,
+    app,
+    block,
+    form,
+    process,
+    record,
+    scenario,
+    stage,
+    write,
+)
+
+
+def test_a_scenario_that_names_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    write(tmp_path, "s.xml", scenario('<application src="pipe"/>'))
+    process(tmp_path, "validate", "s.xml").check(1, "s.xml:2:19")
+
+
+# The command line --------------------------------------------------------------------------
+USAGES: list[Any] = [
+    ([], 2, "Usage:"),
+    (["rn"], 2, 'Did you mean "run"?'),
+    (["vaildate", "x"], 2, 'Did you mean "validate"?'),
+    (["zzz"], 2, 'There is no command "zzz". prima --help lists them.'),
+    (["--verson"], 2, "--version"),
+    (["run"], 2, "Name a scenario"),
+    (["validate"], 2, "Missing argument"),
+    (["run", "s.xml", "more"], 2, "more: cannot be read: No such file"),
+    (["run", "s.xml", "--polcy", "fifo"], 2, "--policy"),
+    (["run", "s.xml", "--policy", "fif"], 2, 'Did you mean "fifo"?'),
+    (["run", "s.xml", "--policy", "x\x1b[31m"], 2, "Write fair, fifo"),
+    (["run", "s.xml", "--bound", "0"], 2, "not in the range"),
+    (["run", "s.xml", "--bound", "x"], 2, "not a valid integer"),
+    (["run", "s.xml", "--bound", "9" * 50, "-o", "t"], 0, "records"),
+    (["run", "s.xml", "--format", "jsn"], 2, "jsn"),
+    (["run", "no.xml"], 2, "no.xml: cannot be read: No such file"),
+    (["run", "."], 0, "runs: 1; fine: 1"),
+    (["run", "app.xml"], 1, "a scenario is needed here. prima run and prima talk take it by --fa app.xml."),
+    (["run", "good.jsonl"], 1, "prima show prints it"),
+    (["run", "s.xml", "-o", "."], 2, "Is a directory"),
+    (["run", "s.xml", "-o", ""], 2, "cannot be written"),
+    (["run", "s.xml", "-o", "no/t"], 2, "no/t: cannot be written: No such file"),
+    (["run", "s.xml", "-o", "/proc/t"], 2, "/proc/t: cannot be written"),
+    (["validate", "/dev/zero"], 2, "/dev/zero: cannot be read"),
+    (["show", "s.xml"], 2, "s.xml:1: this is not a line of JSON"),
+    (["replay", "good.jsonl", "app.xml"], 1, "a scenario is needed here"),
+    (["run", "s.xml", "--policy", "fixed:A"], 2, 'Did you mean "a"?'),
+    (["run", "s.xml", "--policy", "fixd"], 2, "fixed:APP"),
+    (["show", "no"], 2, "no: cannot be read"),
+    (["show", "x" * 5000], 2, "cannot be read"),
+    (["diff", "good.jsonl"], 2, "Name two transcripts"),
+    (["replay", "s.xml", "good.jsonl"], 2, "s.xml:1: this is not a line of JSON"),
+    (["explain", "undeclard-variable"], 2, 'Did you mean "undeclared-variable"?'),
+    (["explain", "good.jsonl"], 2, "Say which row"),
+    (["explain", "good.jsonl", "99"], 2, "the rows are 0 to 3"),
+    (["explain", "good.jsonl", "9" * 30], 2, "There is no row"),
+    (["explain", ".", "1"], 2, "Is a directory"),
+    (["run", "s.xml", "--policy", "fixed:zz"], 2, '"fixed:zz" names an application that is not in the scenario. Write a.'),
+    (["run", "s.xml", "--policy", ""], 2, "policy"),
+    (["run", "s.xml", "-o", "s.xml"], 2, "s.xml"),
+    (["run", "s.xml", "-o", "/dev/full"], 2, "No space left"),
+    (["replay", "good.jsonl", "s.xml", "-o", "/dev/full"], 2, "No space left"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"), USAGES, ids=lambda value: str(value)[:40]
+)
+def test_usage(
+    prima: Prima, transcript: str, arguments: list[str], code: int, message: str
+) -> None:
+    prima(*arguments).check(code, message)
+
+
+def test_no_row_at_all(prima: Prima, tmp_path: Path) -> None:
+    write(tmp_path, "t.jsonl", record("over"))
+    prima("explain", "t.jsonl", 0).check(2, "no row")
+
+
+def test_a_folder_that_is_read_only(prima: Prima, tmp_path: Path, transcript: str) -> None:
+    folder = tmp_path / "closed"
+    folder.mkdir(mode=0o500)
+    if os.access(folder, os.W_OK):
+        pytest.skip("whoever runs this may write everywhere")
+    prima("run", "s.xml", "-o", folder / "t").check(2, "cannot be written: Permission denied")
+
+
+# Pipes, terminals and signals ----------------------------------------------------------------
+def closed_pipe(folder: Path) -> Result:
+    """What a long table gives when its reader goes away after the first line."""
+    write(folder, "long.jsonl", "".join(record("note", text="x" * 60) for _ in range(5_000)))
+    made = subprocess.Popen(
+        [sys.executable, "-m", "prima", "show", "long.jsonl"],
+        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert made.stdout is not None and made.stderr is not None
+    first = made.stdout.readline()
+    made.stdout.close()
+    with made.stderr:
+        return Result(made.wait(SECONDS), first, made.stderr.read())
+
+
+def test_a_pipe_that_is_closed(tmp_path: Path) -> None:
+    said = closed_pipe(tmp_path)
+    assert "Behavior" in said.out and said.err == ""
+
+
+def test_a_closed_pipe_is_no_problem(tmp_path: Path) -> None:
+    closed_pipe(tmp_path).check(0)
+
+
+@pytest.mark.parametrize("given", [["show", "good.jsonl"], ["--help"], ["explain", "bad-value"]])
+def test_a_full_disk_behind_the_standard_output(
+    tmp_path: Path, prima: Prima, transcript: str, given: list[str]
+) -> None:
+    with Path("/dev/full").open("w") as full:
+        process(tmp_path, *given, stdout=full).check(2, "No space left")
+
+
+@pytest.mark.parametrize("given", ["show good.jsonl", "validate s.xml"])
+def test_no_standard_output(tmp_path: Path, prima: Prima, transcript: str, given: str) -> None:
+    done = subprocess.run(
+        ["sh", "-c", f'"{sys.executable}" -m prima {given} >&-'],
+        cwd=tmp_path, capture_output=True, text=True, timeout=SECONDS, check=False,
+    )  # fmt: skip
+    Result(done.returncode, done.stdout, done.stderr).check(done.returncode)
+
+
+def on_terminal(folder: Path, *args: object) -> bytes:
+    """What a command shows on a terminal, where nothing takes control sequences out."""
+    ours, theirs = pty.openpty()
+    made = subprocess.Popen(
+        [sys.executable, "-m", "prima", *map(str, args)], cwd=folder,
+        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
+    )  # fmt: skip
+    os.close(theirs)
+    shown = b""
+    try:
+        while more := os.read(ours, 65_536):
+            shown += more
+    except OSError:
+        pass  # the terminal's other end is closed
+    made.wait(SECONDS)
+    os.close(ours)
+    return shown
+
+
+CONTROLS = (
+    "<speak>caf&#x9b;31m</speak>"
+    "<log expr=\"'\\x1b[31mred\\x07'\"/>"
+    '<throw event="foo" message-expr="\'\\x1b[2J\\x1b]0;title\\x07\'"/>'
+)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["show", "t", "--why"],
+        ["run", "s.xml"],
+        ["explain", "t", "2"],
+        ["diff", "t", "t"],
+        ["validate", "v.xml"],
+        ["explain", "\x1b[31mx"],
+        ["run", "s.xml", "--policy", "\x1b[31m"],
+        ["r\x1b[31mn"],
+    ],
+    ids=lambda given: given[0],
+)
+def test_control_characters_on_a_terminal(prima: Prima, tmp_path: Path, given: list[str]) -> None:
+    prima("run", stage(tmp_path, app(block(CONTROLS))), "-o", "t").check(3)
+    write(tmp_path, "v.xml", app(block('<turn angle="&#x9b;31m"/>')))
+    shown = on_terminal(tmp_path, *given)
+    assert b"Traceback" not in shown and shown
+    for control in (b"\x1b", b"\x07", b"\xc2\x9b"):
+        assert control not in re.sub(rb"\x1b\[(0|1|2|1;3[136])m", b"", shown)  # its own colours
+
+
+def test_very_long_texts(prima: Prima, tmp_path: Path) -> None:
+    body = block(f"<speak>{'word ' * 300}</speak><log>{'word ' * 20_000}</log><exit/>")
+    path = stage(tmp_path, app(body), attributes='until="3000s"')
+    said = prima("run", path).check(0, "word word")
+    assert max(map(len, said.out.splitlines())) < 140
+
+
+def test_a_very_long_word(tmp_path: Path) -> None:
+    write(tmp_path, "t.jsonl", record("note", text="x" * 100_000))
+    process(tmp_path, "show", "t.jsonl", seconds=30).check(0, "x" * 40)
+
+
+def test_a_long_text_is_said_to_its_end(prima: Prima, tmp_path: Path) -> None:
+    path = stage(tmp_path, app(block(f"<speak>{'word ' * 600}</speak><exit/>")), "", 'until="900s"')
+    prima("run", path).check(0)
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
+def test_what_was_written_before_the_end_stays_readable(
+    prima: Prima, tmp_path: Path, name: str
+) -> None:
+    body = form('<block><tracking-human/></block><on event="x"><exit/></on>')
+    path = stage(tmp_path, app(body, kind="ea"), attributes='until="86400s"')
+    made = subprocess.Popen(
+        [sys.executable, "-m", "prima", "run", str(path), "-o", "t"],
+        cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    deadline = time.monotonic() + SECONDS
+    while not (tmp_path / "t").exists() or (tmp_path / "t").stat().st_size < 20_000:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    made.send_signal(getattr(signal, name))
+    said = made.communicate(timeout=SECONDS)[1]
+    if name == "SIGINT":
+        assert made.returncode == 130 and said.strip() == "prima: interrupted"
+    prima("show", "t").check(0, "Tracking Human")

@@ -1,0 +1,53 @@
+"""What the tests of this room share."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from prima import api
+from prima.report import make
+from tests.helpers.generated_report import long_run
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+from tests.helpers.opened import CHROMIUM, SCENARIO
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    pytest.importorskip("playwright")
+    from playwright.sync_api import sync_playwright
+
+    if CHROMIUM is None:
+        assert "CI" not in os.environ, "CI has to install chromium"
+        pytest.skip("there is no chromium on this machine")
+    with sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="session")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """One run, two runs, one in Japanese, and a long one, as files."""
+    folder = tmp_path_factory.mktemp("pages")
+    loaded = api.load_scenario(SCENARIO)
+    first, second = api.rehearse(SCENARIO), api.rehearse(SCENARIO, "fifo")
+    japanese = SCENARIO.with_name("follow-during-navigation-ja.xml")
+    made = {
+        "one": make([first], [loaded]),
+        "two": make([first, second], [loaded]),
+        "bare": make([first]),
+        "ja": make([api.rehearse(japanese)]),
+        "long": make([long_run(5000)]),
+    }
+    paths = {}
+    for name, text in made.items():
+        paths[name] = folder / f"{name}.html"
+        paths[name].write_text(text, encoding="utf-8")
+    return paths

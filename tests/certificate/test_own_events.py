@@ -1,0 +1,137 @@
+"""Events that an application sends or causes itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima.certificate import (
+    certificate_data,
+    format_certificate,
+)
+from tests.helpers.certified import faults
+from tests.helpers.certifying import (
+    ASKS,
+    FA,
+    PROFILE,
+    certified,
+    lasting,
+    run,
+    voiced,
+    without_more_for_each_event,
+)
+
+
+def test_other_events_of_the_ea_make_the_wait_longer(tmp_path: Path) -> None:
+    body = '<form id="f"><on event="message"><speak>A message has come.</speak></on></form>'
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.each == lasting("A message has come.")
+
+
+ROUNDS = {
+    "its own end": "<block><speak>Hello.</speak></block>"
+    '<on event="end.speak" reactive="true"><speak>I go on and on.</speak></on>',
+    "two ends in turn": "<block><speak>Hello.</speak></block>"
+    '<on event="end.speak" reactive="true"><turn-and-speak toward="door">So.</turn-and-speak></on>'
+    '<on event="end.turn-and-speak" reactive="true"><speak>And so on.</speak></on>',
+    "what goes on beside": '<block><gesture name="nod"/></block>'
+    '<on event="end.gesture"><move-head pan="3"/><gesture name="nod"/></on>'
+    '<on event="end.move-head" reactive="true"><speak>A sentence longer than a nod.</speak></on>',
+    "a send": '<block><send event="x"/></block><on event="x" reactive="true">'
+    '<send event="x" delay="900ms"/><speak>A sentence that is longer.</speak></on>',
+}
+"""Reactions of an EA to its own events that come again and again, without a turn for others."""
+
+
+@pytest.mark.parametrize("body", ROUNDS.values(), ids=ROUNDS)
+def test_reactions_to_own_events_that_go_round_have_no_bound(tmp_path: Path, body: str) -> None:
+    found = certified(tmp_path, f'<form id="f">{body}</form>')
+    (delay,) = found.delays
+    assert delay.endless and not delay.known
+    data = certificate_data(found)["delays"][0]
+    assert (data["known"], data["lasts"]) == (False, None)
+    assert data["without_end"][0]["place"].startswith(str(tmp_path / "theirs.xml:1:"))
+    assert data["response"]["without_end"] == data["without_end"]
+    text = format_certificate(found)
+    assert "touch: without a bound, for the" in text and "more for each" not in text
+    assert "(K1, K2)" not in text
+    at = '<when at="4s"><touch sensor="head"/></when>'
+    records = run(tmp_path, "mine.xml", "theirs.xml", at)
+    assert "Yes?" not in [one.get("text") for one in records if one["phase"] == "start"]
+
+
+def test_the_reason_names_the_loop_and_its_line(tmp_path: Path) -> None:
+    found = certified(tmp_path, f'\n<form id="f">\n{ROUNDS["its own end"]}</form>')
+    line = "without an end: what is done about end.speak leads to it again, at"
+    assert f"{line} {tmp_path}/theirs.xml:3:" in format_certificate(found)
+
+
+def test_a_watch_that_the_robot_itself_makes_true_has_no_bound(tmp_path: Path) -> None:
+    watch = '<watch name="still" when="{}"/><form id="f"><on event="still"><turn angle="20"/></on></form>'
+    own = FA.replace("<speak>", '<turn angle="40"/><speak>')
+    (delay,) = certified(tmp_path, watch.format("!sensor.moving"), own).delays
+    assert [gap.reason for gap in delay.endless] == ["what is done about still leads to it again"]
+    (delay,) = certified(tmp_path, watch.format("sensor.battery &lt; 3"), own).delays
+    assert delay.known and delay.each == delay.lasts
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<block><speak>Hello.</speak></block><on event="end.speak" reactive="true">'
+        '<turn-and-speak toward="door">Once.</turn-and-speak></on>',
+        '<block><send event="x" delay="99s"/></block><on event="x" reactive="true">'
+        '<send event="x" delay="99s"/><speak>It is time.</speak></on>',
+        '<block><send event="x"/></block><on event="x" reactive="true">'
+        '<speak>I let others in.</speak><send event="x"/></on>',
+        '<block><speak>Hello.<on event="end" reactive="true"><speak>Once.</speak></on></speak></block>',
+    ],
+)
+def test_how_often_own_events_come_is_not_known(tmp_path: Path, body: str) -> None:
+    (delay,) = certified(tmp_path, f'<form id="f">{body}</form>').delays
+    assert not delay.endless and not delay.known and delay.each == 0
+    assert [gap.reason[:24] for gap in delay.unknown] == ["how often its own event "]
+
+
+def test_own_events_count_only_for_the_devices_of_their_reactions(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><block><speak>Hello.</speak></block>'
+        '<on event="end.speak"><speak>I go on.</speak></on>'
+        '<on event="end.gesture" reactive="true"><gesture name="nod"/></on></form>'
+    )
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.known, "what is no reaction gives way, and a nod needs no speaker"
+
+
+def test_own_events_are_nobody_elses(tmp_path: Path) -> None:
+    own = '<form id="s"><on event="end.gesture" reactive="true"><speak>Yes?</speak></on></form>'
+    body = '<form id="f"><on event="end.gesture" reactive="true"><gesture name="nod"/></on></form>'
+    assert [one.after for one in certified(tmp_path, body, own).delays] == []
+
+
+def test_what_own_delayed_events_say_later_is_not_known(tmp_path: Path) -> None:
+    own = (
+        '<form id="s"><on event="touch"><gesture name="nod"/><send event="x" delay="9s"/></on>'
+        '<on event="x"><speak>Yes?</speak></on></form>'
+    )
+    (delay,) = certified(tmp_path, ASKS, own).delays
+    assert delay.known and delay.response is not None
+    assert [gap.reason for gap in delay.response.unknown] == [
+        "its own event x makes it go on later"
+    ]
+
+
+def test_an_event_asks_the_question_of_a_voicexml_document_anew(tmp_path: Path) -> None:
+    field = '<field name="a" type="boolean"><prompt timeout="9s">Well?</prompt></field>'
+    catch = "<catch event='touch'>That was me, and I am a robot.</catch>"
+    own = FA.replace("touch", "bell")
+    found, fa, ea = voiced(tmp_path, f"<form>{field}</form>{catch}", own)
+    (delay,) = found.delays
+    assert delay.each is not None and delay.each > 9000
+    touches = "".join(f'<when at="{at}s"><touch sensor="head"/></when>' for at in (8, 16, 24))
+    bell = '<when at="2s"><event name="bell"/></when>'
+    records = run(tmp_path, fa, ea, bell + touches)
+    assert faults(found, records, PROFILE.voices) == []
+    without_more_for_each_event(found)
+    assert faults(found, records, PROFILE.voices) != []

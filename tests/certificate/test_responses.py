@@ -1,0 +1,75 @@
+"""Times to the first Command and to the first response."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from prima.certificate import (
+    certificate_data,
+    format_certificate,
+)
+from prima.checks.prices import outline
+from prima.loading import read_application
+from tests.helpers.certified import faults
+from tests.helpers.certifying import ASKS, FA, HEAD, PROFILE, block, certified, lasting, run, waited
+
+LATE = FA.replace("<speak>", '<move-head tilt="10"/><speak>')
+"""An FA whose first Command is no response."""
+
+
+def test_the_first_word_may_come_long_after_the_first_command(tmp_path: Path) -> None:
+    found = certified(tmp_path, ASKS, LATE)
+    (delay,) = found.delays
+    assert (delay.lasts, delay.known, delay.place) == (0, True, None)
+    assert delay.response is not None and delay.response.known
+    assert delay.response.lasts == lasting("Tell me?") + 55_000
+    text = format_certificate(found)
+    assert "touch: not at all\n    first word or movement towards the user: up to 55." in text
+    assert "never" not in text
+    data = certificate_data(found)["delays"][0]
+    assert (data["lasts"], data["response"]["lasts"]) == (0, delay.response.lasts)
+    records = run(
+        tmp_path, "mine.xml", "theirs.xml", '<when at="200ms"><touch sensor="head"/></when>'
+    )
+    assert 55 < waited(records) <= delay.response.lasts / 1000
+    assert faults(found, records, PROFILE.voices) == []
+    delay.response = replace(delay, response=None)
+    assert "the response to touch.head" in faults(found, records, PROFILE.voices)[0]
+
+
+def test_where_response_and_first_command_are_one_they_are_told_once(tmp_path: Path) -> None:
+    found = certified(tmp_path, ASKS)
+    (delay,) = found.delays
+    assert delay.response == replace(delay, response=None)
+    assert "first word" not in format_certificate(found)
+    data = certificate_data(found)["delays"][0]
+    assert data["response"]["lasts"] == data["lasts"]
+    nods = FA.replace("<speak>Yes?</speak>", '<gesture name="nod"/>')
+    (delay,) = certified(tmp_path, block('<gesture name="bow"/>'), nods).delays
+    assert delay.response is None
+
+
+@pytest.mark.parametrize(
+    ("content", "most"),
+    [
+        ("<par><gesture name='bow'/><speak>Yes?</speak></par>", 1),
+        ('<iu><gesture name="bow"/><speak>Yes?</speak></iu>', 1),
+        ('<move-head pan="3"/><if cond="a"><gesture name="nod"/></if><speak>Yes?</speak>', 2),
+        ('<move-head pan="3"/><goto next="#g"/>', 2),
+        ('<move-head pan="3"><on event="end"><speak>Yes?</speak></on></move-head>', 1),
+        ('<move-head pan="3"/><face-human/><speak>Yes?</speak>', 2),
+    ],
+)
+def test_a_response_is_found_on_all_ways(tmp_path: Path, content: str, most: int) -> None:
+    own = (
+        f'<var name="a" expr="true"/><form id="s"><on event="touch">{content}</on></form>'
+        '<form id="g"><block><gesture name="nod"/><speak>Yes?</speak></block></form>'
+    )
+    document, _ = read_application("a.xml", (HEAD.format("fa", "a") + own + "</prima>").encode())
+    (reaction,) = outline(document, PROFILE).reactions
+    assert reaction.responds
+    others = [one for one in reaction.responds if "speaker" not in one.devices]
+    assert len(others) <= most

@@ -1,0 +1,170 @@
+"""How long a certified reaction may wait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima.certificate import (
+    certificate_data,
+    format_certificate,
+)
+from tests.helpers.certified import faults
+from tests.helpers.certifying import (
+    FA,
+    PROFILE,
+    TOUCH,
+    block,
+    certified,
+    lasting,
+    run,
+    voiced,
+    waited,
+)
+
+
+@pytest.mark.parametrize(
+    "leading",
+    [
+        '<block><goto next="more.vxml"/></block>',
+        '<block><submit next="more.vxml#f"/></block>',
+        '<subdialog name="s" src="more.vxml"/>',
+    ],
+)
+def test_further_documents_of_voicexml_are_read(tmp_path: Path, leading: str) -> None:
+    more = '<form id="f"><block><p:move-head pan="20"/></block></form>'
+    found, _, _ = voiced(tmp_path, f"<form>{leading}</form>", more=more)
+    assert "neck" in found.only_ea and found.gaps == []
+    linked = '<link next="more.vxml"><grammar src="builtin:boolean"/></link><form><block/></form>'
+    assert "neck" in voiced(tmp_path, linked, more=more)[0].only_ea
+
+
+def test_what_cannot_be_read_is_told_with_its_place(tmp_path: Path) -> None:
+    body = '<form><block><if cond="x"><goto expr="where"/></if><submit next="http://a.example/"/></block></form>'
+    found, _, _ = voiced(tmp_path, body)
+    assert [gap.reason for gap in found.gaps] == [
+        "an expression says where it goes on",
+        "the document that http://a.example/ answers is not known",
+    ]
+    assert all(str(gap.place).startswith(str(tmp_path)) for gap in found.gaps)
+    assert not any(delay.known for delay in found.delays)
+    assert "not known: an expression says where it goes on, at" in format_certificate(found)
+
+
+def test_an_expression_that_stays_in_its_document_is_no_gap(tmp_path: Path) -> None:
+    body = """<form id="ab"><block><goto expr="'#a' + 'b'"/></block></form>"""
+    assert voiced(tmp_path, body.replace("'#a' + 'b'", "'#a' + x"))[0].gaps == []
+
+
+def test_a_long_prompt_and_its_question_are_one_wait(tmp_path: Path) -> None:
+    words = "This goes on and on. " * 40
+    prompt = f'<prompt bargein="false" timeout="9s">{words}<break time="3s"/></prompt>'
+    found, fa, ea = voiced(
+        tmp_path, f'<form><field name="a" type="boolean">{prompt}</field></form>'
+    )
+    (delay,) = found.delays
+    assert delay.known and delay.what == "question"
+    took = waited(run(tmp_path, fa, ea, TOUCH, "120s"))
+    assert took > 59 and took * 1000 <= delay.lasts < took * 1000 + 1100
+
+
+def test_a_recording_counts_its_beep_and_its_silence(tmp_path: Path) -> None:
+    body = '<form><record name="r" beep="true" maxtime="6s" finalsilence="2s">Go.</record></form>'
+    found, fa, ea = voiced(tmp_path, body)
+    (delay,) = found.delays
+    assert delay.what == "recording" and delay.listens
+    assert delay.lasts >= lasting("Go.") + 5000 + 2000 + 500
+    assert waited(run(tmp_path, fa, ea, TOUCH)) * 1000 <= delay.lasts
+
+
+def test_a_call_is_waited_for_as_long_as_it_may_last(tmp_path: Path) -> None:
+    body = (
+        '<form><transfer name="t" dest="tel:+1-555" type="bridge" connecttimeout="20s"'
+        ' maxtime="40s"><grammar src="builtin:boolean"/></transfer></form>'
+    )
+    found, fa, ea = voiced(tmp_path, body)
+    (delay,) = found.delays
+    assert (delay.what, delay.lasts) == ("call", 40_000)
+    assert waited(run(tmp_path, fa, ea, TOUCH)) * 1000 <= delay.lasts
+
+
+def test_a_reaction_to_the_same_event_is_waited_for_to_its_end(tmp_path: Path) -> None:
+    body = '<form id="f"><on event="touch.head"><speak>Oh!</speak><speak>That was me.</speak></on></form>'
+    (delay,) = certified(tmp_path, body).delays
+    assert len(delay.after) == 1 and delay.known
+    assert delay.lasts == lasting("That was me.") + lasting("Oh!") + lasting("That was me.")
+    assert "about the same event at" in format_certificate(certified(tmp_path, body))
+    more = "s more for each other event that theirs reacts to meanwhile, or has not done with"
+    assert more in format_certificate(certified(tmp_path, body))
+
+
+def test_a_reaction_to_the_same_event_may_have_no_end(tmp_path: Path) -> None:
+    field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
+    body = f'<form id="f"><on event="touch"><goto next="#q"/></on></form>{field}'
+    found = certified(tmp_path, body)
+    (delay,) = found.delays
+    assert not delay.known
+    assert [gap.reason for gap in delay.endless] == [
+        "the question is asked again until the user answers"
+    ]
+    assert "touch: without a bound" in format_certificate(found)
+    assert certificate_data(found)["delays"][0]["lasts"] is None
+
+
+def test_a_question_that_gives_up_has_an_end(tmp_path: Path) -> None:
+    leave = '<noinput count="2"><goto next="#f"/></noinput><nomatch><goto next="#f"/></nomatch>'
+    field = (
+        f'<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt>{leave}</field></form>'
+    )
+    body = f'<form id="f"><on event="touch"><goto next="#q"/></on></form>{field}'
+    (delay,) = certified(tmp_path, body).delays
+    assert delay.known
+    assert delay.lasts == 3 * (lasting("Well?") + 5000)
+
+
+def test_what_a_subdialog_comes_back_to_is_waited_for(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><subdialog name="s" src="#g"/><block><speak>And then this.</speak></block></form>'
+        '<form id="g"><on event="touch"><speak>Oh!</speak><return/></on></form>'
+    )
+    (delay,) = certified(tmp_path, body).delays
+    parts = [lasting("Oh!"), lasting("And then this.")]
+    assert delay.known and delay.lasts >= max(parts) + sum(parts)
+
+
+def test_links_with_no_word_in_common_hear_different_things(tmp_path: Path) -> None:
+    link = '<form id="{}"><link event="x"><grammar>{}</grammar></link><on event="x"><speak>A.</speak></on></form>'
+    (delay,) = certified(tmp_path, link.format("f", "stop it"), link.format("f", "go on")).delays
+    assert delay.after == []
+    (delay,) = certified(tmp_path, link.format("f", "stop it"), link.format("f", "stop")).delays
+    assert len(delay.after) == 1
+
+
+def test_what_drives_waits_for_whole_conversations(tmp_path: Path) -> None:
+    own = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+    field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
+    (delay,) = certified(tmp_path, field, own).delays
+    assert not delay.known and delay.endless and delay.devices == ()
+
+
+LOOP = '<form id="f"><block><speak>On and on.</speak><goto next="#f"/></block></form>'
+LATER = '<form id="g"><block><gesture name="bow"/><speak>My turn.</speak></block></form>'
+
+
+def test_states_that_follow_one_another_keep_the_speaker_for_ever(tmp_path: Path) -> None:
+    found = certified(tmp_path, LOOP, LATER)
+    (starved,) = found.starves
+    assert (starved.rule, starved.devices) == ("S2c", ("speaker",))
+    records = run(tmp_path, "mine.xml", "theirs.xml", "")
+    assert "My turn." not in [r.get("text") for r in records if r["phase"] == "start"]
+    assert faults(found, records, PROFILE.voices) == []
+    found.starves.clear()
+    assert faults(found, records, PROFILE.voices) != []
+
+
+def test_where_nothing_starves_the_longest_wait_is_told(tmp_path: Path) -> None:
+    found = certified(tmp_path, block("<speak>Once.</speak>"), LATER)
+    assert found.starves == []
+    text = format_certificate(found)
+    assert "nothing: others than reactions wait up to 0.6 s each time theirs is busy" in text

@@ -1,0 +1,76 @@
+"""Prices of parts of applications: how long they keep each device."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from prima.checks.prices import outline
+from prima.loading import read_application
+from tests.helpers.certifying import FA, HEAD, PROFILE, block, lasting, priced
+
+
+def test_speech_costs_what_it_lasts(tmp_path: Path) -> None:
+    (price,) = priced(tmp_path, block("<speak>Good morning to you.</speak>"))
+    assert (price.lasts, price.known) == (lasting("Good morning to you."), True)
+    assert price.devices == {"speaker"}
+
+
+def test_pauses_cost_what_they_last_and_only_those_in_speech_the_speaker(tmp_path: Path) -> None:
+    (said,) = priced(tmp_path, block('<speak>Good <break time="2s"/>morning.</speak>'))
+    assert (said.lasts, said.known) == (lasting("Good morning.") + 2000, True)
+    (unit,) = priced(tmp_path, block('<iu><speak>Good.</speak><pause time="3s"/></iu>'))
+    assert (unit.lasts, unit.known) == (lasting("Good.") + 3000, True)
+    assert unit.devices == {"speaker"}
+
+
+def test_what_an_expression_says_is_not_known(tmp_path: Path) -> None:
+    (price,) = priced(tmp_path, block('<speak>Good <value expr="1"/></speak>'))
+    assert not price.known and price.seconds.startswith("at least ")
+
+
+def test_a_unit_costs_the_sum_of_its_parts_and_branches_their_longest(tmp_path: Path) -> None:
+    parts = '<speak>One and two.</speak><gesture name="bow"/>'
+    (price,) = priced(tmp_path, block(f"<iu>{parts}</iu>"))
+    assert price.what == "unit" and price.lasts == lasting("One and two.") + 1500
+    (price,) = priced(tmp_path, block(f"<iu><par>{parts}</par></iu>"))
+    assert price.lasts == max(lasting("One and two."), 1500)
+
+
+def test_a_unit_costs_its_longest_duration_and_what_runs_then(tmp_path: Path) -> None:
+    words = "a long word " * 20
+    said = f"<speak>{words}</speak>"
+    (price,) = priced(tmp_path, block(f'<iu longest="2s">{said * 2}</iu>'))
+    assert price.lasts == 2000 + lasting(words)
+    (price,) = priced(tmp_path, block(f'<iu longest="2s">{said}</iu>'))
+    assert price.lasts == lasting(words)
+
+
+def test_a_question_costs_its_prompt_and_its_timeout(tmp_path: Path) -> None:
+    field = '<form id="f"><field name="a" type="boolean"><prompt timeout="4s">Well?</prompt></field></form>'
+    (price,) = priced(tmp_path, field)
+    assert price.what == "question" and price.lasts == lasting("Well?") + 4000
+    assert price.listens and price.engages
+    (price,) = priced(tmp_path, field.replace(' timeout="4s"', ""))
+    assert price.lasts == lasting("Well?") + 5000
+
+
+def test_a_question_in_a_unit_costs_the_units_longest(tmp_path: Path) -> None:
+    body = (
+        '<form id="f"><iu longest="20s"><field name="a" type="boolean"><prompt>Well?</prompt>'
+        "</field></iu></form>"
+    )
+    (price,) = priced(tmp_path, body)
+    assert (price.what, price.lasts) == ("unit", 20_000 + lasting("Well?") + 5000)
+
+
+def test_a_loop_costs_one_loop(tmp_path: Path) -> None:
+    (price,) = priced(tmp_path, block("<tracking-human/>"))
+    assert price.loops and price.lasts == PROFILE.loop
+
+
+def test_reactions_are_what_follows_events_from_outside(tmp_path: Path) -> None:
+    body = FA.replace("</on>", '</on><on event="end.speak"><speak>Late.</speak></on>')
+    document, _ = read_application("a.xml", (HEAD.format("fa", "a") + body + "</prima>").encode())
+    (reaction,) = outline(document, PROFILE).reactions
+    assert reaction.events == ("touch",)
+    assert [price.devices for price in reaction.firsts] == [{"speaker"}]

@@ -1,0 +1,165 @@
+"""Prices of parts of VoiceXML documents, and runs that keep to them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima.checks.prices import Price, outline, prices
+from prima.loading import read_application
+from prima.loading.files import read_file
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from tests.helpers.certifying import (
+    PROFILE,
+    TOUCH,
+    block,
+    lasting,
+    priced,
+    run,
+    told,
+    voiced,
+    waited,
+)
+
+COMMANDS = {
+    "a block": '<form><block><p:gesture name="bow"/></block></form>',
+    "a branch": '<form><block><if cond="true"><p:gesture name="bow"/></if></block></form>',
+    "a prompt": '<form><block><prompt>So <p:gesture name="bow"/> it is.</prompt></block></form>',
+    "a loop": '<form><block><foreach item="x" array="[1]"><p:gesture name="bow"/></foreach></block></form>',
+    "filled": '<form><field name="a" type="boolean"><filled><p:gesture name="bow"/></filled></field></form>',
+    "a handler": '<form><block/></form><catch event="bell"><p:gesture name="bow"/></catch>',
+    "a question": '<form><field name="a" type="boolean"><prompt>Well <p:gesture name="bow"/></prompt></field></form>',
+    "a menu": '<menu><prompt>A <p:gesture name="bow"/></prompt><choice next="#x">x</choice></menu>',
+}
+
+
+@pytest.mark.parametrize("body", COMMANDS.values(), ids=COMMANDS)
+def test_commands_of_the_robot_in_voicexml_are_seen_everywhere(tmp_path: Path, body: str) -> None:
+    found, _, _ = voiced(tmp_path, body)
+    assert {"arm", "neck"} <= {*found.both, *found.only_ea}
+
+
+SPOKEN = "This is a rather long sentence that takes some seconds to say."
+ARRANGED = {
+    "par": "<par><speak>{}</speak><point-by-hand angle='40'/></par>",
+    "seq": "<par><seq><speak>{0}</speak><speak>{0}</speak></seq><gesture name='nod'/></par>",
+    "unit": "<iu longest='40s'><gesture name='nod'/><speak>{0}</speak><speak>{0}</speak></iu>",
+    "cut": "<iu longest='1s'><speak>{0}</speak><speak>{0}</speak><speak>{0}</speak></iu>",
+    "branches": "<iu><par><speak>{}</speak><seq><pause time='9s'/><gesture name='nod'/></seq></par></iu>",
+    "inner": "<iu><par><iu><speak>{}</speak></iu><gesture name='bow'/></par></iu>",
+}
+"""Commands that are arranged, in PRIMA's language; with prefixes, in VoiceXML."""
+
+
+def prefixed(content: str) -> str:
+    return content.replace("</", "<!").replace("<", "<p:").replace("<p:!", "</p:")
+
+
+@pytest.mark.parametrize("content", ARRANGED.values(), ids=ARRANGED)
+@pytest.mark.parametrize("around", ["{}", "<prompt>{}</prompt>", "<prompt><p>{}</p></prompt>"])
+def test_arranged_commands_cost_the_same_in_both_languages(
+    tmp_path: Path, content: str, around: str
+) -> None:
+    content = content.format(SPOKEN)
+    own = priced(tmp_path, block(content))
+    body = f"<form><block>{around.format(prefixed(content))}<exit/></block></form>"
+    found, fa, ea = voiced(tmp_path, body)
+    document, _ = read_application(ea, read_file(Path(ea)))
+    theirs = [one for one in prices(document, PROFILE) if one.node.namespace == PRIMA_NAMESPACE]
+    assert list(map(told, own)) == list(map(told, theirs))
+    units = [one.place for one in theirs if one.what == "unit"]
+    assert (found.longest_unit is None) == (not units)
+    assert found.longest_unit is None or [found.longest_unit.place] == units
+    assert found.lacks["papero"] == []
+    (delay,) = found.delays
+    at = TOUCH.replace("1s", "10ms")
+    assert 0 < waited(run(tmp_path, fa, ea, at)) * 1000 <= delay.lasts + 10
+
+
+def test_a_robot_has_to_have_the_commands_in_a_unit_of_voicexml(tmp_path: Path) -> None:
+    unit = '<p:iu><p:command type="hum"/><p:speak>So.</p:speak></p:iu>'
+    found, _, _ = voiced(tmp_path, f"<form><block>{unit}</block></form>")
+    assert found.lacks["papero"] == ["hum"]
+
+
+def test_a_unit_of_voicexml_ends_after_a_minute_as_in_primas_language(tmp_path: Path) -> None:
+    unit = ARRANGED["unit"].replace(" longest='40s'", "").replace("{0}", SPOKEN * 30)
+    body = f"<form><block>{prefixed(unit)}</block></form>"
+    found, fa, ea = voiced(tmp_path, body)
+    assert found.longest_unit is not None
+    assert found.longest_unit.lasts == 60_000 + lasting(SPOKEN * 30)
+    records = run(tmp_path, fa, ea, TOUCH, "300s")
+    assert any(one.get("event") == "error.unit.timeout" for one in records)
+
+
+def in_unit(inner: str, longest: str = "20s", around: str = "") -> str:
+    return f'<form><p:iu longest="{longest}">{inner}</p:iu>{around}</form>'
+
+
+ASKED = '<field name="a" type="boolean"><prompt>Well?</prompt>{}</field>'
+
+
+def voice_parts(folder: Path, body: str) -> list[Price]:
+    """What a VoiceXML document is said to cost."""
+    _, _, ea = voiced(folder, body)
+    document, problems = read_application(ea, read_file(Path(ea)))
+    assert [str(one) for one in problems] == []
+    return prices(document, PROFILE)
+
+
+def test_a_unit_around_items_of_voicexml_costs_its_longest(tmp_path: Path) -> None:
+    inner = "<block>One.</block>" + ASKED.format("<filled>Fine.</filled><noinput>Hm?</noinput>")
+    (unit,) = voice_parts(tmp_path, in_unit(inner))
+    assert unit.what == "unit" and unit.devices == {"speaker", "speech-recognition"}
+    said = lasting("I did not understand.")  # the longest that may be said before it is asked again
+    assert unit.lasts == 20_000 + said + 5000 + 1
+    assert unit.engages and unit.listens and unit.known
+    assert {one.what for one in unit.inner} == {"speak", "question"}
+
+
+def test_a_unit_around_blocks_of_voicexml_costs_their_sum(tmp_path: Path) -> None:
+    inner = '<block>One.</block><block><p:gesture name="bow"/>Two.</block>'
+    (unit,) = voice_parts(tmp_path, in_unit(inner))
+    assert unit.lasts == lasting("One.") + 1500 + lasting("Two.")
+    outer = '<catch event="x">Three.</catch>'
+    (three, more) = voice_parts(
+        tmp_path, in_unit(f'{inner}<block><throw event="x"/></block>') + outer
+    )
+    assert (more.what, more.lasts) == ("unit", 20_000 + 1500), "nobody knows how often it is thrown"
+    assert (three.what, three.lasts) == ("speak", lasting("Three."))
+
+
+def test_a_unit_of_voicexml_may_end_long_after_its_time(tmp_path: Path) -> None:
+    words = SPOKEN * 10
+    inner = ASKED.format("") + "<block>One.</block>"
+    (said, unit) = voice_parts(tmp_path, in_unit(inner) + f"<noinput>{words}<exit/></noinput>")
+    assert said.lasts == lasting(words)
+    assert unit.lasts == 20_000 + lasting(words) + 5001, "that is said before it is asked again"
+
+
+@pytest.mark.parametrize(
+    ("inner", "most"),
+    [
+        ("<block>One.</block>" + ASKED.format(""), 30),
+        (f"<block>{SPOKEN}<prompt>So.</prompt></block>", 10),
+        (f"<block>{SPOKEN * 8}</block>", 40),
+        ("<block><foreach item='i' array='[1,2,3,4,5,6,7,8]'>One and two.</foreach></block>", 22),
+    ],
+)
+def test_what_a_unit_of_voicexml_costs_is_true(tmp_path: Path, inner: str, most: int) -> None:
+    found, fa, ea = voiced(tmp_path, in_unit(inner, around="<error><exit/></error>"))
+    (delay,) = found.delays
+    at = TOUCH.replace("1s", "10ms")
+    needed = waited(run(tmp_path, fa, ea, at, "99s")) * 1000
+    assert 1000 < needed <= delay.lasts + 10 <= most * 1000
+    assert found.longest_unit is not None and found.longest_unit.node.tag == "iu"
+
+
+def test_a_reaction_of_voicexml_begins_with_all_branches_of_a_par(tmp_path: Path) -> None:
+    par = '<p:par><p:seq><p:speak>Oh.</p:speak><p:gesture name="nod"/></p:seq><p:turn angle="5"/></p:par>'
+    body = f'<form><block/></form><catch event="bell">{par}</catch>'
+    _, _, ea = voiced(tmp_path, body)
+    document, _ = read_application(ea, read_file(Path(ea)))
+    (reaction,) = outline(document, PROFILE).reactions
+    assert [one.what for one in reaction.firsts] == ["speak", "turn"]

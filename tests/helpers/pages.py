@@ -1,0 +1,51 @@
+"""Examples in the pages of the documentation."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+from lxml import etree
+
+from prima.devices.vocabulary import ROBOT
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.sim.vocabulary import SCENARIO, WORLD
+from tests import ROOT
+
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+FENCE = re.compile(
+    r"^```(?P<language>\w*)(?: (?P<name>\S+))?\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
+)
+NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO)}
+MODULE = [sys.executable, "-m", "prima"]
+
+
+def run(words: list[str], folder: Path, given: str | None = None) -> tuple[int, list[str]]:
+    paths = [
+        sorted(path.relative_to(folder).as_posix() for path in folder.glob(word))
+        if "*" in word
+        else [word]
+        for word in words
+    ]
+    done = subprocess.run(
+        [*MODULE, *(name for names in paths for name in names)],
+        cwd=folder,
+        input=given,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        timeout=120,
+    )
+    return done.returncode, [line.rstrip() for line in done.stdout.splitlines()]
+
+
+BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">'
+
+
+@lru_cache
+def compiled_schema(name: str) -> etree.XMLSchema:
+    """The published schema of that name."""
+    return etree.XMLSchema(etree.parse(str(ROOT / "schemas" / f"{name}.xsd")))

@@ -1,0 +1,106 @@
+"""A document under test, run by a session on devices that do what the test says."""
+
+from __future__ import annotations
+
+from prima.errors import Problem
+from prima.interpreter.elements import Document
+from prima.interpreter.reader import read_document
+from prima.language.commands import TABLE_4_2
+from prima.messages import Ended, Failed, Heard, Inbound, Listening, Loaded, Occurred, Order, Record
+from prima.scheduler.policy import policy_named
+from prima.session import Session
+
+HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{kind}" id="{name}">'
+
+CAUGHT = '<on event="error.semantic"><log expr="_event"/></on>'
+"""A handler that logs the error."""
+
+
+def xml(body: str, kind: str = "fa", name: str = "app") -> bytes:
+    return (HEAD.format(kind=kind, name=name) + body + "</prima>").encode()
+
+
+def read(body: str, kind: str = "fa", name: str = "app") -> tuple[Document, list[Problem]]:
+    return read_document(f"{name}.xml", xml(body, kind, name))
+
+
+def document(body: str, kind: str = "fa", name: str = "app") -> Document:
+    made, problems = read(body, kind, name)
+    assert [str(one) for one in problems if one.severity == "error"] == []
+    return made
+
+
+class Bench:
+    """Runs documents; every Command lasts until the test ends it."""
+
+    def __init__(
+        self, *documents: Document | str, policy: str = "prima", isolate: str = "ea"
+    ) -> None:
+        made = [document(one) if isinstance(one, str) else one for one in documents]
+        self.session = Session(made, policy_named(policy), TABLE_4_2, isolate=isolate)
+        self.now = 0
+        self.records: list[Record] = []
+        self.orders: list[Order] = []
+        self.step(*[Loaded(one.id) for one in made])
+
+    def step(self, *inbound: Inbound, at: int | None = None) -> None:
+        self.now = self.now + 100 if at is None else at
+        self.orders += self.session.step(self.now, inbound)
+        self.records += self.session.drain()
+
+    # What is running ------------------------------------------------------------
+
+    def running(self) -> dict[str, str]:
+        """Running ABs and what they say, or their Command."""
+        memory = self.session.mediator.memory
+        return {
+            ab.id: (ab.command.text or ab.command.type) if ab.command else "iu"
+            for ab in memory.running.values()
+        }
+
+    def saying(self) -> list[str]:
+        return sorted(self.running().values())
+
+    # What happens ---------------------------------------------------------------
+
+    def finish(self, what: str = "", goal: bool = True) -> None:
+        """The running Command that says or is ``what`` ends."""
+        self.step(Ended(self._id(what), goal))
+
+    def fail(self, what: str, device: str = "speaker") -> None:
+        self.step(Failed(self._id(what), device, "broken"))
+
+    def _id(self, what: str) -> str:
+        found = [key for key, said in self.running().items() if what in said and said != "iu"]
+        assert len(found) == 1, (what, self.running())
+        return found[0]
+
+    def listens(self) -> None:
+        question = self.session.mediator.question()
+        assert question is not None
+        self.step(Listening(question.id))
+
+    def hears(self, text: str, confidence: float | None = None, **others: float) -> None:
+        """The user says something; of which, and of ``others``, the recogniser is so sure."""
+        told = [{"text": word, "confidence": sure} for word, sure in others.items()]
+        data = {} if confidence is None else {"confidence": confidence}
+        self.step(Heard(text, {**data, **({"alternatives": told} if told else {})}))
+
+    def silence(self) -> None:
+        question = self.session.mediator.question()
+        assert question is not None
+        self.step(Ended(question.id, True, {"outcome": "noinput"}))
+
+    def event(self, name: str, **data: object) -> None:
+        self.step(Occurred(name, "environment", data))
+
+    # What was said ------------------------------------------------------------------
+
+    def said(self) -> list[str]:
+        return [r["text"] for r in self.records if r["phase"] == "start" and r.get("text")]
+
+    def logs(self) -> list[str]:
+        return [r["message"] for r in self.records if r["phase"] == "log"]
+
+    def phases(self, phase: str) -> list[Record]:
+        return [record for record in self.records if record["phase"] == phase]

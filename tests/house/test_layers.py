@@ -1,0 +1,325 @@
+"""The layers: each imports only those below it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import prima
+from tests import ROOT
+
+PACKAGE = ROOT / "prima"
+
+LAYERS = [
+    {"errors"},
+    {"messages", "language"},
+    {"markup", "transcript"},
+    {"script"},
+    {"grammar"},
+    {"interpreter", "scheduler"},
+    {"voicexml"},
+    {"session"},
+    {"devices", "journal"},
+    {"sim"},
+    {"checks"},
+    {"exports", "loading", "pool"},
+    {"live"},
+    {"api"},
+    {"certificate", "graph", "lsp", "report", "talk", "templates", "testing"},
+    {"experiments", "handbook"},
+    {"cli", "__init__", "pytest_plugin"},
+    {"__main__"},
+]
+"""Lowest first; parts of one layer do not know each other."""
+
+INSIDE = {
+    "scheduler": [
+        {"robot_state"},
+        {"behavior"},
+        {"recorder", "memory", "admission"},
+        {"rules"},
+        {"policy"},
+        {"mediation"},
+        {"interruption", "preparation", "starvation", "streams"},
+        {"endings"},
+        {"failures", "emergency", "requests", "selection"},
+        {"mediator"},
+        {"__init__"},
+    ],
+    "markup": [
+        {"limits", "opening", "uris", "vocabulary", "tree"},
+        {"slips", "spans"},
+        {"build", "check", "rnc", "schema"},
+        {"reader"},
+        {"__init__"},
+    ],
+    "errors": [
+        {"visible", "words"},
+        {"problems"},
+        {"diagnosis", "guesses"},
+        {"diagnoses", "rendering"},
+        {"__init__"},
+    ],
+    "language": [{"values"}, {"commands"}, {"__init__"}],
+    "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
+    "experiments": [{"plan", "study"}, {"ledger", "rows"}, {"batch"}, {"__init__"}],
+    "handbook": [{"examples", "rulebook"}, {"__init__"}],
+    "script": [
+        {"prelude"},
+        {"budget", "evaluation", "globals", "parse", "wire"},
+        {"choices", "ecmascript", "known", "names"},
+        {"hoisting", "syntax"},
+        {"compile", "engine", "sandbox"},
+        {"host"},
+        {"worker"},
+        {"isolated"},
+        {"__init__"},
+    ],
+    "grammar": [
+        {"errors", "prefixes", "text", "numbers"},
+        {"media"},
+        {"model", "moments"},
+        {"values", "builtin", "leads", "legacy", "chart"},
+        {"xmlform", "abnf", "ranking"},
+        {"semantics", "tags", "types"},
+        {"grammar", "linking"},
+        {"answers", "dialogue", "loading"},
+        {"__init__"},
+    ],
+    "interpreter": [
+        {"diagnoses", "vocabulary"},
+        {"elements", "selection"},
+        {"events", "places", "plain", "sensors"},
+        {"naming", "transfers"},
+        {"entering", "rounds", "surroundings", "units"},
+        {"returning", "ways"},
+        {"repeats"},
+        {"grammars"},
+        {"build", "checks", "frame"},
+        {"reader", "owner"},
+        {"content"},
+        {"form", "bounds"},
+        {"handling", "protocol"},
+        {"application"},
+        {"__init__"},
+    ],
+    "exports": [{"timeline"}, {"tiers"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
+    "lsp": [
+        {"descriptions", "text"},
+        {"scan"},
+        {"tables"},
+        {"names"},
+        {"workspace"},
+        {"hover", "naming", "outline", "problems"},
+        {"complete", "fixes", "protocol"},
+        {"server"},
+        {"__init__"},
+    ],
+    "graph": [
+        {"layout", "model"},
+        {"labels", "run", "svg"},
+        {"throws"},
+        {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
+        {"worldmap"},
+        {"__init__"},
+    ],
+    "certificate": [{"model"}, {"finding", "summary"}, {"__init__"}],
+    "report": [{"lanes", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
+    "testing": [
+        {"tracing", "golden", "sources"},
+        {"coverage", "facts", "finding"},
+        {"excerpts", "matching", "sentences"},
+        {"checking"},
+        {"running"},
+        {"summary"},
+        {"junit"},
+        {"__init__"},
+    ],
+    "devices": [
+        {"ear", "goals", "protocol", "reading", "senses", "vocabulary", "voice"},
+        {"settings"},
+        {"loop", "profile", "speech"},
+        {"conductor"},
+        {"__init__"},
+    ],
+    "live": [
+        {"clock", "driver", "journal"},
+        {"devices", "drivers"},
+        {"shell"},
+        {"visit"},
+        {"preflight"},
+        {"__init__"},
+    ],
+    "sim": [
+        {"vocabulary", "plan"},
+        {"map", "happenings"},
+        {"expectations"},
+        {"scenario"},
+        {"entrances", "world"},
+        {"routes"},
+        {"locomotion"},
+        {"body"},
+        {"robot"},
+        {"expected", "person", "services", "telephone"},
+        {"devices"},
+        {"rehearsal"},
+        {"hearing"},
+        {"__init__"},
+    ],
+}
+
+ALONE = {
+    "lxml": {"markup.reader"},
+    "pymunk": {"sim.world"},
+    "networkx": {"sim.routes"},
+    "lark": {"grammar.abnf"},
+    "tree_sitter": {"script.parse"},
+    "tree_sitter_javascript": {"script.parse"},
+    "_quickjs": {"script.engine", "script.sandbox", "script.syntax"},
+    "pydantic": {"transcript.record", "transcript.lines"},
+    "click": {"cli"},
+    "mcap": {"exports.mcap"},
+    "pygls": {"lsp.protocol", "lsp.server"},
+    "lsprotocol": {"lsp.protocol", "lsp.server"},
+}
+"""Libraries that one module or package alone knows."""
+
+OUTSIDE = {"time", "threading", "random", "datetime", "asyncio", "socket", "subprocess", "os"}
+CORE = (
+    "grammar",
+    "interpreter",
+    "scheduler",
+    "session",
+    "messages",
+    "commands",
+    "markup",
+    "transcript",
+    "sim",
+)
+
+
+def modules() -> dict[str, ast.Module]:
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
+        found[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return found
+
+
+MODULES = modules()
+
+
+def imported(tree: ast.Module, types_too: bool = False) -> set[str]:
+    """Names of modules imported anywhere in a module, inside functions as well."""
+    names: set[str] = set()
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        typing = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+        if typing and not types_too:
+            skipped.update(ast.walk(node))
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+    return names
+
+
+def rank(layers: list[set[str]], part: str) -> int:
+    for index, layer in enumerate(layers):
+        if part in layer:
+            return index
+    raise AssertionError(f"{part} has no layer")
+
+
+@pytest.mark.parametrize("name", sorted(MODULES))
+def test_a_module_imports_only_what_stands_below(name: str) -> None:
+    package = name.split(".")[0]
+    for target in imported(MODULES[name], types_too=True):
+        parts = target.split(".")
+        if parts[0] != "prima" or len(parts) < 2:
+            continue
+        if parts[1] == package:
+            inside = INSIDE.get(package)
+            if inside and len(parts) > 2 and f"{package}.{parts[2]}" in MODULES:
+                own = name.split(".")[1]
+                if own != parts[2]:
+                    assert rank(inside, parts[2]) < rank(inside, own), f"{name} imports {target}"
+        elif parts[1] in MODULES or any(key.startswith(f"{parts[1]}.") for key in MODULES):
+            assert rank(LAYERS, parts[1]) < rank(LAYERS, package), f"{name} imports {target}"
+
+
+@pytest.mark.parametrize(("library", "homes"), sorted(ALONE.items()))
+def test_a_library_is_known_in_its_own_place_alone(library: str, homes: set[str]) -> None:
+    users = {
+        name
+        for name, tree in MODULES.items()
+        if any(target.split(".")[0] == library for target in imported(tree))
+    }
+    assert all(user in homes or user.split(".")[0] in homes for user in users)
+
+
+def test_the_core_has_no_clock_thread_chance_or_socket() -> None:
+    for name, tree in MODULES.items():
+        if name.split(".")[0] in CORE:
+            used = {target.split(".")[0] for target in imported(tree)}
+            assert not used & OUTSIDE, name
+
+
+def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
+    code = (
+        "import sys\nfrom prima.cli import cli\n"
+        "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'pymunk', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+        "assert not {one for one in sys.modules if one.startswith('prima.cli.')} - {'prima.cli.common', 'prima.cli.failures'}"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+BESIDE_VALIDATE = (
+    *("pymunk", "pydantic", "lxml", "_quickjs"),
+    "asyncio",
+    *("prima.api", "prima.messages", "prima.session", "prima.sim", "prima.script.engine"),
+)
+"""What checking an application of simple code does without, so that it starts quickly."""
+
+
+@pytest.mark.parametrize(
+    ("source", "engine"),
+    [
+        ((ROOT / "documents" / "fa" / "follow.xml").read_text(encoding="utf-8"), False),
+        (
+            '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">'
+            '<form id="f"><block><log expr="Math.max(1, 2)"/></block></form></prima>',
+            True,
+        ),
+    ],
+    ids=["simple code", "other code"],
+)
+def test_validating_an_application_imports_little(
+    source: str, engine: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(source, encoding="utf-8")
+    code = (
+        "import sys\nfrom prima.cli import cli\n"
+        f"cli.main(['validate', {str(path)!r}], standalone_mode=False)\n"
+        f"print(*sorted({{*{BESIDE_VALIDATE}}} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stderr.startswith("files: 1; ") and "error: " not in done.stdout
+    assert "_quickjs" not in done.stdout.split(), "strangers' code is compiled in another process"
+    if not engine:
+        assert done.stdout == "\n"
+
+
+def test_no_module_hides_a_function_of_the_interface() -> None:
+    """``prima.export`` would be the module as soon as anything had imported it."""
+    assert not {name.split(".")[0] for name in MODULES} & set(prima.__all__)

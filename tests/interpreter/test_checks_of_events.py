@@ -1,0 +1,34 @@
+"""Which events a document of PRIMA's own language may name."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.command import prima
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        ('<form id="m"><block><log expr="event.name"/><exit/></block></form>', "event"),
+        ('<form id="m"><block><log expr="1 + _event.name"/><exit/></block></form>', "_event"),
+        ('<form id="m"><block><speak>A<value expr="_message"/></speak><exit/></block></form>', "_message"),
+        ('<form id="m"><block><speak>A<on event="failed"><log expr="event.name"/></on></speak><exit/></block></form>', ""),
+        ('<form id="m"><block><exit/></block></form><on event="touch" cond="event.data"><log expr="event"/></on>', ""),
+        ('<form id="m"><block><log expr="[1].map(event => event)"/><exit/></block></form>', ""),
+        ("""<form id="m"><block><log expr="'event'"/><exit/></block></form>""", ""),
+        ('<var name="event" expr="1"/><form id="m"><block><log expr="event"/><exit/></block></form>', ""),
+        ('<form id="m"><block><foreach item="event" array="[1]"><log expr="event"/></foreach><exit/></block></form>', ""),
+        ('<form id="m"><block><log expr="typeof event"/><exit/></block></form>', ""),
+    ],
+)  # fmt: skip
+def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_path: Path) -> None:
+    text = f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">{content}</prima>'
+    (tmp_path / "a.xml").write_text(text)
+    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
+    found = [one for one in json.loads(done.stdout) if one["severity"] == "error"]
+    assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
+    assert all(f'"{name}" is there in a handler only' in one["message"] for one in found)

@@ -1,0 +1,51 @@
+"""Subdialogs: their own context, and the values they return."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.helpers.robot import Bench
+
+
+def test_a_subdialog_has_its_own_context_and_gives_values_back() -> None:
+    bench = Bench(
+        """<var name="n" expr="1"/>
+        <form id="a"><subdialog name="r" src="#sub"><param name="p" expr="n + 1"/>
+            <filled><log expr="r.q + ' ' + n"/></filled></subdialog>
+          <block><log>after</log></block></form>
+        <form id="sub"><var name="p"/><var name="q"/>
+          <block><assign name="n" expr="99"/><speak>Inside.</speak>
+            <assign name="q" expr="p * 10"/><return namelist="q"/></block></form>"""
+    )
+    assert bench.saying() == ["Inside."]
+    bench.finish("Inside.")
+    assert bench.logs() == ["20 1", "after"]
+
+
+def test_a_subdialog_that_never_waits_and_one_that_goes_on_elsewhere() -> None:
+    bench = Bench(
+        """<form id="a"><subdialog name="r" src="#sub"><filled><log expr="r.x"/></filled></subdialog></form>
+        <form id="sub"><block><goto next="#more"/></block></form>
+        <form id="more"><var name="x" expr="7"/><block><return namelist="x"/></block></form>"""
+    )
+    assert bench.logs() == ["7"]
+
+
+def test_a_subdialog_may_return_an_event() -> None:
+    bench = Bench(
+        """<form id="a"><subdialog name="r" src="#sub"><on event="nope"><log>nope</log></on></subdialog></form>
+        <form id="sub"><block><speak>Hm.</speak><return event="nope"/></block></form>"""
+    )
+    bench.finish("Hm.")
+    assert "nope" in bench.logs()
+
+
+@pytest.mark.parametrize("head", ["", "<script>var own = 1</script>"])
+def test_a_subdialog_may_give_what_is_not_a_number(head: str) -> None:
+    bench = Bench(
+        f"""{head}<form id="a"><subdialog name="s" src="#b"/>
+          <block><log><value expr="s.p"/> <value expr="s.q.r"/></log></block></form>
+        <form id="b"><var name="p" expr="0 / 0"/><var name="q"/>
+          <block><var name="q" expr="{{r: 1}}"/><return namelist="p q"/></block></form>"""
+    )
+    assert bench.logs() == ["NaN 1"]

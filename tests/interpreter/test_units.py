@@ -1,0 +1,222 @@
+"""Units around items, and the devices of handlers that they can reach (F6, U5)."""
+
+from __future__ import annotations
+
+import pytest
+
+from prima.interpreter.units import units_of
+from tests.helpers.robot import Bench, document, read
+
+UNIT = """<form id="a">
+  <iu name="u" longest="20s">
+    <field name="x" type="boolean"><prompt>May I?</prompt>{}</field>
+    <block cond="x"><speak>Smile!</speak></block>
+  </iu>
+  <block><speak>Bye.</speak></block>
+  <on event="error.unit.timeout"><log>too long</log></on>
+</form>"""
+
+
+def test_a_unit_around_items_owns_its_devices_from_question_to_the_last_word() -> None:
+    other = document(
+        '<form id="a"><on event="touch"><speak>Ouch.</speak></on></form>', name="other"
+    )
+    bench = Bench(document(UNIT.format(""), name="photo"), other)
+    bench.event("touch")
+    assert bench.saying() == ["May I?", "iu"]
+    bench.hears("yes")
+    assert bench.saying() == ["Smile!", "iu"]
+    bench.finish("Smile!")
+    assert bench.saying() == ["Ouch."], "the unit has ended; the reaction goes before Bye"
+    bench.finish("Ouch.")
+    assert bench.saying() == ["Bye."]
+
+
+ANSWER = (
+    '<var name="n"/><form id="a"><block><speak>The answer is</speak><move-head pan="30"/>{}'
+    "<speak>forty two.</speak><exit/></block></form>"
+)
+TRAINS = '<form id="a"><on event="touch" reactive="false"><speak>I like trains.</speak></on></form>'
+
+
+@pytest.mark.parametrize(
+    ("between", "said"),
+    [("", ["move-head"]), ('<assign name="n" expr="42"/>', ["I like trains.", "move-head"])],
+)
+def test_f6_what_is_not_requested_yet_keeps_no_topic_together(
+    between: str, said: list[str]
+) -> None:
+    bench = Bench(document(ANSWER.format(between), name="answer"), document(TRAINS, name="other"))
+    bench.event("touch")
+    bench.finish("The answer is")
+    assert sorted(bench.saying()) == said
+
+
+REACHING = """<form id="a">{form}
+  <iu name="u">{unit}
+    <field name="x" type="boolean"><prompt>May I?</prompt>{field}</field>
+    <block>{block}</block>
+  </iu>
+  <block><exit/></block>
+</form><form id="b"><block><topological-move to="hall"/><exit/></block></form>{document}"""
+TURNS = '<on event="{}"><turn angle="90"/></on>'
+GOES = '<on event="{}"><topological-move to="hall"/></on>'
+
+
+def reaching(**parts: str) -> str:
+    given = dict.fromkeys(("form", "unit", "field", "block", "document"), "") | parts
+    return REACHING.format(**given)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"field": '<filled><throw event="x.y"/></filled>', "document": TURNS.format("x")},
+        {"block": '<throw event="x"/>', "form": TURNS.format("x")},
+        {"block": "<throw event-expr='x'/>", "document": TURNS.format("z")},
+        {"form": TURNS.format("noinput")},
+        {"field": TURNS.format("touch")},
+        {"unit": TURNS.format("touch")},
+        {"form": '<filled><turn angle="90"/></filled>'},
+        {"form": '<filled namelist="x"><turn angle="90"/></filled>'},
+        {"document": TURNS.format("error.device")},
+        {"block": "<speak>Hi.</speak>", "document": TURNS.format("error.unsupported.speak")},
+        {
+            "block": '<throw event="x"/>',
+            "form": '<on event="x"><throw event="y"/></on>',
+            "document": TURNS.format("y"),
+        },
+        {
+            "field": '<noinput><throw event="y"/></noinput>',
+            "document": TURNS.format("y") + "<noinput><turn angle='9'/></noinput>",
+        },
+        {"field": "<noinput count='2'><reprompt/></noinput>", "document": TURNS.format("noinput")},
+        {
+            "field": "<noinput cond='x'><reprompt/></noinput>",
+            "document": TURNS.format("noinput"),
+        },
+    ],
+)
+def test_u5_a_unit_owns_what_the_handlers_need_that_it_can_reach(parts: dict[str, str]) -> None:
+    made, _ = read(reaching(**parts))
+    (unit,) = [unit for _, unit in units_of(made)]
+    assert unit.devices == {"speaker", "speech-recognition", "locomotion"}
+    assert "turn" in unit.types
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"form": TURNS.format("touch")},
+        {"document": TURNS.format("x")},
+        {"document": TURNS.format("error.unit.timeout")},
+        {"document": TURNS.format("error.unsupported.speak")},
+        {"field": "<noinput><reprompt/></noinput>", "document": TURNS.format("noinput")},
+        {"unit": "<noinput><reprompt/></noinput>", "form": TURNS.format("noinput")},
+        {"form": '<field name="y" type="boolean"/><filled namelist="y"><turn angle="9"/></filled>'},
+    ],
+)
+def test_u5_a_unit_owns_nothing_for_handlers_that_it_cannot_reach(parts: dict[str, str]) -> None:
+    made, _ = read(reaching(**parts))
+    (unit,) = [unit for _, unit in units_of(made)]
+    assert unit.devices == {"speaker", "speech-recognition"}
+
+
+CHOOSES = '<filled><throw event-expr="{}"/></filled>'
+GIVEN = '<var name="e" expr="old ? \'y\' : \'z\'"/><var name="old" expr="true"/>'
+
+
+@pytest.mark.parametrize(
+    ("code", "document", "reached"),
+    [
+        ("x ? 'y' : 'z'", "", False),
+        ("x ? 'x' : 'z'", "", True),
+        ("'x' + x", "", True),
+        ("x", "", True),
+        ("e", GIVEN, False),
+        ("e", GIVEN.replace("'z'", "'x'"), True),
+        ("e", GIVEN.replace("'z'", "old"), True),
+        ("e", GIVEN + "<script>e = 'x';</script>", True),
+        ("e", GIVEN + TURNS.format("touch").replace("<turn", "<log expr=\"e = 'x'\"/><turn"), True),
+        ("e", GIVEN + TURNS.format("a").replace("<turn", "<assign name='e' expr=\"'x'\"/><turn"), True),
+        ("e", GIVEN + TURNS.format("a").replace("<turn", "<assign name='e' expr=\"'w'\"/><turn"), False),
+    ],
+)  # fmt: skip
+def test_u5_an_expression_reaches_the_events_that_it_may_name(
+    code: str, document: str, reached: bool
+) -> None:
+    parts = {"field": CHOOSES.format(code), "document": document + GOES.format("x")}
+    _, problems = read(reaching(**parts))
+    codes = [one.code for one in problems if one.severity == "error"]
+    assert codes == (["not-in-unit"] if reached else [])
+
+
+def test_u5_an_expression_that_may_name_any_event_is_told() -> None:
+    parts = {"field": CHOOSES.format("x"), "document": GOES.format("z")}
+    _, problems = read(reaching(**parts))
+    (problem,) = [one for one in problems if one.severity == "error"]
+    told = 'reaches it by the event "z", which the expression "x" may name; it cannot stand'
+    assert told in problem.message
+    assert "as a text, x ? 'this' : 'that', or leave the <iu> with <goto> first." in problem.remedy
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        (
+            {"field": '<filled><throw event="x"/></filled>', "document": GOES.format("x")},
+            "<topological-move> leaves the user, and the unit in line 2 reaches it by the event"
+            ' "x"; it cannot stand in a unit. Handle "x" in the <iu> as well,'
+            " or leave the <iu> with <goto> first.",
+        ),
+        (
+            {"form": "<noinput><tracking-human/></noinput>"},
+            "<tracking-human> works in a feedback loop, and the unit in line 2 reaches it by the"
+            ' event "noinput"; it cannot stand',
+        ),
+        (
+            {"form": '<filled><topological-move to="hall"/></filled>'},
+            "and the unit in line 2 reaches it; it cannot stand in a unit. Leave the <iu> with",
+        ),
+        ({"field": GOES.format("touch")}, "<topological-move> leaves the user; it cannot stand"),
+    ],
+)
+def test_u5_no_command_that_a_unit_reaches_leaves_the_user(
+    parts: dict[str, str], says: str
+) -> None:
+    _, problems = read(reaching(**parts))
+    (problem,) = [one for one in problems if one.severity == "error"]
+    assert problem.code == "not-in-unit" and says in f"{problem.message} {problem.remedy}"
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"form": GOES.format("touch")},
+        {"document": GOES.format("error.unit.timeout")},
+        {"document": '<noinput><goto next="#b"/></noinput>'},
+        {"field": "<noinput><exit/></noinput>", "document": GOES.format("noinput")},
+    ],
+)
+def test_u5_a_command_that_no_unit_reaches_may_leave_the_user(parts: dict[str, str]) -> None:
+    _, problems = read(reaching(**parts))
+    assert [one for one in problems if one.code == "not-in-unit"] == []
+
+
+def test_leaving_a_unit_by_goto_ends_it() -> None:
+    bench = Bench(
+        UNIT.format('<noinput><goto next="#b"/></noinput>')
+        + '<form id="b"><block><speak>Never mind.</speak></block></form>'
+    )
+    bench.silence()
+    assert bench.saying() == ["Never mind."]
+
+
+def test_a_unit_that_takes_too_long_throws_and_ends() -> None:
+    bench = Bench(UNIT.format(""))
+    bench.listens()
+    bench.step(at=20_100)
+    assert bench.logs() == ["too long"]
+    assert bench.saying() == ["May I?", "iu"], "the Command that runs finishes"
+    bench.silence()
+    assert bench.saying() == ["Bye."]

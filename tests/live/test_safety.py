@@ -1,0 +1,236 @@
+"""However a run ends, and whatever is lost meanwhile, the robot is made safe."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+import pytest
+
+from prima import api
+from prima.devices.goals import Begin, Lost
+from prima.devices.loop import Loop
+from prima.devices.settings import USUAL, DriverSettings, Limits
+from prima.errors import Place, RunError
+from prima.live.clock import Clock
+from prima.live.devices import LiveDevices
+from prima.live.driver import TaskDriver, Unreachable
+from prima.live.shell import Shell
+from prima.live.visit import FOREVER_MS
+from prima.messages import Data, Emergency, Heard, Record
+from prima.scheduler.policy import policy_named
+from prima.sim.rehearsal import make_session
+from prima.sim.services import Services
+
+TALK = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="talk" kind="ea">
+  <form id="a">
+    <block><speak>One.</speak><speak>Two.</speak></block>
+    <field name="more"><prompt>Shall I go on?</prompt><option>yes</option></field>
+    <block><speak>Three.</speak><exit/></block>
+  </form>
+</prima>"""
+TURNS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="turns" kind="fa">
+  <form id="a">
+    <block><turn angle="10"/><turn angle="20"/><turn angle="30"/><exit/></block>
+  </form>
+</prima>"""
+
+
+class Robot(TaskDriver):
+    """Says and turns for as long as it is told to; notes when it is made safe."""
+
+    kind = "robot"
+
+    def __init__(self, devices: frozenset[str], lasts: float = 0.02) -> None:
+        place = Place("robot.xml")
+        given = DriverSettings("robot", "", devices, 200, 100, USUAL, [], [], place)
+        profile = api.stage([], ["documents/ea/guide.xml"]).cast.robot
+        super().__init__(given, profile, api.stage([], ["documents/ea/guide.xml"]).cast.world)
+        self.lasts = lasts
+        self.safe_calls = 0
+        self.doing: list[str] = []
+        self.there = True
+        self.begun: Callable[[Begin], None] = lambda _: None
+
+    async def open(self) -> None:
+        if not self.there:
+            raise Unreachable("it is switched off")
+
+    async def ping(self) -> None:
+        await self.open()
+
+    async def perform(self, goal: Begin) -> Data:
+        self.doing.append(goal.kind)
+        self.begun(goal)
+        await asyncio.sleep(1000 if goal.kind == "listen" else self.lasts)
+        return {}
+
+    async def safe(self) -> None:
+        self.safe_calls += 1
+
+
+@pytest.fixture
+def stage(tmp_path: object) -> Callable[..., tuple[Loop, list[Robot]]]:
+    def made(lasts: float = 0.02) -> tuple[Loop, list[Robot]]:
+        folder = str(tmp_path)
+        for name, text in (("talk", TALK), ("turns", TURNS)):
+            with open(f"{folder}/{name}.xml", "w") as file:
+                file.write(text)
+        cast = api.stage([f"{folder}/turns.xml"], [f"{folder}/talk.xml"]).cast
+        voice = frozenset({"speaker", "speech-recognition", "human-detection"})
+        robots = [Robot(voice, lasts), Robot(cast.robot.devices - voice, lasts)]
+        names = [doc.id for doc in cast.documents]
+        devices = LiveDevices(cast.robot, robots, Services([]), names)
+        session = make_session(cast, policy_named("prima"), None, "none", None)
+        return Loop(session, devices, FOREVER_MS, None), robots
+
+    return made
+
+
+Stage = Callable[..., tuple[Loop, list[Robot]]]
+
+
+def carried_out(loop: Loop, until: float = 10, warned: list[str] | None = None) -> list[Record]:
+    records: list[Record] = []
+    loop.journal = records.extend
+    told: list[str] = [] if warned is None else warned
+
+    async def bounded() -> None:
+        shell = Shell(loop, Clock(), told.append, None)
+        asyncio.get_running_loop().call_later(until, shell.stop)
+        await shell.run()
+
+    try:
+        asyncio.run(bounded())
+    finally:
+        loop.session.close()
+    return records
+
+
+def rows(records: list[Record], *phases: str) -> list[tuple[str, str]]:
+    return [
+        (record["phase"], str(record.get("behavior") or record.get("device") or record["outcome"]))
+        for record in records
+        if record["phase"] in phases
+    ]
+
+
+def answer_when_asked(robot: Robot) -> None:
+    def begun(goal: Begin) -> None:
+        if goal.kind == "listen":
+            asyncio.get_running_loop().call_later(0.05, robot.tell, Heard("yes"))
+
+    robot.begun = begun
+
+
+def test_a_run_ends_with_a_safe_robot(stage: Stage) -> None:
+    loop, (voice, body) = stage()
+    answer_when_asked(voice)
+    records = carried_out(loop)
+    assert records[-1]["outcome"] == "over"
+    assert voice.doing == ["say", "say", "say", "listen", "say"]
+    assert body.doing == ["turn", "turn", "turn"]
+    assert voice.safe_calls == body.safe_calls == 1
+
+
+def test_an_emergency_stop_makes_every_driver_safe_at_once(stage: Stage) -> None:
+    loop, (voice, body) = stage(lasts=0.3)
+    answer_when_asked(voice)
+    seen: list[int] = []
+
+    def begun(goal: Begin) -> None:
+        running = asyncio.get_running_loop()
+        if not seen:
+            running.call_later(0.1, voice.tell, Emergency(True))
+            running.call_later(0.2, lambda: seen.append(body.safe_calls))
+            running.call_later(0.3, voice.tell, Emergency(False, True))
+            seen.append(0)
+
+    body.begun = begun
+    records = carried_out(loop, 3)
+    assert seen[:2] == [0, 1], "safe while the stop is pressed"
+    assert rows(records, "emergency") == [("emergency", "pressed"), ("emergency", "released")]
+    assert records[-1]["outcome"] == "over", "what was stopped goes on"
+
+
+def test_a_lost_robot_fails_what_runs_on_it_and_is_taken_up_again(stage: Stage) -> None:
+    loop, (voice, body) = stage(lasts=0.3)
+    answer_when_asked(voice)
+
+    def begun(goal: Begin) -> None:
+        body.begun = lambda _: None
+        asyncio.get_running_loop().call_later(0.1, body.lose, "the link is down")
+
+    body.begun = begun
+    warned: list[str] = []
+    records = carried_out(loop, 5, warned)
+    assert ("fail", "turns#1") in rows(records, "fail")
+    assert ("device", "locomotion") in rows(records, "device")
+    assert body.safe_calls >= 2, "after the loss, and at the end"
+    ends = [name for _, name in rows(records, "end")]
+    assert "talk#1" in ends, "the other application goes on"
+    assert warned[0] == "robot: the robot is lost; it is looked for."
+    assert "robot: the robot is back." in warned
+    outcomes = [record["outcome"] for record in records if record["phase"] == "device"]
+    assert set(outcomes) == {"missing", "back"}
+
+
+def test_a_robot_that_no_longer_answers_its_heartbeat_is_lost(stage: Stage) -> None:
+    loop, (_, body) = stage(lasts=0.5)
+
+    def begun(goal: Begin) -> None:
+        body.there = False
+
+    body.begun = begun
+    warned: list[str] = []
+    records = carried_out(loop, 1.0, warned)
+    assert ("fail", "turns#1") in rows(records, "fail")
+    assert warned[0] == "robot: the robot is lost; it is looked for."
+
+
+def test_an_error_inside_makes_the_robot_safe(stage: Stage) -> None:
+    loop, robots = stage()
+
+    def full(records: list[Record]) -> None:
+        raise RunError("visit.jsonl: cannot be written: No space left on device.")
+
+    loop.journal = full
+    shell = Shell(loop, Clock(), lambda _: None, None)
+    with pytest.raises(RunError):
+        asyncio.run(shell.run())
+    loop.session.close()
+    assert [robot.safe_calls for robot in robots] == [1, 1]
+
+
+def test_a_robot_that_cannot_be_made_safe_is_told_of_and_the_others_are(stage: Stage) -> None:
+    loop, (voice, body) = stage()
+
+    async def stuck() -> None:
+        raise RuntimeError("no link")
+
+    voice.safe = stuck  # type: ignore[method-assign]
+    warned: list[str] = []
+    carried_out(loop, 0.5, warned)
+    assert body.safe_calls == 1
+    assert "robot: safe has failed: no link." in " ".join(warned) or any(
+        "has failed: no link" in text for text in warned
+    )
+
+
+def test_what_a_thread_tells_arrives_in_the_run(stage: Stage) -> None:
+    loop, (voice, _) = stage()
+
+    def begun(goal: Begin) -> None:
+        if goal.kind == "listen":
+            asyncio.get_running_loop().run_in_executor(None, voice.post, Heard("yes"))
+
+    voice.begun = begun
+    assert carried_out(loop)[-1]["outcome"] == "over"
+
+
+def test_a_report_that_is_late_or_of_nobody_changes_nothing(stage: Stage) -> None:
+    loop, (voice, body) = stage()
+    answer_when_asked(voice)
+    body.begun = lambda goal: body.tell(Lost(frozenset(), "nothing is lost"))
+    assert carried_out(loop)[-1]["outcome"] == "over"
+    assert Limits(1).over(Limits(2, 3)) == Limits(1, 3)

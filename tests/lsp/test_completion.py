@@ -1,0 +1,117 @@
+"""Completion in an editor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lsprotocol import types as lsp
+
+from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, edited, plain
+
+PROPOSED = {
+    "document": ("fa/x.xml", "|", {"prima", "vxml", "scenario", "world", "robot"}, {"form"}),
+    "root": ("fa/x.xml", "<|", {"prima", "vxml"}, {"form"}),
+    "form": ("fa/x.xml", BEGIN + "<|", {"form", "on", "/prima"}, {"block", "speak"}),
+    "in a name": ("fa/x.xml", BEGIN + '<form id="a"><block><spe|</block>', {"speak"}, {"field"}),
+    "between": ("fa/x.xml", BEGIN + '<form id="a"><block>|</block>', {"speak", "goto"}, {"field"}),
+    "end tag": ("fa/x.xml", BEGIN + '<form id="a"><block><exit/></|', {"/block"}, {"/form"}),
+    "attribute": ("fa/x.xml", BEGIN + '<form id="a"><block><goto |', {"next", "nextitem"}, {"id"}),
+    "given": ("fa/x.xml", BEGIN + '<form id="a" |></form></prima>', {"stream"}, {"id"}),
+    "instead": ("fa/x.xml", BEGIN + '<form id="a"><block><turn angle="1" |/>', {"order"}, {"angle-expr"}),
+    "choices": ("fa/x.xml", BEGIN + '<form id="a"><field name="n" type="|"/>', {"number"}, {"a"}),
+    "truth": ("fa/x.xml", BEGIN + '<form id="a"><field name="n"><prompt bargein="|"', {"true"}, set()),
+    "forms": ("fa/x.xml", BEGIN + '<form id="a"><block><goto next="|"/></block></form><form id="b"/>', {"#a", "#b"}, set()),
+    "open quote": ("fa/x.xml", BEGIN + '<form id="a"><block><goto next="#|</block></form>', {"#a"}, set()),
+    "rules": ("fa/x.xml", BEGIN + '<form id="a"><field name="n"><grammar root="|"><rule id="r"/></grammar>', {"r"}, {"a"}),
+    "variables": (
+        "fa/x.xml",
+        BEGIN + '<var name="all"/><form id="a"><var name="own"/><block cond="own &lt; |"/></form>'
+        '<form id="b"><var name="other"/></form>',
+        {"all", "own", "event"},
+        {"other"},
+    ),
+    "namelist": ("fa/x.xml", BEGIN + '<form id="a"><var name="n"/><block><clear namelist="x |"/>', {"n"}, {"event"}),
+    "members": ("fa/x.xml", BEGIN + '<form id="a"><block cond="event.|"/>', {"data", "name"}, {"event"}),
+    "script": ("fa/x.xml", BEGIN + "<script>var total = 1; |</script>", {"total"}, {"form"}),
+    "events": (
+        "ea/guide.xml",
+        BEGIN + '<form id="a"><on event="message |"/></form>',
+        {"touch.head", "human.lost", "error.device.arm", "corner"},
+        set(),
+    ),
+    "places": ("ea/guide.xml", BEGIN + '<form id="a"><block><topological-move to="|"/>', {"kidode-room"}, {"head"}),
+    "gestures": ("ea/guide.xml", BEGIN + '<form id="a"><block><gesture name="|"/>', {"nod"}, set()),
+    "commands": ("fa/dance.xml", BEGIN + '<form id="a"><block><command type="|"/>', {"dance"}, {"speak"}),
+    "handled": ("fa/x.xml", BEGIN + '<form id="a"><on event="done"/><block><throw event="|"/>', {"done"}, set()),
+    "worlds": ("scenarios/x.xml", SCENE.replace("../worlds/office.xml", "|"), {"../worlds/home.xml"}, {"../robots/papero.xml"}),
+    "applications": ("scenarios/x.xml", SCENE + '<application src="|"/>', {"../fa/follow.xml", "../ea/pizza.vxml"}, {"../worlds/home.xml"}),
+    "scene places": ("scenarios/x.xml", SCENE + '<robot at="|"/>', {"entrance"}, {"charger"}),
+    "sensors": ("scenarios/x.xml", SCENE + '<when at="1s"><touch sensor="|"/>', {"head"}, set()),
+    "doing": ("scenarios/x.xml", SCENE + '<when doing="|"/>', {"speak", "dance"}, set()),
+    "policy": (
+        "scenarios/x.xml",
+        SCENE.replace('id="s"', 'id="s" policy="|"'),
+        {"fifo", "prima"},
+        set(),
+    ),
+    "voice elements": ("ea/x.vxml", VOICE + '<form id="a"><block><|', {"prompt", "p:speak"}, {"field"}),
+    "voice arranging": ("ea/x.vxml", VOICE + '<form id="a"><block><p:|', {"p:par", "p:seq", "p:iu"}, set()),
+    "voice arranged": ("ea/x.vxml", VOICE + '<form id="a"><block><p:par><|', {"p:speak", "p:iu"}, {"prompt"}),
+    "voice grouped": ("ea/x.vxml", VOICE + '<form id="a"><block><p:iu |', {"longest", "restartable"}, {"cond"}),
+    "voice form": ("ea/x.vxml", VOICE + '<form id="a"><|', {"p:iu", "field"}, {"p:par", "p:speak"}),
+    "voice unit": ("ea/x.vxml", VOICE + '<form id="a"><p:iu><|', {"block", "record", "noinput"}, {"p:speak", "on", "subdialog"}),
+    "voice unit attributes": ("ea/x.vxml", VOICE + '<form id="a"><p:iu |', {"longest", "cond", "name"}, {"restartable"}),
+    "voice unit content": ("ea/x.vxml", VOICE + '<form id="a"><p:iu><block><|', {"prompt", "p:speak"}, {"field"}),
+    "voice unit items": ("ea/x.vxml", VOICE + '<form id="a"><p:iu name="u"><field name="f"/></p:iu><block><goto nextitem="|"/>', {"u", "f"}, set()),
+    "voice goto": ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="|"/>', {"#a", "pizza.vxml"}, set()),
+    "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "one-of"}, {"prompt"}),
+    "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
+    "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),
+    "namespaces": ("fa/x.xml", '<prima xmlns="|"', {"urn:prima:dialogue:1"}, set()),
+    "comment": ("fa/x.xml", BEGIN + "<!-- <| -->", set(), {"form"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PROPOSED)
+def test_completion(editor: Editor, case: str) -> None:
+    name, text, wanted, unwanted = PROPOSED[case]
+    found = editor.proposals(name, text).keys()
+    assert wanted <= found
+    assert not unwanted & found
+
+
+def test_proposals_bring_what_an_element_needs(editor: Editor) -> None:
+    text = BEGIN + '<form id="a"><block><got|</block></form></prima>'
+    item = editor.proposals("fa/x.xml", text)["goto"]
+    assert item.insert_text_format == lsp.InsertTextFormat.Snippet
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    assert edited(plain(text)[0], [item.text_edit]) == (
+        BEGIN + '<form id="a"><block><goto next="$1"/>$0</block></form></prima>'
+    )
+    text = BEGIN + '<form id="a"><block><|got next="#a"/></block></form></prima>'
+    item = editor.proposals("fa/x.xml", text)["goto"]
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    assert item.text_edit.new_text == "goto"  # the rest is there already
+
+
+def test_an_editor_without_snippets_gets_none(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, lsp.ClientCapabilities())
+    for item in editor.proposals("x.xml", BEGIN + "<form |").values():
+        assert isinstance(item.text_edit, lsp.TextEdit)
+        assert "$" not in item.text_edit.new_text
+    assert editor.end() == (0, "")
+
+
+def test_a_space_in_a_sentence_proposes_nothing(editor: Editor) -> None:
+    text = BEGIN + '<form id="a"><block><speak>Hello |</speak></block></form></prima>'
+    assert editor.proposals("fa/x.xml", text, " ") == {}
+    assert "value" in editor.proposals("fa/x.xml", text)
+
+
+def test_a_proposal_of_a_new_document_is_a_good_beginning(editor: Editor) -> None:
+    item = editor.proposals("fa/x.xml", "|")["prima"]
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    text = item.text_edit.new_text.replace("${1|ea,fa|}", "fa").replace("$0", "<speak>x</speak>")
+    assert editor.open("fa/x.xml", text.replace("$2", "x").replace("$3", "main")) == []
+    editor.close("fa/x.xml")

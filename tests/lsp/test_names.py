@@ -1,0 +1,150 @@
+"""Definitions, references and renaming, across files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
+
+from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
+
+FORMS = (
+    BEGIN
+    + '<form id="a"><block><goto next="#b"/></block></form>\n<form id="|b"><block><goto next="#b"/></block></form></prima>'
+)
+SCOPES = (
+    BEGIN + '<var name="n"/><form id="a"><var name="|n"/><block cond="n &lt; document.n">'
+    '<assign name="n" expr="n + dialog.n"/></block></form>\n'
+    '<form id="b"><block cond="n"/></form></prima>'
+)
+SCRIPT = (
+    BEGIN + "<script>function twice(x) { return 2 * x; }</script>"
+    '<form id="a"><block cond="|twice(1) &gt; 1"/></form></prima>'
+)
+RULE = (
+    VOICE + '<form id="a"><field name="f"><grammar root="r"><rule id="|r"><item>x</item></rule>'
+    '<rule id="s"><ruleref uri="#r"/></rule></grammar></field>'
+    '<field name="g"><grammar root="r"><rule id="r"/></grammar></field></form></vxml>'
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "uses", "renamed"),
+    [
+        (FORMS, "fa/x.xml", 3, {"#c": 2, 'id="c"': 1}),
+        (SCOPES, "fa/x.xml", 5, {'<var name="n"/><form id="a"><var name="c"/>': 1, "document.n": 1, "dialog.c": 1, 'cond="n"': 1}),
+        (SCRIPT, "fa/x.xml", 2, {"function c(": 1, "c(1)": 1}),
+        (RULE, "ea/x.vxml", 3, {'root="c"': 1, 'uri="#c"': 1, 'root="r"': 1}),
+    ],
+    ids=["form", "variable", "function", "rule"],
+)  # fmt: skip
+def test_names_of_a_document(
+    editor: Editor, text: str, name: str, uses: int, renamed: dict[str, int]
+) -> None:
+    where = editor.at(name, text)
+    text = plain(text)[0]
+    context = lsp.ReferenceContext(include_declaration=True)
+    found = editor.do(
+        editor.client.text_document_references_async(lsp.ReferenceParams(context, *where))
+    )
+    assert found is not None and len(found) == uses
+    defined = editor.do(editor.client.text_document_definition_async(lsp.DefinitionParams(*where)))
+    assert isinstance(defined, list) and len(defined) == 1
+    lights = editor.do(
+        editor.client.text_document_document_highlight_async(lsp.DocumentHighlightParams(*where))
+    )
+    assert lights is not None and len(lights) == uses
+    can = editor.do(
+        editor.client.text_document_prepare_rename_async(lsp.PrepareRenameParams(*where))
+    )
+    assert isinstance(can, lsp.PrepareRenamePlaceholder)
+    assert can.placeholder == cut(text, can.range)
+    change = editor.do(
+        editor.client.text_document_rename_async(lsp.RenameParams(where[0], where[1], "c"))
+    )
+    editor.close(name)
+    assert change is not None and change.changes is not None
+    made = edited(text, list(change.changes[editor.uri(name)]))
+    for words, count in renamed.items():
+        assert made.count(words) == count, (words, made)
+
+
+def rename(editor: Editor, where: Any, new: str) -> lsp.WorkspaceEdit | None:
+    return editor.do(
+        editor.client.text_document_rename_async(lsp.RenameParams(where[0], where[1], new))
+    )
+
+
+def test_a_name_that_is_none_or_taken_is_refused(editor: Editor) -> None:
+    where = editor.at("fa/x.xml", FORMS)
+    for new, why in (("b c", "is not a name"), ("a", "already"), ("", "is not a name")):
+        with pytest.raises(JsonRpcException, match=why):
+            rename(editor, where, new)
+    editor.close("fa/x.xml")
+
+
+def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
+    world = (editor.folder / "worlds/office.xml").read_text(encoding="utf-8")
+    where = editor.at("worlds/office.xml", world.replace('id="kidode-room"', 'id="|kidode-room"'))
+    change = rename(editor, where, "room")
+    editor.close("worlds/office.xml")
+    assert change is not None and change.changes is not None
+    files = {Path(uri).name for uri in change.changes}
+    assert files == {"office.xml", "guide.xml"}
+    for uri, edits in change.changes.items():
+        text = Path(uri.removeprefix("file://")).read_text(encoding="utf-8")
+        assert "kidode-room" in text
+        assert "kidode-room" not in edited(text, list(edits))
+
+
+def test_definitions_lead_to_other_files(editor: Editor) -> None:
+    for name, text, file, words in (
+        ("ea/guide.xml", BEGIN + '<form id="a"><block><topological-move to="|kidode-room"/>', "office.xml", "kidode-room"),
+        ("fa/dance.xml", BEGIN + '<form id="a"><block><command type="da|nce"/>', "papero-plus.xml", "dance"),
+        ("ea/guide.xml", BEGIN + '<form id="a"><on event="touch.|head"/>', "papero.xml", "head"),
+        ("scenarios/x.xml", SCENE + '<robot at="entra|nce"/>', "office.xml", "entrance"),
+        ("scenarios/x.xml", SCENE + '<application src="../fa/|follow.xml"/>', "follow.xml", ""),
+        ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="pizza.vxml#|order"/>', "pizza.vxml", "order"),
+    ):  # fmt: skip
+        where = editor.at(name, text)
+        found = editor.do(
+            editor.client.text_document_definition_async(lsp.DefinitionParams(*where))
+        )
+        editor.close(name)
+        assert isinstance(found, list) and found, text
+        path = Path(found[0].uri.removeprefix("file://"))
+        assert path.name == file
+        assert cut(path.read_text(encoding="utf-8"), found[0].range) == words
+
+
+def test_files_are_found_and_renamed(editor: Editor) -> None:
+    text = SCENE + '<robot at="entrance"/><application src="../fa/fol|low.xml"/></scenario>'
+    where = editor.at("scenarios/x.xml", text)
+    context = lsp.ReferenceContext(include_declaration=True)
+    found = editor.do(
+        editor.client.text_document_references_async(lsp.ReferenceParams(context, *where))
+    )
+    assert found is not None and len(found) > 5
+    change = rename(editor, where, "../fa/behind.xml")
+    assert change is not None and change.document_changes is not None
+    *edits, move = change.document_changes
+    assert isinstance(move, lsp.RenameFile)
+    assert move.new_uri == editor.uri("fa/behind.xml")
+    assert len(edits) == len({one.uri for one in found})
+    with pytest.raises(JsonRpcException, match="already"):
+        rename(editor, where, "../fa/dance.xml")
+    editor.close("scenarios/x.xml")
+
+
+def test_files_that_the_editor_moves_are_followed(editor: Editor) -> None:
+    file = lsp.FileRename(editor.uri("scenarios/follow-alone.xml"), editor.uri("follow-alone.xml"))
+    change = editor.do(
+        editor.client.workspace_will_rename_files_async(lsp.RenameFilesParams([file]))
+    )
+    assert change is not None and change.changes is not None
+    text = (editor.folder / "scenarios/follow-alone.xml").read_text(encoding="utf-8")
+    made = edited(text, list(change.changes[editor.uri("scenarios/follow-alone.xml")]))
+    assert 'src="fa/follow.xml"' in made and "../" not in made

@@ -1,0 +1,158 @@
+"""Problems in an editor: those of prima validate, while a text is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lsprotocol import types as lsp
+
+from prima import api
+from prima.errors.visible import HARMFUL
+from tests.helpers.editor import BEGIN, SCENE, WRONG, Editor, cut
+
+
+def shown(problem: Any) -> tuple[int, int, str, str, str]:
+    words = f"{problem.message} {problem.remedy}".strip()
+    return problem.place.line, problem.place.column, problem.severity, problem.code, words
+
+
+SEVERITIES = {1: "error", 2: "warning", 3: "note"}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_problems_are_those_of_prima_validate(editor: Editor, name: str) -> None:
+    text = WRONG[name]
+    (editor.folder / name).write_text(text, encoding="utf-8")
+    expected = [shown(one) for one in api.validate([editor.folder / name])]
+    (editor.folder / name).unlink()
+    found = []
+    for one in editor.open(name, text):
+        assert one.source == "prima" and one.severity is not None
+        line = text.split("\n")[one.range.start.line] if text else ""
+        column = len(line.encode("utf-16-le")[: 2 * one.range.start.character].decode("utf-16-le"))
+        found.append(
+            (one.range.start.line + 1, column + 1, SEVERITIES[one.severity], one.code, one.message)
+        )
+    editor.close(name)
+    if name != "fa/empty.xml":  # that is not yet anything
+        assert found == expected and expected
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["fa/follow.xml", "ea/museum.xml", "ea/pizza.vxml", "robots/papero.xml", "worlds/home.xml"],
+)
+def test_good_documents_have_no_errors(editor: Editor, name: str) -> None:
+    assert not [one for one in editor.open(name) if one.severity == 1]
+    editor.close(name)
+
+
+def test_a_list_of_problems_stops_in_the_editor_too(editor: Editor) -> None:
+    bad = "".join(f'  <place id="p{index}" x="zero" y="0"/>\n' for index in range(1_234))
+    text = f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{bad}</world>\n'
+    found = editor.open("worlds/many.xml", text)
+    editor.close("worlds/many.xml")
+    assert len(found) == 1_001 and "And 234 more problems" in found[-1].message
+
+
+def test_what_a_document_says_reaches_the_editor_as_text_and_as_nothing_else(
+    editor: Editor,
+) -> None:
+    name = "\u202e\u2066\x9b31m\u200fabc"
+    text = BEGIN + (
+        f'<form id="{name}"><var name="{name}"/><block><goto next="#{name}x"/></block>'
+        '<block cond="abc\u061cd"><exit/></block></form></prima>'
+    )
+    problems = editor.open("fa/x.xml", text)
+    document = lsp.TextDocumentIdentifier(editor.uri("fa/x.xml"))
+    whole = lsp.Range(lsp.Position(0, 0), lsp.Position(9, 0))
+    actions = editor.do(
+        editor.client.text_document_code_action_async(
+            lsp.CodeActionParams(document, whole, lsp.CodeActionContext(problems))
+        )
+    )
+    symbols = editor.do(
+        editor.client.text_document_document_symbol_async(lsp.DocumentSymbolParams(document))
+    )
+    found = editor.do(
+        editor.client.text_document_completion_async(
+            lsp.CompletionParams(
+                document, lsp.Position(1, text.splitlines()[1].index("#\u202e") + 1)
+            )
+        )
+    )
+    editor.close("fa/x.xml")
+    assert isinstance(found, lsp.CompletionList)
+    shown = [one.message for one in problems] + [one.title for one in actions or ()]
+    shown += [one.name for one in symbols or ()]
+    shown += [one.label for one in found.items]
+    assert sum("\ufffd" in one for one in shown) > 4, shown
+    assert not [one for one in shown if HARMFUL.search(one)]
+
+
+def test_columns_count_utf16_units(editor: Editor) -> None:
+    text = BEGIN + '<form id="a"><block><speak>😀😀</speak><goto next="#b"/></block></form></prima>'
+    (found,) = [one for one in editor.open("fa/x.xml", text) if one.code == "no-such-form"]
+    assert cut(text, found.range) == "#b"
+    editor.close("fa/x.xml")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "column"),
+    [(lsp.PositionEncodingKind.Utf8, 8), (lsp.PositionEncodingKind.Utf32, 2)],
+)
+def test_an_editor_may_count_columns_otherwise(
+    tmp_path: Path, encoding: lsp.PositionEncodingKind, column: int
+) -> None:
+    general = lsp.GeneralClientCapabilities(position_encodings=[encoding])
+    editor = Editor(tmp_path, lsp.ClientCapabilities(general=general))
+    text = (
+        BEGIN + '<form id="a"><block><speak>\n😀😀<goto next="#b"/></speak></block></form></prima>'
+    )
+    problems = editor.open("x.xml", text)
+    assert column in [one.range.start.character for one in problems if one.range.start.line == 2]
+    assert editor.end() == (0, "")
+
+
+def test_what_is_written_counts_at_once(editor: Editor) -> None:
+    good = BEGIN + '<form id="a"><block><speak>Hello.</speak><exit/></block></form></prima>'
+    assert editor.open("fa/x.xml", good) == []
+    assert [one.code for one in editor.change("fa/x.xml", good.replace("speak", "speek"))] == [
+        "unknown-element"
+    ]
+    assert editor.change("fa/x.xml", good) == []
+    editor.close("fa/x.xml")
+
+
+def test_unsaved_text_counts_for_files_that_a_scenario_names(editor: Editor) -> None:
+    scene = "scenarios/touched-on-the-way.xml"
+    world = (editor.folder / "worlds/office.xml").read_text(encoding="utf-8")
+    assert not [one for one in editor.open(scene) if one.severity == 1]
+    editor.open("worlds/office.xml", world)
+    editor.change("worlds/office.xml", world.replace('"entrance"', '"entry"'))
+    editor.until(scene, "no-such-name")
+    editor.close("worlds/office.xml")
+    editor.until(scene, "no-such-name", there=False)
+    editor.close(scene)
+
+
+def test_problems_of_a_file_that_is_not_open_stand_with_it(editor: Editor) -> None:
+    broken = editor.folder / "fa" / "broken.xml"
+    broken.write_text(WRONG["fa/names.xml"], encoding="utf-8")
+    text = SCENE + '<robot at="entrance"/><application src="../fa/broken.xml"/></scenario>'
+    editor.open("scenarios/x.xml", text)
+    editor.until("fa/broken.xml", "no-such-form")
+    editor.close("scenarios/x.xml")
+    editor.until("fa/broken.xml", "no-such-form", there=False)
+    broken.unlink()
+
+
+def test_xml_of_other_people_is_left_alone(editor: Editor) -> None:
+    assert (
+        editor.open("pom.xml", '<project xmlns="http://maven.apache.org/POM/4.0.0"><a></project>')
+        == []
+    )
+    assert editor.open("page.xml", "<html><body>") == []
+    editor.close("pom.xml", "page.xml")

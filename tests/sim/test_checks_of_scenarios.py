@@ -1,0 +1,204 @@
+"""Errors in scenarios and worlds, reported before a run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from prima import api, loading
+from prima.errors import DocumentError
+from tests import ROOT
+from tests.helpers.validating import VXML, in_the_passage
+
+SCENARIO = f"""<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"
+ world="{ROOT}/documents/worlds/library.xml" robot="{ROOT}/documents/robots/papero.xml">
+  <application src="{{}}"/>
+  {{}}
+  <robot at="nowhere"/>
+  <person at="there" spede="1"/>
+  <when at="3s"><touch sensor="haed"/><unload application="librari"/></when>
+  <when at="3x"><fail device="wheel"/></when>
+</scenario>
+"""
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_all_that_is_wrong_with_a_scenario_is_told_at_once(missing: bool, tmp_path: Path) -> None:
+    documents = ROOT / "documents" / "ea"
+    src = documents / ("libary.xml" if missing else "library.xml")
+    path = tmp_path / "s.xml"
+    path.write_text(SCENARIO.format(src, "<application/>" if missing else ""), encoding="utf-8")
+    with pytest.raises(DocumentError) as caught:
+        loading.load_scenario(path)
+    own = [one for one in caught.value.problems if one.place.file == str(path)]
+    places = {
+        (3, 21): "no-such-file",
+        (4, 3): "missing-attribute",
+        (5, 14): "no-such-name",
+        (6, 15): "no-such-name",
+        (6, 22): "unknown-attribute",
+        (7, 32): "no-such-name",
+        (7, 60): "no-such-name",
+        (8, 13): "bad-value",
+        (8, 31): "no-such-name",
+    }
+    for unknown in [(7, 60)] if missing else [(3, 21), (4, 3)]:  # which ids there are is not known
+        del places[unknown]
+    assert {(one.place.line, one.place.column): one.code for one in own} == places
+
+
+def test_a_scenario_with_any_attribute_wrong_is_looked_at() -> None:
+    looked = 0
+    for path in sorted((ROOT / "documents" / "scenarios").glob("*.xml"))[::6]:
+        text = path.read_text(encoding="utf-8")
+        for written in re.finditer(r'([\w-]+)="([^"]*)"', text):
+            for wrong in ("", f'{written[1]}=""', f'{written[1]}="?!"', f'{written[1]}x="1"'):
+                try:
+                    loading._load(
+                        path, (text[: written.start()] + wrong + text[written.end() :]).encode()
+                    )
+                except DocumentError as error:
+                    assert error.problems
+                looked += 1
+    assert looked > 200
+
+
+@pytest.mark.parametrize(
+    ("person", "doing", "told"),
+    [
+        ("", '<walk to="aisle"/><look at="robot"/>', ["<walk> does nothing"]),
+        ("", '<look at="robot"/>', ["<look> does nothing"]),
+        ("", "<say>Hello.</say>", []),
+        ('<person at="aisle"/>', '<walk to="entrance"/>', []),
+    ],
+)
+def test_nobody_walks_where_nobody_is(
+    person: str, doing: str, told: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "s.xml"
+    head = SCENARIO.partition("<application")[0]
+    application = f'<application src="{ROOT}/documents/ea/library.xml"/>'
+    when = f'<when at="3s">{doing}</when></scenario>'
+    path.write_text(f"{head}{application}{person}{when}", encoding="utf-8")
+    problems = loading.load_scenario(path).problems
+    found = [one for one in problems if one.message.startswith("Nobody")]
+    assert [one.message.partition(" without")[0].partition(": ")[2] for one in found] == told
+    assert {(one.severity, one.code) for one in found} <= {("warning", "missing-element")}
+
+
+# Worlds ---------------------------------------------------------------------------------
+WORLD = """<world xmlns="urn:prima:world:1" version="1.0" id="w">
+<place id="a" x="0" y="0"/><place id="b" x="4" y="0"/>
+<way from="a" to="b"/>
+{}
+</world>"""
+WALKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f"><block>
+<topological-move to="b"/><exit/></block></form></prima>"""
+
+
+def test_a_way_through_a_wall_is_told_beside_other_errors(tmp_path: Path) -> None:
+    path = tmp_path / "w.xml"
+    wall = '<wall x1="2" y1="-2" x2="2" y2="2"/>'
+    path.write_text(WORLD.format(f'<way from="a" to="q"/>{wall}'))
+    found = [(one.code, one.place.line) for one in loading.validate([path])]
+    assert found == [("blocked-way", 3), ("no-such-name", 4)]
+    path.write_text(WORLD.format(wall.replace('"2"', '"far"', 1)))
+    assert [one.code for one in loading.validate([path])] == ["bad-value"], (
+        "nobody knows where it is"
+    )
+
+
+@pytest.mark.parametrize("y", ["0.1", "-0.18", "0.2", "0.4"])
+def test_a_way_that_is_too_narrow_for_the_robot_is_told(tmp_path: Path, y: str) -> None:
+    (tmp_path / "w.xml").write_text(WORLD.format(f'<wall x1="1" y1="{y}" x2="5" y2="{y}"/>'))
+    (tmp_path / "a.xml").write_text(WALKS)
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
+        '<application src="a.xml"/></scenario>'
+    )
+    assert loading.validate([tmp_path / "w.xml"]) == [], "it is wide enough for some robot"
+    told = [one.message for one in loading.validate([tmp_path / "s.xml"])]
+    blocked = bool(api.rehearse(api.load_scenario(tmp_path / "s.xml")).failures)
+    assert blocked == (abs(float(y)) < 0.19)
+    right = (
+        'The way from "a" to "b" is too narrow for the robot: the wall in line 4 is'
+        f" {abs(float(y)):.2f} m beside it."
+    )
+    assert told == [right] * blocked
+
+
+# What a scenario waits for ----------------------------------------------------------------
+ASKING = (
+    '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f">'
+    '<field name="x" type="boolean"><prompt>{}</prompt><noinput><exit/></noinput>'
+    "<filled><exit/></filled></field></form></prima>"
+)
+VOICE = VXML.format(
+    "",
+    '<form><field name="x" type="boolean"><prompt>{}</prompt><filled>{}</filled></field></form>',
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "document", "words", "remedy"),
+    [
+        ("a.xml", ASKING.format("Tea or coffee?"), "tea", None),
+        ("a.xml", ASKING.format("Tea or coffee?"), "juice", ""),
+        ("a.xml", ASKING.format('Tea or <value expr="1"/>?'), "tea", None),
+        ("a.xml", ASKING.format('<value expr="1"/>?'), "juice", None),
+        ("a.xml", ASKING.format('Tea or <value expr="1"/>?'), "juice", None),
+        ("a.xml", ASKING.format('Coffeine <value expr="1"/>?'), "Cofeine ?", "Coffeine ?"),
+        ("a.vxml", VOICE.format("<emphasis>Tea</emphasis> or coffee?", "<exit/>"), "Tea or", None),
+        ("a.vxml", VOICE.format('<phoneme ph="x">Tea</phoneme> or coffee?', ""), "Tea or", None),
+        ("a.vxml", VOICE.format('<sub alias="Tea">T</sub> or coffee?', ""), "Tea or", None),
+        ("a.vxml", VOICE.format('<sub alias="Tea">T</sub> or coffee?', ""), "T or", ""),
+        ("a.vxml", VOICE.format("Tea or coffee?", "<exit/>"), "Tea or cofee?", "Tea or coffee?"),
+        ("a.vxml", VOICE.format("Tea or coffee?", '<goto expr="x"/>'), "Tea or cofee?", None),
+    ],
+)
+def test_an_answer_that_no_question_contains_is_told(
+    tmp_path: Path, name: str, document: str, words: str, remedy: str | None
+) -> None:
+    (tmp_path / name).write_text(document)
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (tmp_path / "visit.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        f'<application src="{name}"/><answer to="{words}">Yes.</answer></scenario>'
+    )
+    found = loading.validate([tmp_path / "visit.xml"])
+    assert [one.code for one in found] == ["never-said"] * (remedy is not None)
+    assert all((remedy or "") in one.remedy for one in found)
+
+
+@pytest.mark.parametrize("name", ["a.xml", "a.vxml"])
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (
+            '<when on="corner.trun"><say>Yes.</say></when>',
+            '"corner.trun". Did you mean "corner.turn"?',
+        ),
+        ('<expect event="corner.crosing"/>', 'the event "corner.crosing".'),
+        ('<never event="pasage.beds"/>', '"pasage.beds". Did you mean "passage.beds"?'),
+        ('<expect event="corner.turn"/><when on="corner"><say>Yes.</say></when>', ""),
+        (
+            '<when at="1s"><event name="corner.own"/></when><when on="corner.own"><say>Yes.</say></when>',
+            "",
+        ),
+        ('<expect event="passage.beds"/><when on="passage"><say>Yes.</say></when>', ""),
+    ],
+)
+def test_a_corner_that_a_scenario_misspells_is_told(
+    tmp_path: Path, name: str, more: str, says: str
+) -> None:
+    asking = ASKING.replace('id="f">', 'id="f"><on event="corner.own"><exit/></on>', 1)
+    (tmp_path / "a.xml").write_text(asking.format("Tea?"))
+    (tmp_path / "a.vxml").write_text(VOICE.format("Tea?", "<exit/>"))
+    told = [one for one in in_the_passage(tmp_path, name, more) if "a.xml" not in one]
+    assert len(told) == bool(says)
+    assert all(one.startswith("visit.xml No corner of the world raises") for one in told)
+    assert says in "".join(told)

@@ -1,0 +1,183 @@
+"""prima talk at a terminal."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from tests import ROOT
+from tests.helpers.talking import ASKS, TICKS, room
+
+pty = pytest.importorskip("pty")
+
+
+class Terminal:
+    """The command in a terminal of its own."""
+
+    def __init__(self, *words: str, folder: Path, **variables: str) -> None:
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:  # pragma: no cover
+            os.chdir(folder)
+            os.environ.update({"PYTHONPATH": str(ROOT), "TERM": "xterm", **variables})
+            os.environ.setdefault("COLUMNS", "120")
+            os.execv(sys.executable, [sys.executable, "-m", "prima", "talk", *words])
+        self.seen = ""
+
+    def type(self, text: str) -> None:
+        os.write(self.fd, text.encode())
+
+    def until(self, text: str, seconds: float = 30) -> str:
+        """Wait until a text has come, and give all since the last time."""
+        import select
+
+        end, got = time.monotonic() + seconds, self.seen
+        while text not in got:
+            assert time.monotonic() < end, (text, got)
+            if select.select([self.fd], [], [], 0.2)[0]:
+                try:
+                    got += os.read(self.fd, 65536).decode("utf-8", "replace")
+                except OSError:
+                    break
+        assert text in got, got
+        at = got.index(text) + len(text)
+        self.seen, got = got[at:], got[:at]
+        return got
+
+    def end(self) -> int:
+        import select
+
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            if select.select([self.fd], [], [], 0.1)[0]:
+                try:
+                    self.seen += os.read(self.fd, 65536).decode("utf-8", "replace")
+                except OSError:
+                    pass
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                os.close(self.fd)
+                return os.waitstatus_to_exitcode(status)
+        raise AssertionError(self.seen)
+
+
+def test_a_terminal_step_by_step(tmp_path: Path) -> None:
+    terminal = Terminal(str(room(tmp_path, ASKS)), "--step", folder=tmp_path)
+    terminal.until("ea listens> ")
+    terminal.type("/wh\t\t")
+    terminal.until("/who")
+    terminal.type("\x15y\t\r")  # the answer is completed
+    terminal.until("\x1b[36m")
+    terminal.until('"yes"')
+    terminal.until("Every application has ended")
+    terminal.type("/save visit.xml\r")
+    terminal.until("Saved visit.xml.")
+    terminal.until("> ")  # before, the key would be nobody's
+    terminal.type("\x04")
+    assert terminal.end() == 0
+    assert (tmp_path / "visit.xml").exists()
+
+
+def test_no_colour_where_none_is_wanted(tmp_path: Path) -> None:
+    terminal = Terminal(str(room(tmp_path, ASKS)), "--step", folder=tmp_path, NO_COLOR="1")
+    terminal.until("ea listens> ")
+    terminal.type("Yes.\r")
+    assert "\x1b[3" not in terminal.until("ends ea: exit")
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+
+
+def test_ctrl_c_ends_with_130_and_what_was_saved_is_intact(tmp_path: Path) -> None:
+    path = room(tmp_path, '<form id="f"><on event="touch"><speak>Ouch.</speak></on></form>')
+    for mode in ("--step", "--real-time"):
+        target = tmp_path / f"at-end{mode}.xml"
+        terminal = Terminal(str(path), mode, "--save", str(target), folder=tmp_path)
+        terminal.until("> ")
+        terminal.type("/touch head\r")
+        terminal.until("Ouch.")
+        terminal.type("/save first.xml\r")
+        terminal.until("Saved first.xml.")
+        terminal.until("> ")  # before, the key would be nobody's
+        terminal.type("half a li")
+        terminal.until("half a li")
+        time.sleep(0.5)  # readline notices a signal only while it waits for a key
+        terminal.type("\x03")
+        assert terminal.end() == 130
+        assert "interrupted" in terminal.seen
+        for saved in (tmp_path / "first.xml", target):
+            assert "Ouch." not in saved.read_text(encoding="utf-8").partition("<when")[0]
+            assert any("Ouch" in row.what for row in api.rehearse(saved).rows())
+
+
+def test_time_stands_still_while_a_line_is_typed(tmp_path: Path) -> None:
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
+    terminal.until("> ")
+    terminal.type("/hel")
+    terminal.until("/hel")
+    with pytest.raises(AssertionError):
+        terminal.until('"Tick."', seconds=4)
+    terminal.type("p walk\r")
+    terminal.until("walks to a place or thing")
+    terminal.until('"Tick."')  # it goes on
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+
+
+def test_a_question_waits_for_who_types_the_answer(tmp_path: Path) -> None:
+    path = room(tmp_path, ASKS.replace("<prompt>", '<prompt timeout="2s">'))
+    terminal = Terminal(str(path), folder=tmp_path, NO_COLOR="1")
+    terminal.until('"Well?"')
+    terminal.type("y")
+    terminal.until("y")
+    time.sleep(5)
+    terminal.type("es\r")
+    assert "Nothing heard" not in terminal.until('"Thanks."')
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+
+
+def test_rows_come_above_the_line_that_is_typed(tmp_path: Path) -> None:
+    from prima.cli.terminal import Keyboard
+
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
+    terminal.until("> ")
+    terminal.type("/note a\r/hel")  # the note's row comes while the next line is typed
+    terminal.until("> /hel")
+    terminal.type("p walk\r")
+    terminal.until("walks to a place or thing")
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
+    assert Keyboard("> ").begun() is False
+
+
+@pytest.mark.parametrize("begun", [(), (1, 2, 3)])
+def test_a_clock_leaves_out_what_was_typed(
+    begun: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from prima.cli import terminal
+
+    moment = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: moment[0])
+
+    class Hand(terminal.Piped):
+        """Types at some of the clock's looks, and is done at the sixth."""
+
+        looks = 0
+
+        def begun(self) -> bool:
+            return self.looks in begun
+
+        def line(self, wait: float | None) -> str | None:
+            self.looks += 1
+            moment[0] += wait or 0
+            if self.looks == 6:
+                return "yes"
+            raise TimeoutError
+
+    clock, hand = terminal.Clock(), Hand()
+    assert clock.line(hand, 10_000) == "yes"
+    assert clock.now == 600 - 100 * len(begun)

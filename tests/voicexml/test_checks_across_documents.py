@@ -1,0 +1,203 @@
+"""Checks of several VoiceXML documents together, and of the files that they name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api, loading
+from prima.errors import DocumentError
+from tests import ROOT
+from tests.helpers.command import prima
+from tests.helpers.validating import VXML, told
+
+PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
+<form id="f"><field name="a"><prompt>A?</prompt>
+<grammar src="g/towns.gram" type="application/srgs"/>
+<grammar src="g/towns.gram#r" type="application/srgs+xml"/>
+<grammar src="g/tags.gram" type="application/abnf"/>
+</field></form></vxml>
+"""
+TAGS = """#ABNF 1.0;
+language en;
+root $r;
+tag-format <semantics/1.0>;
+public $r = a
+  {out = nope};
+"""
+
+
+def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None:
+    (tmp_path / "g").mkdir()
+    (tmp_path / "page.vxml").write_text(PAGE)
+    (tmp_path / "g" / "tags.gram").write_text(TAGS)
+    towns = tmp_path / "g" / "towns.gram"
+    towns.write_text("#ABNF 1.0;\nlanguage en;\npublic $r = Rome;\n")
+    done = prima("validate", "page.vxml", "--format", "short", cwd=tmp_path)
+    assert [line.partition(" W")[0] for line in done.stdout.splitlines()] == [
+        'g/tags.gram:6:3: warning: The tag uses "nope", which nothing in the grammar declares:'
+        " what needs it is not taken. For the text itself write 'nope' in quotes."
+        " [undeclared-variable]",
+        'page.vxml:3:15: warning: The grammar "g/towns.gram" names no root rule.'
+        " Name a rule: #name.",
+        'page.vxml:4:15: warning: The type "application/srgs+xml" contradicts "g/towns.gram",'
+        " which is in the ABNF form.",
+        'page.vxml:5:15: warning: The type "application/abnf" is none of SRGS;'
+        " it is read as application/srgs.",
+    ]
+    towns.write_text("language en;\npublic $r = Rome;\n")  # an error of the file is told once
+    done = prima("validate", "page.vxml", "g", "--format", "short", cwd=tmp_path)
+    told = [line for line in done.stdout.splitlines() if "towns.gram:" in line]
+    assert told == [
+        "g/towns.gram:1:1: error: The header of the ABNF form is missing."
+        ' Begin with "#ABNF 1.0 UTF-8;" in the first line. [not-abnf]'
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("g.txt", "root $r;\n$r = a;", 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'),
+        ("g.gram", "towns: Rome", "Begin with <grammar ...> for the XML form, or with #ABNF"),
+        ("g.txt", "towns: Rome", "Begin with a root element, such as <prima> or <vxml>."),
+    ],
+)
+def test_a_grammar_without_its_beginning_is_told_how_grammars_begin(
+    tmp_path: Path, name: str, text: str, told: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    done = prima("validate", name, "--format", "short", cwd=tmp_path)
+    assert done.returncode == 1 and told in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("content", "warned"),
+    [
+        ('<script src="a.js"/><form><block/></form>', False),
+        ('<script src="b.js"/><form><block/></form>', True),
+        ('<form><block><goto next="#x"/></block></form><form id="x"><block/></form>', False),
+        ('<form><block><goto next="a%20b.vxml#x"/></block></form>', False),
+        ('<form><block><goto next="c.vxml?y=1#x"/></block></form>', True),
+        ('<form><block><goto next="../d/a.js"/></block></form>', True),
+        ('<form><block><submit next="http://h.example/c"/></block></form>', False),
+        ('<form><block><submit next="service:shop"/></block></form>', False),
+        ('<form><block><audio src="none.wav">Hello.</audio></block></form>', False),
+        ('<form xml:base="e/"><subdialog name="s" src="f.vxml"/></form>', True),
+    ],
+)
+def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
+    content: str, warned: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "d").mkdir()
+    for name in ("a.js", "a b.vxml"):
+        (tmp_path / "d" / name).write_text(
+            '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form id="x"/></vxml>'
+        )
+    (tmp_path / "d" / "m.vxml").write_text(
+        f'<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">{content}</vxml>'
+    )
+    done = prima("validate", "d/m.vxml", cwd=tmp_path)
+    assert ("[no-such-file]" in done.stdout) == warned, done.stdout
+    assert "error:" not in done.stdout
+
+
+CALLED = VXML.format(
+    "", '<form id="call"><var name="order"/><block><return namelist="order"/></block></form>'
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        *(("nogr.grxml", ""), ("cro.grxml", "cor.grxml"), ("c.xml", "")),
+        *(("tea-menus.grxml", "tea-menu.grxml"), ("sor.grxml", ""), ("cor.vxml", "cor.xml")),
+    ],
+)
+def test_a_file_is_guessed_only_where_it_is_near(tmp_path: Path, name: str, meant: str) -> None:
+    for there in ("cor.xml", "cor.grxml", "tea-menu.grxml", "other.xml"):
+        (tmp_path / there).write_text("")
+    field = f'<form><field name="a"><grammar src="{name}"/></field></form>'
+    (one,) = [one for one in told(tmp_path, field) if "no-such-file" in one]
+    assert one.rpartition("badfetch.")[2].strip() == (f'Did you mean "{meant}"?' if meant else "")
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ('<subdialog name="s" src="second.vxml#call"><param name="size" expr="1"/></subdialog>',
+         'undeclared-variable The form "call" has no <var name="size"/>'),
+        ('<subdialog name="s" src="second.vxml"><param name="oder" expr="1"/></subdialog>',
+         'Did you mean "order"?'),
+        ('<block><goto next="second.vxml#cal"/></block>',
+         'no-such-form There is no dialog "cal" in second.vxml: this will be error.badfetch.'
+         ' Did you mean "call"?'),
+    ],
+)  # fmt: skip
+def test_what_another_document_lacks_is_told(tmp_path: Path, content: str, says: str) -> None:
+    (one,) = told(tmp_path, f"<form>{content}</form>", second=CALLED)
+    assert one.startswith("main.vxml") and says in one
+
+
+def test_what_another_document_takes_is_fine(tmp_path: Path) -> None:
+    call = '<subdialog name="s" src="second.vxml#call"><param name="order" expr="1"/></subdialog>'
+    content = f'<form>{call}<block><goto next="second.vxml#call"/></block></form>'
+    assert told(tmp_path, content, second=CALLED) == []
+
+
+SECOND = VXML.format(
+    "", '<form><field name="x"><grammar src="gone.grxml"/><prompt>Hm?</prompt></field></form>'
+)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<form><block><goto next="second.vxml"/></block></form>',
+        '<menu><choice next="second.vxml">two</choice></menu>',
+        '<form><subdialog name="s" src="second.vxml"/></form>',
+        '<form><block><submit next="second.vxml"/></block></form>',
+    ],
+)
+def test_further_documents_of_an_application_are_looked_into(tmp_path: Path, content: str) -> None:
+    (one,) = told(tmp_path, content, second=SECOND)
+    assert one.startswith("second.vxml no-such-file") and "gone.grxml" in one
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (tmp_path / "visit.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        '<application src="main.vxml"/></scenario>'
+    )
+    (problem,) = loading.validate([tmp_path / "visit.xml"])
+    assert problem.code == "no-such-file" and problem.place.file.endswith("second.vxml")
+
+
+def test_further_documents_are_no_business_of_a_run(tmp_path: Path) -> None:
+    broken = SECOND.replace("</vxml>", "")
+    content = '<form><block><goto next="second.vxml"/></block></form>'
+    (one,) = told(tmp_path, content, second=broken)
+    assert one.startswith("second.vxml not-xml")
+    assert loading.stage([], [str(tmp_path / "main.vxml")]).problems == []
+
+
+def test_documents_that_lead_to_each_other_are_read_once(tmp_path: Path) -> None:
+    second = VXML.format("", '<form><block><goto next="main.vxml"/></block></form>')
+    content = '<form><block><goto next="second.vxml"/></block></form>'
+    assert told(tmp_path, content, second=second) == []
+
+
+def test_a_handler_may_take_what_another_document_throws(tmp_path: Path) -> None:
+    content = '<form><subdialog name="s" src="second.vxml"><catch event="tuch"/></subdialog></form>'
+    thrown = '<form><block><return event="{}"/></block></form>'
+    assert told(tmp_path, content, second=VXML.format("", thrown.format("tuch"))) == []
+    (one,) = told(tmp_path, content, second=VXML.format("", thrown.format("other")))
+    assert one.startswith("main.vxml unknown-event")
+
+
+def test_a_grammar_in_the_place_of_a_document_is_told_to_be_one(tmp_path: Path) -> None:
+    (tmp_path / "g.gram").write_text("#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = yes;\n")
+    told = r"This is a grammar, not XML\. Name it in a VoiceXML"
+    with pytest.raises(DocumentError, match=told):
+        api.stage([], [str(tmp_path / "g.gram")])
+    with pytest.raises(DocumentError, match=told):
+        api.load_scenario(tmp_path / "g.gram")

@@ -1,0 +1,211 @@
+"""Copies of VoiceXML documents in a folder that run as if they were fetched from a server."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from prima import api, loading
+from prima.cli import cli
+from prima.errors import UsageError
+from tests.helpers.voice import HEAD, vxml
+
+SHOP = """<var name="shop" expr="'the shop'"/>
+<catch event="error.badfetch"><log expr="_message"/><exit/></catch>"""
+ASKING = """<form><field name="f"><prompt>Tea?</prompt>
+<grammar src="https://example.org/app/grammars/a%20b.grxml"/>
+<filled><goto next="/app/voice/next.vxml#b"/></filled></field></form>"""
+DRINKS = """<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en"
+ root="r"><rule id="r">tea</rule></grammar>"""
+NEXT = """<form id="a"><block>No.</block></form>
+<form id="b"><block><log expr="shop"/><goto next="{}"/></block></form>"""
+LEAF = HEAD.replace("<vxml ", '<vxml application="../root.vxml" ')
+
+
+def copied(tmp_path: Path, leads: str) -> Path:
+    """A copy of a site, beside a document that is not of it."""
+    made = {
+        "site/root.vxml": vxml(SHOP),
+        "site/voice/main.vxml": vxml(ASKING, LEAF),
+        "site/voice/next.vxml": vxml(NEXT.format(leads), LEAF),
+        "site/voice/there.vxml": vxml("<form><block><log>there</log></block></form>"),
+        "site/grammars/a b.grxml": DRINKS,
+        "outside.vxml": vxml("<form><block><log>outside</log></block></form>"),
+    }
+    for name, text in made.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path / "site"
+
+
+def served(tmp_path: Path, attributes: str, more: str = "") -> Path:
+    """A scenario that runs the copy."""
+    demo = loading.documents_folder()
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
+        f' world="{demo / "worlds" / "room.xml"}" robot="{demo / "robots" / "papero.xml"}">'
+        f'<robot at="middle"/><person x="1" y="0"/>'
+        f'<application src="site/voice/main.vxml" {attributes}/>'
+        f'<answer to="Tea?">Tea.</answer>{more}</scenario>',
+        encoding="utf-8",
+    )
+    return path
+
+
+def logged(transcript: api.Transcript) -> list[str]:
+    assert transcript.failures == []
+    return [one["message"] for one in transcript.records if one["phase"] == "log"]
+
+
+URI = 'uri="https://example.org/app/voice/main.vxml" folder="site"'
+
+
+@pytest.mark.parametrize(
+    "leads",
+    ["there.vxml", "/app/voice/there.vxml", "https://example.org/app/voice/there.vxml?a=b"],
+)
+def test_a_copy_behaves_as_if_it_was_fetched(tmp_path: Path, leads: str) -> None:
+    site = copied(tmp_path, leads)
+    assert logged(api.rehearse(served(tmp_path, URI))) == ["the shop", "there"]
+    maps = [f"https://example.org/app/={site}/"]
+    staged = api.stage([], [str(site / "voice" / "main.vxml")], ["tea"], maps=maps)
+    assert logged(api.rehearse(staged)) == ["the shop", "there"]
+
+
+def test_a_copy_is_validated_as_if_it_was_fetched(tmp_path: Path) -> None:
+    site = copied(tmp_path, "/app/voice/there.vxml")
+    main = site / "voice" / "main.vxml"
+    main.write_text(main.read_text().replace("../root.vxml", "/app/root.vxml"))
+    codes = [one.code for one in api.validate([main])]
+    assert codes == ["no-such-file"] * len(codes) != []
+    maps = [f"https://example.org/app/={site}/"]
+    assert api.validate([main], maps) == []
+    (site / "voice" / "there.vxml").unlink()
+    (missing,) = api.validate([main], maps)
+    assert missing.code == "no-such-file" and missing.place.file.endswith("next.vxml")
+    with pytest.raises(UsageError, match="no application is in the folder"):
+        api.validate([tmp_path / "outside.vxml"], maps)
+
+
+def test_the_command_line_maps_what_it_validates(tmp_path: Path) -> None:
+    site = copied(tmp_path, "/app/voice/there.vxml")
+    served_at = f"--map=https://example.org/app/={site}"
+    done = CliRunner().invoke(cli, ["validate", "--strict", str(site), served_at])
+    assert (done.exit_code, done.stdout) == (0, ""), done.output
+    assert CliRunner().invoke(cli, ["validate", "--strict", str(site)]).exit_code == 1
+
+
+LEADING_OUT = {
+    "../../outside.vxml": "example.org/outside.vxml: ",
+    "https://example.org/app/%2e%2e/outside.vxml": "outside.vxml: the folder has no such file; ",
+    "https://example.org/app/../outside.vxml": "outside.vxml: the folder has no such file; ",
+    "https://example.org/app/link.vxml": "link.vxml: the folder has no such file; ",
+    "nowhere.vxml": "https://example.org/app/voice/nowhere.vxml: the folder has no such file; ",
+    "https://example.org/application/x.vxml": "application/x.vxml: ",
+}
+
+
+@pytest.mark.parametrize("leads", LEADING_OUT)
+def test_no_name_leads_out_of_a_copy_and_none_to_the_network(
+    tmp_path: Path, leads: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("socket.socket", None)
+    site = copied(tmp_path, leads)
+    (site / "link.vxml").symlink_to(tmp_path / "outside.vxml")
+    shop, why = logged(api.rehearse(served(tmp_path, URI)))
+    told = 'the run does not allow the host: add "--allow-host example.org"'
+    assert shop == "the shop" and why.startswith("next.vxml:2:39: ")
+    assert why.endswith(f"{LEADING_OUT[leads]}{told}")
+
+
+def test_a_service_answers_what_a_copy_lacks(tmp_path: Path) -> None:
+    copied(tmp_path, "order.cgi")
+    (tmp_path / "answer.vxml").write_text(
+        vxml("<form><block><log>ordered</log></block></form>"), encoding="utf-8"
+    )
+    more = (
+        '<service name="shop" uri="https://example.org/app/"><reply after="1s"'
+        ' src="answer.vxml"/></service>'
+    )
+    assert logged(api.rehearse(served(tmp_path, URI, more))) == ["the shop", "ordered"]
+
+
+def test_validation_looks_into_a_copy_as_a_run_does(tmp_path: Path) -> None:
+    copied(tmp_path, "there.vxml")
+    assert loading.validate([served(tmp_path, URI)]) == []
+    wrong = tmp_path / "site" / "voice" / "there.vxml"
+    wrong.write_text(vxml("<form><block><goto next='/app/gone.vxml'/><nothing/></block></form>"))
+    found = loading.validate([served(tmp_path, URI)])
+    assert [(str(one.place), one.code) for one in found] == [
+        (f"{wrong}:1:96", "no-such-file"),
+        (f"{wrong}:1:113", "unknown-element"),
+    ]
+    service = '<service name="s" uri="https://example.org/app/gone"/>'
+    found = loading.validate([served(tmp_path, URI, service)])
+    assert [one.code for one in found] == ["unknown-element"]
+
+
+def test_grammars_of_a_copy_name_each_other_by_their_uris(tmp_path: Path) -> None:
+    site = copied(tmp_path, "there.vxml")
+    drinks = (site / "grammars" / "a b.grxml").read_text()
+    (site / "grammars" / "tea.grxml").write_text(drinks.replace('id="r"', 'id="r" scope="public"'))
+    (site / "grammars" / "a b.grxml").write_text(
+        drinks.replace(">tea<", '><ruleref uri="/app/grammars/tea.grxml#r"/><')
+    )
+    assert loading.validate([served(tmp_path, URI)]) == []
+    assert logged(api.rehearse(served(tmp_path, URI))) == ["the shop", "there"]
+
+
+def test_without_a_folder_the_document_s_own_is_served(tmp_path: Path) -> None:
+    copied(tmp_path, "there.vxml")
+    (tmp_path / "site" / "voice" / "main.vxml").write_text(
+        vxml('<form><block><goto next="https://a.example/there.vxml"/></block></form>')
+    )
+    path = served(tmp_path, 'uri="https://a.example/start"')
+    assert logged(api.rehearse(path)) == ["there"]
+
+
+@pytest.mark.parametrize(
+    ("attributes", "code", "message"),
+    [
+        ('uri="app/main.vxml"', "bad-value", '"app/main.vxml" is no URI of a document.'),
+        ('uri="https://e.example/a?b"', "bad-value", "is no URI of a document."),
+        ('uri="https://e.example/x.vxml" folder="site"', "bad-value", "does not end as the"),
+        ('uri="https://e.example/main.vxml" folder="other"', "bad-value", "is not in the folder"),
+        ('folder="site"', "missing-attribute", 'A folder is served at a "uri".'),
+    ],
+)
+def test_a_wrong_place_of_a_copy_is_an_error(
+    tmp_path: Path, attributes: str, code: str, message: str
+) -> None:
+    copied(tmp_path, "there.vxml")
+    found = loading.validate([served(tmp_path, attributes)])
+    [problem] = [one for one in found if one.severity == "error"]
+    assert (problem.severity, problem.code) == ("error", code)
+    assert message in problem.message
+
+
+def test_an_application_of_prima_s_language_is_served_nowhere(tmp_path: Path) -> None:
+    copied(tmp_path, "there.vxml")
+    demo = loading.documents_folder() / "fa" / "follow.xml"
+    path = served(tmp_path, f'uri="https://e.example/x"/><application src="{demo}" {URI[:46]}')
+    errors = [one for one in loading.validate([path]) if one.severity == "error"]
+    assert [one.code for one in errors] == ["unknown-attribute"]
+
+
+@pytest.mark.parametrize("text", ["site", "=site", "https://e.example/app/=", "ftp://x/=site"])
+def test_a_mapping_that_is_none_is_wrong_usage(tmp_path: Path, text: str) -> None:
+    site = copied(tmp_path, "there.vxml")
+    with pytest.raises(UsageError, match="maps no URI to a folder"):
+        api.stage([], [str(site / "voice" / "main.vxml")], [], maps=[text])
+
+
+def test_a_mapping_of_no_application_is_wrong_usage(tmp_path: Path) -> None:
+    site = copied(tmp_path, "there.vxml")
+    with pytest.raises(UsageError, match="no application is in the folder"):
+        api.stage(
+            [], [str(site / "voice" / "main.vxml")], [], maps=["https://e.example/=elsewhere"]
+        )
