@@ -57,6 +57,7 @@ class Prima:
         for now in range(self.now + 1, self.now + times + 1):
             self.session.step(now, event)
         self.now += times
+        self.session.drain_visits()  # as whoever drives a session does, after every instant
 
     def count(self) -> int:
         """The counter, read by the application itself; the trace has to be there too."""
@@ -86,6 +87,7 @@ class Alone:
         for now in range(self.now + 1, self.now + times + 1):
             self.app.event(now, Event("tick", now))
         self.now += times
+        self.app.visits.clear()
 
     def count(self) -> int:
         """The counter, read by the application itself."""

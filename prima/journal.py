@@ -125,6 +125,7 @@ def replay_instants(session: Session, records: list[Record]) -> Iterator[Record]
     for now, batch in sorted(batches.items()):
         yield from _time_out(session, now - 1)
         session.step(now, batch)
+        session.drain_visits()  # a long replay would keep them all
         yield from session.drain()
     yield from _time_out(session, end)
 

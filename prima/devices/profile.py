@@ -16,6 +16,8 @@ from prima.markup.tree import Node
 
 POINTING_MS = 1000
 """How long the robot holds its arm out."""
+BRAKING_MS = 200
+"""How long it takes to come to a stand."""
 
 
 @dataclass(slots=True)

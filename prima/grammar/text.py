@@ -18,8 +18,9 @@ UNSPACED = (
     r"\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff66-\uff9d\U00020000-\U0003ffff"
 )
 """Letters of scripts that are written without spaces, or (Korean) with loose ones."""
-_UNSPACED = re.compile(f"[{UNSPACED}]")
-_LOOSE = re.compile(f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])")
+_UNSPACED = f"[{UNSPACED}]"
+_LOOSE = f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])"
+# Patterns of so many letters take long to compile: these two are when such text comes.
 _KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
@@ -40,7 +41,7 @@ def fold(text: str) -> str:
     # Separators inside numbers and times are kept, and what tells C++ and C# from C.
     pieces = _KEPT.split(folded)
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
-    return _LOOSE.sub("", " ".join("".join(pieces).split()))
+    return _closed(" ".join("".join(pieces).split()))
 
 
 def wide(text: str) -> str:
@@ -66,7 +67,11 @@ def tokens(text: str) -> list[str] | None:
 
 def join(words: tuple[str, ...] | list[str]) -> str:
     """Tokens as text: no space where the script has none."""
-    return _LOOSE.sub("", " ".join(words))
+    return _closed(" ".join(words))
+
+
+def _closed(text: str) -> str:
+    return text if text.isascii() else re.sub(_LOOSE, "", text)
 
 
 def keys(text: str) -> str | None:
@@ -118,6 +123,10 @@ def utterance(text: str, mode: str) -> Utterance | None:
 
 
 def _edges(said: str) -> list[bool]:
-    loose = [letter == " " or _UNSPACED.match(letter) is not None for letter in said]
+    loose = [letter == " " or _is_unspaced(letter) for letter in said]
     inner = [before or after for before, after in pairwise(loose)]
     return [True, *inner, True] if said else [True]
+
+
+def _is_unspaced(letter: str) -> bool:
+    return not letter.isascii() and re.match(_UNSPACED, letter) is not None

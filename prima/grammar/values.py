@@ -19,8 +19,9 @@ _LETTERS = (
     "A-Za-z_\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c\u200d"
     "\u2070-\u218f\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
-_NAME = re.compile(f"[{_LETTERS}][{_LETTERS}0-9\u00b7\u0300-\u036f\u203f\u2040]*")
-"""A Name of XML 1.0 without dots, colons and hyphens (SRGS Appendix D: ConstrainedName)."""
+_NAME = f"[{_LETTERS}][{_LETTERS}0-9\u00b7\u0300-\u036f\u203f\u2040]*"
+"""A Name of XML 1.0 without dots, colons and hyphens (SRGS Appendix D: ConstrainedName). It is
+compiled when it is used: so many letters take long."""
 _LANGUAGE = re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*")
 
 
@@ -97,7 +98,7 @@ def name_problem(name: str) -> str:
     """What is wrong with the name of a rule (SRGS 3.1), or nothing."""
     if name in RESERVED:
         return f'"{name}" is a special rule and cannot be defined.'
-    if _NAME.fullmatch(name) is None:
+    if re.fullmatch(_NAME, name) is None:
         return f'"{name[:60]}" is no name of a rule: letters, digits and "_", no digit first.'
     return ""
 

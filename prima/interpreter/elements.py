@@ -28,7 +28,7 @@ def pauses_in(text: Text | None) -> int:
     return sum(part.lasts for part in text or () if isinstance(part, Pause))
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Expression:
     """ECMAScript, and the element and attribute that hold it."""
 
@@ -37,7 +37,7 @@ class Expression:
     attribute: str = "expr"
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class CommandTemplate:
     """A Command element; arguments are values or expressions."""
 
@@ -52,7 +52,7 @@ class CommandTemplate:
     restartable: bool = False
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class GroupTemplate:
     """A unit around Commands (U4)."""
 
@@ -62,7 +62,7 @@ class GroupTemplate:
     restartable: bool = False
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class StepTemplate:
     """A node of the tree that a run of Commands becomes (U3)."""
 
@@ -70,7 +70,7 @@ class StepTemplate:
     after: tuple[int, ...]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Run:
     """Commands that follow one another: requested at once (O4)."""
 
@@ -78,7 +78,7 @@ class Run:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Declare:
     """A var."""
 
@@ -87,7 +87,7 @@ class Declare:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Script:
     """A script."""
 
@@ -95,7 +95,7 @@ class Script:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Assign:
     """An assign."""
 
@@ -104,7 +104,7 @@ class Assign:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Clear:
     """A clear; no names means all form items."""
 
@@ -112,7 +112,7 @@ class Clear:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class If:
     """Conditions with their content; the last may have none (else)."""
 
@@ -120,7 +120,7 @@ class If:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Foreach:
     """A foreach."""
 
@@ -130,7 +130,7 @@ class Foreach:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Log:
     """A log."""
 
@@ -139,7 +139,7 @@ class Log:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Throw:
     """A throw."""
 
@@ -148,7 +148,7 @@ class Throw:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Goto:
     """A goto: to a form, or to an item of this one."""
 
@@ -157,7 +157,7 @@ class Goto:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Return:
     """A return."""
 
@@ -166,21 +166,21 @@ class Return:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Exit:
     """An exit."""
 
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Reprompt:
     """A reprompt."""
 
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class SendOut:
     """A send: to a service, or an event to this application itself after a delay."""
 
@@ -209,7 +209,7 @@ Act = (
 )
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Handler:
     """A handler of events, by their names or prefixes of them (VoiceXML 5.2.2)."""
 
@@ -223,7 +223,7 @@ class Handler:
     """Whether there is a Command in it, whose end is waited for."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Link:
     """Something the user may say at any time in its scope."""
 
@@ -233,7 +233,7 @@ class Link:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Watch:
     """An event defined by a condition on sensor values (C6)."""
 
@@ -242,7 +242,7 @@ class Watch:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Filled:
     """A filled: its fields; none means those of the form."""
 
@@ -252,7 +252,7 @@ class Filled:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Prompt:
     """A prompt of a field."""
 
@@ -264,7 +264,7 @@ class Prompt:
     node: Node
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Item:
     """What every form item has."""
 
@@ -278,14 +278,14 @@ class Item:
     """How long (ms) its stream is kept open for an event afterwards (X3)."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Block(Item):
     """Content that runs once."""
 
     content: tuple[Act, ...] = ()
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Field(Item):
     """A question."""
 
@@ -297,7 +297,7 @@ class Field(Item):
     """Whether the robot turns to the user before it asks (X4)."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Subdialog(Item):
     """A call of another form."""
 
@@ -306,7 +306,7 @@ class Subdialog(Item):
     filled: tuple[Filled, ...] = ()
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Unit(Item):
     """A unit around form items (U5), with the devices and Commands of all its content."""
 
@@ -316,7 +316,7 @@ class Unit(Item):
     longest: int = 60000
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Form:
     """A state of the application."""
 
@@ -347,7 +347,7 @@ Content = tuple[Form | None, tuple[Act, ...], Node]
 """A piece of executable content, with its form and the element that holds it."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Document:
     """A whole application."""
 

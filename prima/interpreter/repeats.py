@@ -123,7 +123,8 @@ class _Leavings:
 
     def back(self) -> Iterator[_Back]:
         """All that is told twice."""
-        for form in self._source.document.forms.values():
+        speaking = (form for form in self._source.document.forms.values() if form.items)
+        for form in speaking:
             own = [*self._own(form)]
             said = said_first(form)
             if said is not None:

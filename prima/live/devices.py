@@ -45,6 +45,8 @@ from prima.messages import (
 )
 from prima.sim.entrances import Entrances
 
+MOST_NEWS = 10_000
+"""What drivers may tell in one turn, before the one that tells more is given up."""
 SPEECH_MS = 5_000
 """How much longer than expected a text may take, besides twice its time."""
 
@@ -115,6 +117,8 @@ class LiveDevices:
         """The latest instant."""
         self._at: At | None = None
         self._sees = Sees(False)
+        self._flooding: set[Driver] = set()
+        """Drivers that have told too much in this turn."""
         self._began: int | None = None
         """When the user began to speak."""
         self._heard = False
@@ -152,6 +156,7 @@ class LiveDevices:
         inbound += self.conductor.collect(now, self._sees.visible, self._whereabouts())
         self._carry_out()
         news, self._news = self._news, []
+        self._flooding.clear()
         for one in news:
             inbound += self._take(now, one)
         return inbound + self.services.collect(now)
@@ -199,15 +204,17 @@ class LiveDevices:
                 self._at = told
             case Sees():
                 self._sees = told
-            case Speaks() | Heard() | Emergency() | Sensed():
-                self._news.append(told)
             case _ if isinstance(told, Report):
                 if isinstance(told, Lost):
                     self.lost(driver)
                 self.conductor.report(now, told)
                 self._carry_out()
-            case _:
+            case _ if len(self._news) < MOST_NEWS:
                 self._news.append(told)
+            case _:
+                if driver not in self._flooding:
+                    self._flooding.add(driver)
+                    driver.lose(f"it tells more than {MOST_NEWS:,} things at once")
         self.wake()
 
     def _take(self, now: int, news: News | Inbound) -> list[Inbound]:

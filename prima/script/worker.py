@@ -16,7 +16,6 @@ import sys
 import threading
 from collections import deque
 from typing import Any, Protocol
-from weakref import WeakSet
 
 from prima.script import host, wire
 from prima.script.evaluation import EngineLost, ScriptError
@@ -183,7 +182,9 @@ def _reason(code: int) -> str:
 
 _idle: list[Worker] = []
 """Processes that nobody uses."""
-_started: WeakSet[Worker] = WeakSet()
+_started: set[Worker] = set()
+"""Processes that were hired and have not ended, as far as is known. They are held here, so that those
+of a run that nobody closed are given back when it is collected, not collected with it."""
 
 
 def hire() -> Worker:
@@ -192,6 +193,7 @@ def hire() -> Worker:
     Raises:
         EngineLost: none can be started.
     """
+    _started.intersection_update([one for one in _started if one.alive])
     if not _idle and len(_started) >= MANY:
         gc.collect()  # runs that nobody closed give theirs back
     while _idle:

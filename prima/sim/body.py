@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 
 from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, Stand, Stopped
 from prima.devices.goals import Call as Told
-from prima.devices.profile import POINTING_MS, Profile
+from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
 from prima.messages import Json, Occurred
 from prima.sim.locomotion import Locomotion, Plan
 from prima.sim.routes import Routes
 from prima.sim.world import World, distance
 
-BRAKING_MS = 200
 FAILING_MS = 300
 """How long a broken device tries before it says that it fails."""
 FAILS = "the device fails"

@@ -131,7 +131,7 @@ class Flood(TaskDriver):
     kind = "flood"
     async def perform(self, goal):
         from prima.messages import Narrated
-        for number in range(2000):
+        for number in range(self.settings.heartbeat):
             self.tell(Narrated("environment", f"note {number}"))
         return {}
 
@@ -152,7 +152,8 @@ class Broken(Driver):
         ('<driver kind="silent" accept="300ms"/>', 3, "the device does not accept it"),
         ('<driver kind="wrong"/>', 3, "the motor is hot"),
         ('<driver kind="broken"/>', 3, "the driver broken has failed: division by zero"),
-        ('<driver kind="flood"/>', 0, ""),
+        ('<driver kind="flood" heartbeat="2s"/>', 0, ""),
+        ('<driver kind="flood" heartbeat="50s"/>', 3, "tells more than 10,000 things at once"),
         ("", 2, "has no driver"),
     ],
 )

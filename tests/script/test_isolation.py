@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import time
@@ -68,6 +69,15 @@ def test_time_is_the_processors_not_the_clocks() -> None:
     finally:
         os.kill(pid, signal.SIGCONT)
     assert engine.spent < 0.1
+
+
+def test_a_run_that_nobody_closed_gives_its_process_back(quick: None) -> None:
+    engines = Engines()
+    engines.__dict__["itself"] = engines  # so that only the collector finds it
+    pid = engine_of(engines).host.pid
+    del engines
+    gc.collect()
+    assert engine_of(Engines()).host.pid == pid
 
 
 def test_eas_are_apart_and_fas_together() -> None:

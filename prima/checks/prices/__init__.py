@@ -6,12 +6,16 @@ the same device waits for the end. The times are those of the simulator's voice 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
 from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import UNIT_PRICE
 from prima.interpreter.elements import Document
-from prima.voicexml.document import VoiceDocument
+
+if TYPE_CHECKING:
+    from prima.voicexml.document import VoiceDocument
 
 __all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "prices", "worst"]
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from prima.checks.prices.model import Price, devices_of
-from prima.devices.profile import POINTING_MS, Profile
+from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
 from prima.language.commands import TABLE_4_2, Argument, CommandType, check_argument
 from prima.markup.tree import Node
-from prima.sim.body import BRAKING_MS
 
 SETTLING_MS = 1500
 """Time of a turn beyond its angle at full speed: for slowing down and detecting the end (ms)."""

@@ -64,10 +64,10 @@ class Facts:
         self._gather()
         self._common = Scope(self.shared | self._declared.get(None, NONE))
 
-    @property
-    def forms(self) -> Iterator[tuple[Form, Sequence[Item]]]:
+    @cached_property
+    def forms(self) -> list[tuple[Form, Sequence[Item]]]:
         """Forms with all their items."""
-        return ((form, all_items(form.items)) for form in self.document.forms.values())
+        return [(form, all_items(form.items)) for form in self.document.forms.values()]
 
     # Names
 
