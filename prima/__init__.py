@@ -1,6 +1,6 @@
 """PRIMA: two robot applications written as XML documents, mediated into one robot.
 
-The package's interface is loaded when it is used; see :mod:`prima.api`.
+The package's functions are imported when used; see :mod:`prima.api`.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ INTERRUPTED = 130
 
 
 def main() -> None:
-    """Run the command line; an interrupt while it is imported ends it quietly, too."""
+    """Run the command line; handle an interrupt during its import, too."""
     try:
         from prima.cli import main as run
 

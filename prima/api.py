@@ -1,4 +1,4 @@
-"""The package's interface: load, validate, rehearse, read, replay, diff, explain.
+"""The package's functions: load, validate, rehearse, read, replay, diff, explain.
 
 The command line does nothing that is not here. These functions open files;
 everything below them works on text and values.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -36,36 +37,38 @@ if TYPE_CHECKING:
     from prima.transcript.diff import Difference
     from prima.transcript.measures import Measure, Summary
     from prima.transcript.record import Entry
+    from prima.transcript.row import Row
     from prima.transcript.run import Run
-    from prima.transcript.table import Row
 
-# What one use needs and another does not is imported where it is used: most commands are short.
+# Modules that only some functions need are imported there, so that short commands start quickly.
+
+LACKING = "a record lacks a field of its phase."
 
 
 @dataclass(slots=True)
 class Transcript:
-    """Records of a run, times in seconds, with the views that people want of them."""
+    """The records of a run, times in seconds, with views of them."""
 
     records: list[Record]
-    """Empty where a run was told not to keep them."""
+    """Empty if they were not kept."""
     name: str = ""
     failures: list[str] = field(default_factory=list)
-    """Applications that ended by an error, as ``NAME: what``."""
+    """Applications that ended by an error, as ``NAME: ERROR``."""
     defects: list[Exception] = field(default_factory=list)
-    """What has gone wrong in PRIMA itself, and ended applications."""
+    """Defects of PRIMA that ended applications."""
     outcome: str = ""
     """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
     unfinished: list[str] = field(default_factory=list)
-    """Of a run stopped at ``until``, what each application does that has not ended."""
+    """If the run was stopped at ``until``, the activity of each application still running."""
     cut: str = ""
-    """What is wrong with the line at which a partial transcript ends."""
+    """The error in the line at which a partial transcript ends."""
     visits: list[Visit] = field(default_factory=list)
-    """What its applications came to in their documents, where a run was told to keep it."""
+    """The elements that applications reached in their documents, if they were kept."""
     measure: Measure | None = None
-    """What was counted while the run went on."""
+    """Counts made during the run."""
 
     made: list[Row] | None = None
-    """The rows, where the records were not kept."""
+    """The rows, if the records were not kept."""
     _run: Run | None = field(default=None, repr=False, compare=False)
 
     def rows(self) -> list[Row]:
@@ -73,10 +76,10 @@ class Transcript:
         return _made_of(self.name, self.run().entries) if self.made is None else self.made
 
     def run(self) -> Run:
-        """What its records tell of the run, folded once.
+        """The run as folded from its records, once.
 
         Raises:
-            UsageError: a record lacks what its phase has.
+            UsageError: a record lacks a field of its phase.
         """
         from prima.transcript.run import run_of
 
@@ -85,7 +88,7 @@ class Transcript:
         return self._run
 
     def table(self, why: bool = False, columns: int = 80) -> str:
-        """The table as text, of at most so many columns where names of applications let it.
+        """The table as text, at most this wide if the names of applications allow it.
 
         With ``why``, each row has the rule that put it there.
         """
@@ -94,10 +97,10 @@ class Transcript:
         return format_rows(self.rows(), why, columns)
 
     def summary(self) -> Summary:
-        """What can be counted in it.
+        """The counts and measures of the run.
 
         Raises:
-            UsageError: a record lacks what its phase has.
+            UsageError: a record lacks a field of its phase.
         """
         from prima.transcript.measures import summarize
 
@@ -105,7 +108,7 @@ class Transcript:
 
     @property
     def early(self) -> str:
-        """Says that the records end before their run did; empty where they do not."""
+        """A message that the records end before their run did; empty if they do not."""
         if self.cut or not self.records or self.records[0]["phase"] != "run":
             return ""
         last = self.records[-1]
@@ -123,18 +126,18 @@ def _made_of(name: str, entries: Iterable[Entry]) -> list[Row]:
     """The rows of a transcript.
 
     Raises:
-        UsageError: a record lacks what its phase has.
+        UsageError: a record lacks a field of its phase.
     """
-    from prima.transcript.table import make_rows
+    from prima.transcript.rows import make_rows
 
     try:
         return make_rows(entries)
     except (KeyError, TypeError, ValueError, AttributeError):
-        raise UsageError(f"{name}: a record lacks what its phase has.") from None
+        raise UsageError(f"{name}: {LACKING}") from None
 
 
 def ends_early(name: str, seconds: float) -> str:
-    """What is said of a transcript whose last record is not that its run is over."""
+    """The message for a transcript whose last record is not the end of its run."""
     return f"{name}: the transcript ends at {seconds:.3f} s, before its run did."
 
 
@@ -155,24 +158,24 @@ def rehearse(
     """Run a scenario in simulation.
 
     Args:
-        scenario: its path, or what :func:`load_scenario` gave.
+        scenario: its path, or the result of :func:`load_scenario`.
         policy: a policy's name (docs/mediation.md lists them) or ``fixed:APP``;
             by default the scenario's own.
         bound: rule E4's bound on loops of a feedback Command.
-        sink: is given each line of the transcript as soon as it is made.
-        keep: whether the records are kept in memory; without, only the sink has them.
-        hosts: what the applications may fetch from by http and https, as ``HOST`` or
-            ``HOST:PORT``; where the scenario's services do not answer instead.
-        isolate: whose scripts get a process of their own: each EA's and one for all FAs
-            (``ea``), each application's (``all``), or nobody's (``none``: nothing can stop
-            a script that escapes the engine's limits).
+        sink: called with each line of the transcript as soon as it is made.
+        keep: whether to keep the records in memory.
+        hosts: hosts from which applications may fetch by http and https, as ``HOST`` or
+            ``HOST:PORT``; services of the scenario answer first.
+        isolate: which scripts run in a process of their own: those of each EA, with one for
+            all FAs (``ea``), those of each application (``all``), or none (``none``: then
+            nothing stops a script that escapes the engine's limits).
         patience: rule E6's bound (ms) on how long an application may keep others from the
-            speaker, 0 for ever; by default the scenario's own.
-        visits: whether to keep what the applications came to in their documents.
+            speaker, 0 for no bound; by default the scenario's own.
+        visits: whether to keep the elements that applications reach in their documents.
 
     Raises:
-        DocumentError: documents are wrong.
-        UsageError: no such policy or file, or no host's name.
+        DocumentError: documents have errors.
+        UsageError: a policy or file is unknown, or a host is not a host name.
     """
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished, line
@@ -208,7 +211,7 @@ def rehearse(
 
 
 def _unfinished(rehearsal: Rehearsal) -> list[str]:
-    """What each application that has not ended does as a run is stopped, as ``NAME is ...``."""
+    """The activity of each application still running as a run is stopped, as ``NAME is ...``."""
     memory, owed = rehearsal.session.mediator.memory, rehearsal.devices.services.owed
     there = [name for name, app in rehearsal.session.apps.items() if not app.over]
     return [
@@ -219,9 +222,9 @@ def _unfinished(rehearsal: Rehearsal) -> list[str]:
 
 
 def _doing(app: Application, owed: bool) -> str:
-    """What an application does that the mediator keeps; ``owed`` if a service has yet to answer."""
+    """The activity of an application; ``owed`` if a service has not answered it yet."""
     from prima.scheduler.behavior import RUNNING, WAITING
-    from prima.transcript.table import describe
+    from prima.transcript.row import describe
 
     for behavior in app.members.values():
         if behavior.state is RUNNING and behavior.unit is None:
@@ -236,19 +239,21 @@ def _doing(app: Application, owed: bool) -> str:
 
 
 def fetcher(hosts: list[str], applications: int) -> Web | None:
-    """What fetches from hosts for some applications; the network's modules are loaded only then."""
+    """A fetcher for some hosts, or None; only then are network modules imported."""
     if not hosts:
         return None
     from prima.loading.web import Hosts
 
     for host in hosts:
         if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
-            raise UsageError(f'"{host}" is no host: write its name alone, as in example.org:8080.')
+            raise UsageError(
+                f'"{host}" is not a host name: write a name and a port, such as example.org:8080.'
+            )
     return Hosts(hosts, applications)
 
 
 def read(path: str | Path, partial: bool = False) -> Transcript:
-    """Read a transcript; with ``partial``, one that was cut off as far as it goes.
+    """Read a transcript; with ``partial``, up to its first unreadable line.
 
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
@@ -259,10 +264,10 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
 
 
 def skim(path: str | Path) -> Transcript:
-    """Read a transcript as far as it goes, and keep its rows and what is counted in it.
+    """Read a transcript up to its first unreadable line; keep only its rows and counts.
 
-    Of its records the first and the last are kept: a long one takes a small part of the memory
-    that :func:`read` needs.
+    Only the first and last records are kept, so that a long transcript takes much less memory
+    than with :func:`read`.
 
     Raises:
         UsageError: it cannot be read, or is none; the line is named.
@@ -300,8 +305,8 @@ def _records(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
         if cut is None or count == 0 or error.reason != "unexpected end of data":
-            raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
-        message = "the record is cut off, in a letter; the transcript was not written to its end."
+            raise UsageError(f"{path}: not a transcript: it is not UTF-8.") from None
+        message = "the record is cut off within a character; the transcript is incomplete."
         cut.append(f"{path}:{count + 1}: {message}")
 
 
@@ -314,15 +319,16 @@ def export(
     """Write a transcript in another tool's format (docs/exports.md).
 
     Args:
-        transcript: a transcript, or the path of one, which is then read piece by piece as far
-            as it goes.
+        transcript: a transcript, or the path of one, which is read in pieces up to its first
+            unreadable line.
         to: the format's name, such as ``eaf``; docs/exports.md lists all.
-        output: the file to write, by its path or open for bytes.
-        languages: language tags (BCP 47) by application; under the empty name, that of all
-            others and of the user.
+        output: the path of the file to write, or a binary stream.
+        languages: language tags (BCP 47) by application; the empty name stands for the
+            user and all other applications.
 
     Raises:
-        UsageError: no such format, tag or application, or no file to read from or write to.
+        UsageError: a format, tag or application is unknown, or a file is unreadable or
+            unwritable.
     """
     from prima.exports import Exported, checked, timeline, write
 
@@ -333,36 +339,44 @@ def export(
     name = str(transcript) if held is None else held.name
     cut = [held.cut] if held and held.cut else []
 
-    def records(told: list[str]) -> Iterable[Record]:
-        return _records(name, told) if held is None else held.records
+    def records(cuts: list[str]) -> Iterable[Record]:
+        return _records(name, cuts) if held is None else held.records
 
     made = timeline(name, records(cut))
     made.check_names(tags)
-    if not isinstance(output, str | Path):
-        write(to, made, records([]), tags, VERSION, output)
-    else:
-        path = Path(output)
-        if path.exists() and Path(name).exists() and path.samefile(name):
-            raise UsageError(f"{output}: this is the transcript itself: name another file.")
-        made.parts()  # may be refused: before a file is overwritten
-        from prima.loading.writing import whole
-
-        with whole(path) as stream:
+    if isinstance(output, str | Path):
+        made.parts()  # may raise, before a file is overwritten
+        with _output(Path(output), name) as stream:
             write(to, made, records([]), tags, VERSION, stream)
+    else:
+        write(to, made, records([]), tags, VERSION, output)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 
 
+def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
+    """A file to write an export to.
+
+    Raises:
+        UsageError: it is the transcript.
+    """
+    from prima.loading.writing import whole
+
+    if path.exists() and Path(transcript).exists() and path.samefile(transcript):
+        raise UsageError(f"{path}: this is the transcript itself: name another file.")
+    return whole(path)
+
+
 def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) -> Transcript:
-    """Run a transcript's inbound records again, without a world: the result is the same.
+    """Run a transcript's inbound records again, without a world; the result is the same.
 
     Args:
-        transcript: of a rehearsal, or the journal of a live run.
-        scenario: the rehearsal's; a live run needs none, as its journal says what was run.
+        transcript: the transcript of a rehearsal, or the journal of a live run.
+        scenario: the rehearsal's scenario; a live run needs none.
 
     Raises:
         UsageError: the scenario's files are not those of the transcript.
-        DocumentError: documents are wrong.
+        DocumentError: documents have errors.
     """
     from prima.journal import replay_records
     from prima.transcript.lines import finished
@@ -390,7 +404,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
             )
         )
     except (KeyError, TypeError, ValueError, AttributeError):
-        raise UsageError(f"{transcript.name}: a record lacks what its phase has.") from None
+        raise UsageError(f"{transcript.name}: {LACKING}") from None
     return Transcript([finished(record) for record in again], transcript.name)
 
 
@@ -404,10 +418,10 @@ def diff(before: Transcript, after: Transcript) -> Difference:
 
 
 def explain(code: str) -> str:
-    """Say what a problem's code means.
+    """The meaning of a problem's code.
 
     Raises:
-        UsageError: there is no such code.
+        UsageError: the code is unknown.
     """
     from prima.checks.codes import diagnoses
 
@@ -418,12 +432,12 @@ def explain(code: str) -> str:
 
 
 def explain_row(transcript: Transcript, number: int) -> str:
-    """Say why a row of a transcript's table came where it did.
+    """The reasons for the time of a row of a transcript's table.
 
     Raises:
         UsageError: there is no such row.
     """
-    from prima.transcript.why import told
+    from prima.transcript.why import explained
 
     rows = transcript.rows()
     if not rows:
@@ -432,7 +446,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     if not 0 <= number < len(rows):
         message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
         raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
-    return "\n".join(told(transcript.run(), rows[number]))
+    return "\n".join(explained(transcript.run(), rows[number]))
 
 
 __all__ = [

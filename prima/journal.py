@@ -1,8 +1,8 @@
-"""Running a transcript's inbound records again: recovery, what-if, and proof."""
+"""Replay: runs a transcript's inbound records again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from prima.errors import UsageError
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
@@ -30,46 +30,49 @@ from prima.script.prelude import START
 from prima.session import AnyDocument, Session
 
 
+def _heard_or_occurred(record: Record, data: Record) -> Inbound:
+    if record["event"] == "speech" and record["actor"] == "user":
+        return Heard(record["text"], data)
+    return Occurred(record["event"], record["actor"], data, record.get("app"))
+
+
+INBOUND: dict[str, Callable[[Record, Record], Inbound]] = {
+    "end": lambda record, data: Ended(record["behavior"], record.get("goal", True), data),
+    "halted": lambda record, data: Halted(record["behavior"], data),
+    "listening": lambda record, data: Listening(record["behavior"]),
+    "fail": lambda record, data: Failed(record["behavior"], record["device"], record["message"]),
+    "delayed": lambda record, data: Delayed(
+        record["behavior"], record["device"], _milliseconds(data["waited"])
+    ),
+    "device": lambda record, data: Presence(
+        record["device"], record["outcome"] == "back", record.get("message", "")
+    ),
+    "event": _heard_or_occurred,
+    "fetched": lambda record, data: Fetched(record["app"], **data),
+    "transferred": lambda record, data: Transferred(
+        record["app"], record["serial"], data["uri"], record["outcome"]
+    ),
+    "sensed": lambda record, data: Sensed(data),
+    "note": lambda record, data: Narrated(record["actor"], record["text"]),
+    "emergency": lambda record, data: Emergency(
+        record["outcome"] == "pressed", bool(data.get("resume", True))
+    ),
+    "load": lambda record, data: Loaded(
+        record["app"], str(data.get("place", "")), data.get("connection", {})
+    ),
+    "unload": lambda record, data: Unloaded(record["app"], str(data.get("place", ""))),
+}
+"""The inbound value of a record of each phase, from the record and its data."""
+
+
 def inbound_of(record: Record) -> Inbound | None:
-    """The inbound value that a record was made of; None for what was decided inside."""
-    if not record.get("inbound"):
-        return None
-    data = record.get("data") or {}
-    match record["phase"]:
-        case "end":
-            return Ended(record["behavior"], record.get("goal", True), data)
-        case "halted":
-            return Halted(record["behavior"], data)
-        case "listening":
-            return Listening(record["behavior"])
-        case "fail":
-            return Failed(record["behavior"], record["device"], record["message"])
-        case "delayed":
-            waited = round(data["waited"] * 1000)
-            return Delayed(record["behavior"], record["device"], waited)
-        case "device":
-            there = record["outcome"] == "back"
-            return Presence(record["device"], there, record.get("message", ""))
-        case "event" if record["event"] == "speech" and record["actor"] == "user":
-            return Heard(record["text"], data)
-        case "event":
-            return Occurred(record["event"], record["actor"], data, record.get("app"))
-        case "fetched":
-            return Fetched(record["app"], **data)
-        case "transferred":
-            return Transferred(record["app"], record["serial"], data["uri"], record["outcome"])
-        case "sensed":
-            return Sensed(data)
-        case "note":
-            return Narrated(record["actor"], record["text"])
-        case "emergency":
-            pressed = record["outcome"] == "pressed"
-            return Emergency(pressed, bool(data.get("resume", True)))
-        case "load":
-            return Loaded(record["app"], str(data.get("place", "")), data.get("connection", {}))
-        case "unload":
-            return Unloaded(record["app"], str(data.get("place", "")))
-    return None
+    """The inbound value that a record was made from; None for decisions of the mediator."""
+    make = INBOUND.get(record["phase"]) if record.get("inbound") else None
+    return None if make is None else make(record, record.get("data") or {})
+
+
+def _milliseconds(seconds: float) -> int:
+    return round(seconds * 1000)
 
 
 def replay_records(
@@ -81,16 +84,16 @@ def replay_records(
     """Run the inbound records of a transcript through a session; times of both in s and ms.
 
     Raises:
-        UsageError: the transcript names an application that is not there.
+        UsageError: the transcript names an unknown application.
     """
     held = list(records)
     head, settings = held[0], held[0]["data"]
-    yield {**head, "time": round(head["time"] * 1000)}
+    yield {**head, "time": _milliseconds(head["time"])}
     date = settings.get("date", START)
     policy = policy_named(settings["policy"])
     bound, patience = (
         settings.get("bound"),
-        round(settings.get("patience", PATIENCE_MS / 1000) * 1000),
+        _milliseconds(settings.get("patience", PATIENCE_MS / 1000)),
     )
     session = Session(documents, policy, commands, bound, date, absence=absence, patience=patience)
     try:
@@ -98,27 +101,27 @@ def replay_records(
     finally:
         session.close()
     if (last := held[-1])["phase"] == "over":
-        yield {**last, "time": round(last["time"] * 1000)}
+        yield {**last, "time": _milliseconds(last["time"])}
 
 
 def replay_instants(session: Session, records: list[Record]) -> Iterator[Record]:
-    """Feed a transcript's inbound records to a session; gives the records that it makes.
+    """Feed a transcript's inbound records to a session; yield its records.
 
     Args:
         session: a new one.
         records: the transcript's, times in s. Those of the session are in ms.
 
     Raises:
-        UsageError: the transcript names an application that is not there.
+        UsageError: the transcript names an unknown application.
     """
     batches: dict[int, list[Inbound]] = {}
     for record in records:
         value = inbound_of(record)
         if value is not None:
             if isinstance(value, Loaded) and value.app not in session.apps:
-                raise UsageError(f'The transcript loads "{value.app}", which is not there.')
-            batches.setdefault(round(record["time"] * 1000), []).append(value)
-    end = round(records[-1]["time"] * 1000)
+                raise UsageError(f'The transcript loads an unknown application: "{value.app}".')
+            batches.setdefault(_milliseconds(record["time"]), []).append(value)
+    end = _milliseconds(records[-1]["time"])
     for now, batch in sorted(batches.items()):
         yield from _time_out(session, now - 1)
         session.step(now, batch)
@@ -128,7 +131,7 @@ def replay_instants(session: Session, records: list[Record]) -> Iterator[Record]
 
 
 def _time_out(session: Session, until: int) -> Iterator[Record]:
-    """Carry out what the session does by itself up to a time."""
+    """Carry out the session's deadlines up to a time (ms)."""
     while (due := session.deadline()) is not None and due <= until:
         session.step(due, ())
         yield from session.drain()

@@ -1,4 +1,4 @@
-"""Work spread over processes: results come in order, and one that dies takes only its own along."""
+"""Spreads work over processes; results come in order, and a dead process loses only its item."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
 AHEAD = 4096
-"""Results that are kept at most until one before them is there."""
+"""Maximum number of results that wait for an earlier one."""
 DYING_SECONDS = 5.0
-"""How long a process that has closed its pipe may take to end."""
+"""How long a process may take to end after closing its pipe."""
 PRELOADED = ["prima.api", "prima.sim.rehearsal", "prima.transcript.measures"]
-"""What most work needs: imported once, by the process that the others are forked from."""
+"""Modules imported once, by the process from which the others are forked."""
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -28,21 +28,21 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True, slots=True)
 class Died:
-    """What comes in the place of a result when the process ended in the middle of the work."""
+    """Replaces the result of an item whose process ended before it was done."""
 
     code: int
-    """The exit code, or the negative number of the signal that ended it."""
+    """The exit code, or the negative number of the signal."""
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """The number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def warm_up() -> None:
-    """Let what all processes need be imported already, while the caller does something else."""
+    """Start importing what all processes need, while the caller does something else."""
     context = _context()
     if context.get_start_method() == "forkserver":
         from multiprocessing.forkserver import ensure_running
@@ -58,19 +58,18 @@ def spread(
     begin: Callable[[], object] | None = None,
     leave: Callable[[], object] | None = None,
 ) -> Generator[tuple[Item, Made | Died], None, None]:
-    """Apply a function to items in other processes; the results come in the order of the items.
+    """Apply a function to items in other processes; yield results in the order of the items.
 
-    Items are taken one by one as processes become free, and at most ``AHEAD`` before the one
-    whose result is next, so that neither is kept in memory. Closing the iterator, or an
-    exception such as an interrupt while it waits, ends the processes at once. They end by
-    themselves when this process is gone.
+    Items are taken one by one as processes become free, at most ``AHEAD`` beyond the next
+    result, which bounds memory. Closing the iterator, or an exception such as an interrupt,
+    ends the processes at once. They also end if this process dies.
 
     Args:
-        function: a function of a module, or a partial of one; it should not raise.
-        items: what it is applied to.
-        workers: how many processes.
-        begin: what each of these does first.
-        leave: what one does last whose parent is gone.
+        function: a module's function, or a partial of one; it should not raise.
+        items: its arguments.
+        workers: the number of processes.
+        begin: called first in each process.
+        leave: called last in a process whose parent has died.
 
     Raises:
         RunError: no process can be started.
@@ -84,13 +83,13 @@ def spread(
 
 @dataclass(slots=True, eq=False)
 class _Worker:
-    """A process, the pipe to it, and the number of the item that it works on."""
+    """A process, its pipe, and the number of its current item."""
 
     process: Any
     pipe: Connection
     number: int = -1
     ready: bool = False
-    """Whether it has begun: one that has not cannot be blamed on its item."""
+    """Whether it has begun; if not, its end is not its item's fault."""
 
 
 class _Crew(Generic[Item, Made]):
@@ -134,7 +133,7 @@ class _Crew(Generic[Item, Made]):
                 due += 1
 
     def _free(self) -> bool:
-        """Whether a process has nothing to do; another begins if there may be more.
+        """Whether a process is idle; starts another if there may be more.
 
         Raises:
             RunError: there is none, and none can be started.
@@ -145,18 +144,18 @@ class _Crew(Generic[Item, Made]):
             except (EOFError, OSError) as error:
                 if not self.busy:
                     why = getattr(error, "strerror", None) or "there are too many"
-                    raise RunError(f"no process can be started: {why}.") from None
-                self.most = len(self.busy)  # with fewer than there should be
+                    raise RunError(f"cannot start a process: {why}.") from None
+                self.most = len(self.busy)  # go on with fewer
         return bool(self.idle)
 
     def _give(self, number: int, item: Item) -> None:
-        """Let a process work on an item."""
+        """Give an item to a process."""
         while self._free():
             worker = self.idle.pop()
             worker.number = number
             try:
                 worker.pipe.send(item)
-            except OSError:  # it has died while it had nothing to do
+            except OSError:  # it died while idle
                 worker.pipe.close()
                 if not worker.ready:
                     raise _no_start(worker) from None
@@ -166,7 +165,7 @@ class _Crew(Generic[Item, Made]):
         raise RunError("a process has died, and no other can be started.")
 
     def _take(self, worker: _Worker) -> list[Made | Died]:
-        """A process's result, or how it ended; nothing where it has only begun."""
+        """A process's result, or how it ended; nothing if it reports only that it has begun."""
         try:
             made: Made = worker.pipe.recv()
         except (EOFError, OSError):
@@ -196,7 +195,7 @@ class _Crew(Generic[Item, Made]):
         return _Worker(process, here)
 
     def end(self) -> None:
-        """End all processes, whatever they are doing."""
+        """Kill all processes."""
         workers = [*self.idle, *self.busy.values()]
         for worker in workers:
             worker.process.kill()
@@ -216,9 +215,9 @@ def _no_start(worker: _Worker) -> RunError:
 
 
 def _context() -> Any:
-    """How processes are made: forked from one that has nothing but imports, or new ones.
+    """How processes are made: forked from one with nothing but imports, or spawned.
 
-    Never by forking this process, in which threads and engines may be at work.
+    This process is never forked: threads and engines may be running in it.
     """
     from multiprocessing import get_all_start_methods, get_context
 
@@ -231,10 +230,10 @@ def _context() -> Any:
 
 @contextmanager
 def _starting() -> Iterator[None]:
-    """Let processes begin that import what this one does, and do not heed Ctrl-C.
+    """Start processes with this one's module paths that ignore Ctrl-C.
 
-    They look for modules where this one does, and not in the folder that one works in. An
-    interrupt is for this process alone, which ends the others; one that comes meanwhile waits.
+    They do not import from the current folder. Only this process handles an interrupt, and
+    ends the others; one that comes meanwhile is delayed.
     """
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)
     settings = {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
@@ -255,9 +254,9 @@ def _starting() -> Iterator[None]:
 
 
 def _track() -> None:
-    """Let the process begin that Python wants beside any other, which has to be the first.
+    """Start Python's resource tracker first.
 
-    Once that has begun Python lets interrupts through again, which are to wait for the others.
+    Starting it lets interrupts through again, which must wait for the other processes.
     """
     if hasattr(signal, "pthread_sigmask"):
         from multiprocessing.resource_tracker import ensure_running
@@ -266,7 +265,7 @@ def _track() -> None:
 
 
 def _mask(how: int, signals: Iterable[int]) -> Iterable[int]:
-    """Change which signals wait, where the system can; gives those that waited before."""
+    """Change the blocked signals, if the system can; return those blocked before."""
     return signal.pthread_sigmask(how, signals) if hasattr(signal, "pthread_sigmask") else ()
 
 
@@ -276,7 +275,7 @@ def _work(
     leave: Callable[[], object] | None,
     pipe: Connection,
 ) -> None:
-    """Work on items as they come, in a process of its own."""
+    """Work on items as they come; runs in its own process."""
     import threading
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -288,11 +287,11 @@ def _work(
         while True:
             pipe.send(function(pipe.recv()))
     except (EOFError, OSError):
-        return  # nobody waits any more
+        return  # the parent has gone
 
 
 def _follow(leave: Callable[[], object] | None) -> None:
-    """End with the parent, however that ended: nobody would read what is computed."""
+    """End when the parent ends, since nobody would read the results."""
     from multiprocessing import parent_process
 
     parent = parent_process()

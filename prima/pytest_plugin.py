@@ -1,6 +1,6 @@
-"""A plugin of pytest: scenarios that expect something are tests (docs/testing.md).
+"""A pytest plugin: scenarios with expectations are tests (docs/testing.md).
 
-Only the beginning of XML files is read, and PRIMA imported only where one is a scenario.
+It reads only the beginning of XML files, and imports PRIMA only if one is a scenario.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
 OPTION = "prima_scenarios"
 BEGINNING = 65_536
-"""Bytes of a file in which a scenario's namespace is looked for."""
+"""Bytes of a file that are searched for a scenario's namespace."""
 NAMESPACE = b"urn:prima:scenario:"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option by which scenarios are left alone."""
+    """Add the option that turns the plugin off."""
     parser.addini(OPTION, "whether scenarios of PRIMA are tests", type="bool", default=True)
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ScenarioFile | None:
-    """Take up XML files that are scenarios, and expect something."""
+    """Collect XML files that are scenarios with expectations."""
     if file_path.suffix != ".xml" or not parent.config.getini(OPTION):
         return None
     if not _begins_as_scenario(file_path):
@@ -48,7 +48,7 @@ def _begins_as_scenario(path: Path) -> bool:
 
 
 class ScenarioFile(pytest.File):
-    """A scenario's file; it holds one test, its run."""
+    """A scenario's file, which holds one test."""
 
     def collect(self) -> Iterator[pytest.Item]:
         """The run of the scenario."""
@@ -56,27 +56,27 @@ class ScenarioFile(pytest.File):
 
 
 class ScenarioFailed(Exception):
-    """A run was not as its scenario expects."""
+    """A run did not meet its scenario's expectations."""
 
 
 class ScenarioItem(pytest.Item):
-    """A scenario to be run, and compared with what it expects."""
+    """The run of a scenario."""
 
     result: Result | None = None
 
     def runtest(self) -> None:
-        """Run it."""
+        """Run it and check the expectations."""
         import os
 
         from prima.testing.running import Choice, run_one
-        from prima.testing.telling import format_result
+        from prima.testing.summary import format_result
 
         self.result = run_one(os.path.relpath(self.path), Choice())
         if self.result.status != "passed":
             raise ScenarioFailed(format_result(self.result))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """What was not as expected; prima's own errors without a traceback."""
+        """The failures; PRIMA's own errors without a traceback."""
         from prima.errors import PrimaError
 
         if isinstance(excinfo.value, ScenarioFailed | PrimaError):
@@ -84,7 +84,7 @@ class ScenarioItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where it stands: at what failed first, once that is known (lines from 0)."""
+        """The place of the first failure, once known (lines count from 0)."""
         failures = self.result.failures if self.result is not None else []
         line = failures[0].place.line - 1 if failures else None
         return self.path, line, f"scenario: {self.path.stem}"

@@ -38,7 +38,7 @@ from prima.interpreter import (
 from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
-from prima.lsp.words import VOICEXML_ATTRIBUTES
+from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
 from prima.markup.rnc import make_rnc
 from prima.markup.schema import (

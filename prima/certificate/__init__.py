@@ -1,17 +1,17 @@
-"""A certificate for a pair: what a place's application can do to the robot's own one."""
+"""Certificates: how an EA can affect an FA."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from prima.certificate.finding import Delay, Starving, delays, starving
-from prima.certificate.telling import certificate_data, format_certificate
-from prima.checks.prices import Gap, Outline, Price, outline
-from prima.checks.prices.bounds import Busy, busy_at_all
+from prima.certificate.finding import delays, starving
+from prima.certificate.model import Certificate, Delay, Starving
+from prima.certificate.summary import certificate_data, format_certificate
+from prima.checks.prices import Outline, outline
+from prima.checks.prices.bounds import busy_at_all
 from prima.devices.profile import Profile, read_robot
-from prima.errors import DocumentError, Place, UsageError
+from prima.errors import DocumentError, UsageError
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
 from prima.loading import documents_folder, read_application
@@ -27,29 +27,6 @@ __all__ = [
     "certify",
     "format_certificate",
 ]
-
-
-@dataclass(slots=True)
-class Certificate:
-    """What an EA can do to an FA on one robot, under the policy ``prima``. Times are in ms."""
-
-    fa: str
-    ea: str
-    robot: str
-    both: list[str]
-    only_fa: list[str]
-    only_ea: list[str]
-    longest_unit: Price | None
-    delays: list[Delay]
-    leaves: list[Price]
-    others: Busy
-    """How long Commands that are no reactions wait at most, each time that the EA is busy."""
-    holds: list[tuple[Place, int]] = field(default_factory=list)
-    starves: list[Starving] = field(default_factory=list)
-    gaps: list[Gap] = field(default_factory=list)
-    """What the EA's documents do not tell."""
-    lacks: dict[str, list[str]] = field(default_factory=dict)
-    """What the EA asks for and a robot has not, by robot; empty where it has all."""
 
 
 def certify(
@@ -77,7 +54,7 @@ def certify(
 
 
 def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
-    """Commands that a robot cannot do, or devices of theirs that it has not."""
+    """Commands of an application that a robot does not have the devices for."""
     if not isinstance(document, Document):
         rows = profile.commands
         asked = set().union(*(part.names for part in told.parts)) - NO_COMMANDS
@@ -91,7 +68,7 @@ def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
 
 
 NO_COMMANDS = {"unit", "question", "recording", "call"}
-"""Parts of applications that are called otherwise than the Commands that they are."""
+"""Kinds of parts of applications that are not Commands."""
 
 
 def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> list[Certificate]:
@@ -115,7 +92,9 @@ def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> lis
         for name in names:
             document = read[name]
             if isinstance(document, Document) and document.kind != kind:
-                raise UsageError(f"{name}: is {other}; --with FA EA compares an FA with an EA.")
+                raise UsageError(
+                    f"{name}: this is {other}; --with FA EA compares an FA with an EA."
+                )
     return [certify(read[fa], read[ea], profile, others) for ea in eas for fa in fas]
 
 

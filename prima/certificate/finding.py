@@ -1,65 +1,15 @@
-"""What one application can do to another: how long its reactions wait, and what may starve."""
+"""How one application affects another: waits of its reactions, and starvation."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from prima.certificate.model import Delay, Starving
 from prima.checks.prices import Gap, Outline, Price, Reaction, worst
 from prima.checks.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
 from prima.checks.prices.model import Loop, State, devices_of
-from prima.errors import Place
 from prima.interpreter.selection import takes
-
-
-@dataclass(slots=True)
-class Delay:
-    """How long one reaction of an application may wait for the other, and for what of it."""
-
-    event: str
-    devices: tuple[str, ...]
-    """The devices that both need."""
-    lasts: int
-    """The longest wait (ms), as far as it is known."""
-    what: str
-    place: Place | None
-    """The part that lasts longest; None where only the rest makes it wait."""
-    listens: bool = False
-    """Whether the user may speak in it: what they say comes on top."""
-    after: list[Place] = field(default_factory=list)
-    """The other's reactions to the same event, for which it waits as a whole (F2)."""
-    everything: bool = False
-    """Whether it waits for all that the other does in one go, as what drives may (K1, K2)."""
-    each: int | None = 0
-    """How much longer (ms) for each other event that the other reacts to meanwhile; None where
-    that has no bound."""
-    whole: bool = False
-    """Whether it waits for all that the other does in one go: then it is longer, too, for each
-    event whose reaction the other has begun before and not ended."""
-    unknown: list[Gap] = field(default_factory=list)
-    endless: list[Gap] = field(default_factory=list)
-    response: Delay | None = None
-    """How long its first word or movement towards the user may wait; None where it has none."""
-
-    @property
-    def known(self) -> bool:
-        """Whether the wait is never longer than ``lasts``."""
-        return not self.unknown and not self.endless
-
-
-@dataclass(frozen=True, slots=True)
-class Starving:
-    """What Commands that are no reactions may wait for without a bound."""
-
-    place: Place
-    what: str
-    rule: str
-    devices: tuple[str, ...]
-    """Commands on these devices wait."""
-    leaving: bool = False
-    """Whether, whatever their devices, those wait that leave the user (K1)."""
-    everything: bool = False
-    """Whether, whatever their devices, all wait: it may hold the floor (F2)."""
 
 
 def related(one: Reaction, other: Reaction) -> bool:
@@ -71,7 +21,7 @@ def related(one: Reaction, other: Reaction) -> bool:
 
 
 def delays(own: Outline, theirs: Outline) -> list[Delay]:
-    """How long each reaction of ``own`` may wait for ``theirs``."""
+    """The waits of each reaction of ``own`` for ``theirs``."""
     mine: dict[str, list[Reaction]] = {}
     for reaction in own.reactions:
         for event in reaction.events:
@@ -151,7 +101,7 @@ def _begun_meanwhile(
 
 
 def _once(delay: Delay) -> Delay:
-    """A delay whose reasons are told once each."""
+    """A delay without duplicate reasons."""
     delay.unknown = list(dict.fromkeys(delay.unknown))
     delay.endless = list(dict.fromkeys(delay.endless))
     return delay
@@ -214,7 +164,7 @@ def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy |
 
 
 def _drives(mine: list[Price], theirs: Outline) -> bool:
-    """Whether something leaves the user, which the other may keep it from (K1, K2)."""
+    """Whether a Command leaves the user, and the other may prevent it (K1, K2)."""
     return any(one.leaves for one in mine) and any(not one.leaves for one in theirs.parts)
 
 
@@ -224,7 +174,7 @@ def _doings(theirs: Outline) -> Iterable[State]:
 
 
 def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline) -> None:
-    """All that is done in one go, and all that further events bring."""
+    """Add all activity without a wait, and that of further events."""
     delay.lasts += whole.lasts
     delay.unknown += whole.unknown
     delay.endless += whole.endless
@@ -250,7 +200,7 @@ def _first(reaction: Reaction, needed: frozenset[str]) -> int:
 
 
 def starving(own: Outline, theirs: Outline) -> list[Starving]:
-    """What of ``theirs`` may keep Commands of ``own`` that are no reactions waiting for ever."""
+    """The parts of ``theirs`` that may starve Commands of ``own`` other than reactions."""
     drives = any(part.leaves for part in own.parts)
     floors = _floors(theirs) if not drives else set(theirs.states)
     floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}

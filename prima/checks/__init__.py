@@ -1,1 +1,1 @@
-"""Checks before a run: warnings that comments leave out, and what parts of documents cost."""
+"""Checks before a run: codes, ignores, and the cost of parts of documents."""

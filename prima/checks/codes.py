@@ -10,7 +10,7 @@ from pkgutil import iter_modules
 from prima.errors import Diagnosis
 
 HOMES = ("prima.errors.diagnoses", "prima.interpreter.checks", "prima.voicexml.checks")
-"""Packages whose modules declare diagnoses: those that several make, and those of one check."""
+"""Packages whose modules declare diagnoses, shared or of one check."""
 
 
 @cache

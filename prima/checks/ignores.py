@@ -1,4 +1,4 @@
-"""What authors want not to be told again: warnings and notes that they ignore, with the reason.
+"""Ignores: warnings and notes that authors suppress, with a reason.
 
 A comment in a document, ``<!-- prima-ignore: CODE reason -->``, counts for the element behind it
 and all that this holds; before the root element it counts for the whole document. An ``[[ignore]]``
@@ -34,7 +34,7 @@ from prima.markup.tree import MARKUP, Source
 
 SETTINGS = "prima.toml"
 KINDS = (".xml", ".vxml", ".grxml", ".gram", ".abnf")
-"""How the names of documents end."""
+"""Suffixes of documents."""
 WORD = "prima-ignore"
 COMMENT = re.compile(rf"\s*{WORD}\b\s*(:?)\s*(\S*)\s*(.*?)\s*", re.DOTALL)
 FORM = f"Write <!-- {WORD}: CODE reason -->."
@@ -44,7 +44,7 @@ OF_SCENARIOS = frozenset(
         *("out-of-range", "bad-value", "unknown-event", "unheard-event"),
     ]
 )
-"""Codes of warnings that a document may get from a scenario alone: nobody knows which do not."""
+"""Codes of warnings that may depend on the scenario, so that an ignore may be needed there."""
 ENTRY = re.compile(r"^\s*\[\[\s*ignore\s*\]\]", re.MULTILINE)
 KEYS = ("code", "files", "reason")
 
@@ -55,26 +55,26 @@ EVERYWHERE: tuple[Position, Position] = ((0, 0), (10**9, 0))
 
 @dataclass(slots=True)
 class Ignore:
-    """One thing that an author ignores."""
+    """One ignore."""
 
     code: str
     place: Place
     span: tuple[Position, Position] = EVERYWHERE
-    """What it counts for in its document, from and up to."""
+    """The range of its document to which it applies."""
     files: tuple[str, ...] = ("*",)
     used: bool = False
     around: Ignore | None = None
     """The next of its code that counts for all that it counts for."""
 
     def use(self) -> None:
-        """It has been needed, and those around it as well."""
+        """Mark it, and those around it, as used."""
         one: Ignore | None = self
         while one is not None and not one.used:
             one.used, one = True, one.around
 
 
 class Inside:
-    """The ignores in one document: of two of a code, one is in the other or they do not meet."""
+    """The ignores of one document; two of the same code are nested or disjoint."""
 
     def __init__(self, ignores: Iterable[Ignore]) -> None:
         self.all = list(ignores)
@@ -86,7 +86,7 @@ class Inside:
         """By codes, the places from which on another one counts, or none."""
 
     def taking(self, problem: Problem) -> Ignore | None:
-        """The innermost one that is about a problem."""
+        """The innermost one that applies to a problem."""
         turns = self._turns.get(problem.code)
         if turns is None:
             return None
@@ -122,13 +122,13 @@ class Settings:
     problems: list[Problem] = field(default_factory=list)
 
     def for_file(self, file: str) -> Iterator[Ignore]:
-        """Those that count for a document of its folder."""
+        """The entries that apply to a document in its folder."""
         name = relpath(file, dirname(self.path)).replace("\\", "/")
         return (one for one in self.ignores if any(fnmatchcase(name, glob) for glob in one.files))
 
 
 class Ignores:
-    """What is ignored in the documents of one validation, and what of that came to nothing."""
+    """The ignores of all documents of one validation, and those that are unused."""
 
     def __init__(self, read: Callable[[str], bytes]) -> None:
         self._read = read
@@ -136,12 +136,12 @@ class Ignores:
         self._paths: dict[str, str] = {}
         self._settings: dict[str, Settings | None] = {}
         self._checked: dict[str, str] = {}
-        """The documents that have been checked, by the names by which they are told."""
+        """The checked documents, by the names used in messages."""
         self._errors: dict[str, set[str]] = {}
         """The codes of errors by document: who knows which warnings it would get without them."""
 
     def left(self, problems: Iterable[Problem]) -> list[Problem]:
-        """The problems that nobody ignores."""
+        """The problems without an ignore."""
         found = list(problems)
         for problem in found:
             if problem.severity == "error":
@@ -177,7 +177,7 @@ class Ignores:
 
     @staticmethod
     def _is_idle(ignore: Ignore) -> bool:
-        """Whether an ignore of a document has no use for certain."""
+        """Whether an ignore of a document is certainly unused."""
         empty = ignore.span[0] >= ignore.span[1]
         return not ignore.used and (empty or ignore.code not in OF_SCENARIOS)
 
@@ -224,11 +224,11 @@ class Ignores:
                 self._documents[path] = (
                     Inside(()),
                     [],
-                )  # what cannot be read is told by who reads it
+                )  # reading it reports the error
         return self._documents[path]
 
     def _of_folder(self, folder: str) -> Settings | None:
-        """The settings that count in a folder: the nearest alone."""
+        """The settings that apply in a folder: only the nearest."""
         if folder not in self._settings:
             file = join(folder, SETTINGS)
             if isfile(file):
@@ -240,7 +240,7 @@ class Ignores:
 
 
 def absolute(file: str) -> str:
-    """A file's path, by which one is known that is named in two ways."""
+    """A file's real path, equal for different names of the same file."""
     try:
         return realpath(file)
     except (OSError, ValueError):
@@ -252,7 +252,7 @@ def _unused(ignore: Ignore) -> Problem:
 
 
 def _incomplete(place: Place, code: str, reason: str, form: str) -> Problem | None:
-    """What is wrong with an ignore's code and reason, if anything is."""
+    """The problem of an ignore's code or reason, if any."""
     from prima.checks.codes import diagnoses  # imports every check, and few documents ignore any
 
     known = diagnoses()
@@ -266,7 +266,7 @@ def _incomplete(place: Place, code: str, reason: str, form: str) -> Problem | No
 
 
 def in_document(file: str, data: bytes) -> tuple[list[Ignore], list[Problem]]:
-    """The ignores of a document, and what is wrong with them."""
+    """The ignores of a document, and their problems."""
     if WORD.encode() not in data.replace(b"\0", b""):
         return [], []
     source = Source(file, decode(file, data))

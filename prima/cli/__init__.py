@@ -1,4 +1,4 @@
-"""The command line: it alone prints, sets exit codes and catches everything.
+"""The command line: the only place that prints, sets exit codes and catches everything.
 
 Exit codes: 0 fine; 1 problems found, or transcripts differ; 2 wrong usage or
 unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
@@ -9,13 +9,13 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
-from typing import Any
 
 import click
 
 from prima import __version__
-from prima.cli.common import SourceLines, escape_for_people, tell
-from prima.errors import DocumentError, RunError, UsageError, did_you_mean, listed
+from prima.cli.common import escape_for_people, tell
+from prima.cli.failures import INTERRUPTED, exit_code
+from prima.errors import did_you_mean
 
 COMMANDS = {
     "demo": "Run two applications on one robot; see the report.",
@@ -37,14 +37,14 @@ COMMANDS = {
     "schemas": "Copy the schemas of documents, for editors.",
     "lsp": "Serve an editor while documents are written.",
 }
-"""Each is a module of this package, with a command of its name; in the order of the help.
+"""Each is a module of this package with a command of the same name, in the order of the help.
 
-What they do stands here, so that the help needs none of them.
+The descriptions are here so that the help imports none of them.
 """
 
 
 class Commands(click.Group):
-    """Commands that are imported when they are wanted, with a suggestion for a misspelt one."""
+    """Commands, imported when used; suggests one for a misspelt name."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names of all commands."""
@@ -66,7 +66,7 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find a command, or say which one was probably meant."""
+        """Find a command, or suggest the one probably meant."""
         name = args[0] if args else ""
         if name and not name.startswith("-") and self.get_command(ctx, name) is None:
             hint = did_you_mean(name, self.list_commands(ctx)) or "prima --help lists them."
@@ -87,64 +87,18 @@ def cli() -> None:
 
 
 def main() -> None:
-    """Run the command line; every way out has its exit code and no traceback."""
+    """Run the command line; each ending has its exit code and no traceback."""
     if sys.stdout is None:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     escape_for_people()
-    code: Any = 0
     try:
         code = cli.main(standalone_mode=False)
         sys.stdout.flush()
-        code = code if isinstance(code, int) else 0
-    except SystemExit:
-        code = 0  # click's way of saying that nobody reads any more
-    except DocumentError as error:
-        from prima.errors.rendering import render
-        from prima.markup.limits import LIMITS
-
-        lines = SourceLines()
-        told = [problem for problem in error.problems if problem.severity != "note"]
-        for problem in listed(told, LIMITS.problems):
-            tell(render(problem, lines))
-        code = 1
-    except UsageError as error:
-        tell(f"prima: {error}")
-        code = 2
-    except RunError as error:
-        tell(f"prima: {error}")
-        code = 3
-    except click.exceptions.NoArgsIsHelpError as error:
-        tell(error.format_message())
-        code = 2
-    except click.ClickException as error:
-        context = getattr(error, "ctx", None)
-        usage = f"{context.get_usage()}\n" if context is not None else ""
-        tell(f"{usage}prima: {error.format_message()}")
-        code = 2
     except (click.Abort, KeyboardInterrupt):
         tell("prima: interrupted")
-        code = 130
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0
-    except OSError as error:
-        tell(f"prima: cannot go on: {error.strerror}.")
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        code = 2
-    except UnicodeEncodeError:
-        tell("prima: the name of a file is not UTF-8 and cannot be written here; rename it.")
-        code = 2
-    except MemoryError:
-        tell("prima: out of memory")
-        code = 3
-    except Exception as error:
-        if "PRIMA_DEBUG" in os.environ:
-            raise
-        tell(
-            f"prima: this is a defect of prima: {type(error).__name__}: {error}."
-            " Please report it; PRIMA_DEBUG=1 shows where."
-        )
-        code = 3
-    sys.exit(code)
+        code = INTERRUPTED
+    except (Exception, SystemExit) as error:
+        code = exit_code(error)
+    sys.exit(code if isinstance(code, int) else 0)

@@ -17,29 +17,22 @@ from prima.cli import common
 from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped
-from prima.experiments.batch import (
-    Options,
-    Plan,
-    Row,
-    format_counts,
-    format_head,
-    format_row,
-    row_data,
-    run_batch,
-)
+from prima.experiments.batch import run_batch
+from prima.experiments.plan import Options, Plan, Row
+from prima.experiments.rows import format_counts, format_head, format_row, row_data
 from prima.pool import warm_up
 
 MOST_LISTED = 50_000_000
-"""Bytes that a list of scenarios may have."""
+"""Maximum size of a list of scenarios (bytes)."""
 WIDEST = 100
-"""Columns of the table that scenarios take at most, all but longer ones."""
+"""Maximum width of the table's column of scenarios."""
 
 
 def listed(name: str) -> list[str]:
-    """The paths that stand in a file, one in a line, or in standard input for ``-``.
+    """The paths in a file, one per line; ``-`` is standard input.
 
-    Raises:
-        UsageError: it cannot be read, or names nothing.
+        Raises:
+    UsageError: it cannot be read, or is empty.
     """
     try:
         with open(0 if name == "-" else name, "rb", closefd=name != "-") as stream:
@@ -47,11 +40,11 @@ def listed(name: str) -> list[str]:
     except (OSError, ValueError) as error:
         raise UsageError(f"{name}: cannot be read: {getattr(error, 'strerror', error)}.") from None
     if len(data) > MOST_LISTED or b"\0" in data or data.lstrip()[:1] == b"<":
-        raise UsageError(f"{name}: this is no list of scenarios: one path stands in each line.")
+        raise UsageError(f"{name}: not a list of scenarios: write one path per line.")
     lines = [line.strip() for line in os.fsdecode(data.removeprefix(codecs.BOM_UTF8)).splitlines()]
     paths = [line for line in lines if line and not line.startswith("#")]
     if not paths:
-        raise UsageError(f"{name}: names no scenarios: write their paths, one in each line.")
+        raise UsageError(f"{name}: names no scenarios: write their paths, one per line.")
     return paths
 
 
@@ -63,7 +56,7 @@ def run_all(
     workers: int,
     form: str,
 ) -> None:
-    """Make many runs, and print a row for each as soon as those before it are there.
+    """Make many runs, and print a row for each as soon as the earlier ones have theirs.
 
     Raises:
         Exit: the highest exit code of a run is not 0.
@@ -72,23 +65,21 @@ def run_all(
     """
     warm_up()
     plan = Plan(paths, policies, output)
-    progress = _Progress(len(plan))
+    table, progress = _Table(plan, form), _Progress(len(plan))
     exits: Counter[int] = Counter()
     earlier = 0
-    with closing(run_batch(plan, options, workers)) as rows:
-        table = _Table(plan, form)
-        try:
+    try:
+        with closing(run_batch(plan, options, workers)) as rows:
             for row in rows:
                 exits[row.exit] += 1
                 earlier += row.earlier
-                if row.messages or progress.among_rows:
-                    progress.clear()
+                progress.make_room(bool(row.messages))
                 table.put(row)
                 progress.show(sum(exits.values()), exits.total() - exits[0])
-        except KeyboardInterrupt:
-            raise click.Abort from None
-        finally:
-            progress.clear()
+    except KeyboardInterrupt:
+        raise click.Abort from None
+    finally:
+        progress.clear()
     if form == "text":
         put(f"\n{format_counts(exits)}")
     if options.resume:
@@ -98,7 +89,7 @@ def run_all(
 
 
 class _Table:
-    """Rows on stdout, and on stderr what went wrong."""
+    """Prints rows to stdout and messages to stderr."""
 
     def __init__(self, plan: Plan, form: str) -> None:
         self.wide = min(max(map(len, ["scenario", *plan.scenarios])), WIDEST)
@@ -124,24 +115,24 @@ class _Table:
 
 
 class _Progress:
-    """Tells a terminal how far a batch is."""
+    """Shows the progress of a batch on a terminal."""
 
     def __init__(self, total: int) -> None:
         self.total = total
         self.terminal = sys.stderr.isatty()
         self.among_rows = sys.stdout.isatty()
         self.shown = ""
-        self.told = self.began = 0.0
-        """When it was told last, and when the first run was done."""
+        self.last = self.began = 0.0
+        """When it was shown last, and when the first run was done."""
 
     def show(self, done: int, bad: int) -> None:
-        """Tell that so many runs are done, and so many of them were not fine."""
+        """Show how many runs are done, and how many of them failed."""
         now = time.monotonic()
         self.began = self.began or now
-        seldom = not self.among_rows and now - self.told < PROGRESS_SECONDS
+        seldom = not self.among_rows and now - self.last < PROGRESS_SECONDS
         if not self.terminal or seldom:
             return
-        self.told = now
+        self.last = now
         wrong = f", {bad} not fine" if bad else ""
         text = f"{done} of {self.total} runs{wrong}"
         if done > 1:
@@ -150,8 +141,13 @@ class _Progress:
         click.echo(f"\r{text.ljust(len(self.shown))} ", err=True, nl=False)
         self.shown = text
 
+    def make_room(self, messages: bool) -> None:
+        """Erase it where a row, or messages, would be printed over it."""
+        if messages or self.among_rows:
+            self.clear()
+
     def clear(self) -> None:
-        """Take it off the screen, so that something else can be written there."""
+        """Erase it, so that something else can be printed."""
         if self.shown:
             click.echo(f"\r{' ' * len(self.shown)} \r", err=True, nl=False)
         self.shown = ""

@@ -1,4 +1,4 @@
-"""What the commands share: printing, options, and a guard against scripts that do not end."""
+"""Shared by the commands: printing, options, checks of output files."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 class Choice(click.Choice[str]):
-    """One of some words, with a suggestion for a misspelt one."""
+    """A choice that suggests a word for a misspelt one."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """The word, or a refusal that says which one was probably meant."""
+        """The word, or an error that suggests the one probably meant."""
         words = [str(word) for word in self.choices]
         if value not in words:
             hint = did_you_mean(str(value), words) or f"Write {one_of(words)}."
@@ -34,19 +34,19 @@ class Choice(click.Choice[str]):
 
 
 def suggesting(*words: str) -> Callable[[click.Context, click.Parameter, str], list[str]]:
-    """What the shell completes an option to whose values are checked later."""
+    """A shell completion for an option whose values are checked later."""
     return lambda _context, _parameter, begun: [one for one in words if one.startswith(begun)]
 
 
 def or_stdout(_context: click.Context, _option: click.Parameter, path: str | None) -> str | None:
-    """What is written to ``-`` goes where it goes without ``-o``: to stdout."""
+    """``-o -`` means stdout, as without ``-o``."""
     return None if path == "-" else path
 
 
 REFUSING = ("strict", "surrogateescape")
-"""Ways of Python to deal with what an encoding lacks that end in an error."""
+"""Python's error handlers that raise for characters that an encoding lacks."""
 PROGRESS_SECONDS = 0.5
-"""How often a terminal is told how far a long run is."""
+"""How often the progress of a long run is shown."""
 format_option = click.option(
     "--format",
     "form",
@@ -66,21 +66,53 @@ map_option = click.option(
     "maps",
     metavar="URI=FOLDER",
     multiple=True,
-    help="Read what VoiceXML documents name at this URI, or below, from this folder.",
+    help="Read resources of VoiceXML documents at or below this URI from this folder.",
 )
-MAPS = 'A scenario says itself where it is served: <application src="..." uri="https://..."/>.'
-"""What to write in place of ``--map`` in a scenario."""
+MAPS = '--map works only with --fa and --ea. In a scenario write <application src="..." uri="https://..."/>.'
+"""The error for ``--map`` with a scenario."""
+fa_option = click.option(
+    "--fa",
+    "fas",
+    multiple=True,
+    type=click.Path(),
+    help="Run this as the robot's application (FA).",
+)
+ea_option = click.option(
+    "--ea",
+    "eas",
+    multiple=True,
+    type=click.Path(),
+    help="Run this as the place's application (EA).",
+)
+bound_option = click.option(
+    "--bound",
+    type=click.IntRange(1),
+    help="Let no application wait longer than this many loops (rule E4).",
+)
+hosts_option = click.option(
+    "--allow-host",
+    "hosts",
+    metavar="HOST[:PORT]",
+    multiple=True,
+    help="Let VoiceXML documents fetch from this host. By default no network is used.",
+)
+isolate_option = click.option(
+    "--isolate",
+    type=click.Choice(["ea", "all", "none"]),
+    default="ea",
+    help="Run scripts in a separate process: for each EA, for each application, or for none.",
+)
 why_option = click.option(
     "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
 )
 
 
-PATIENCE = "Let no application keep another from the speaker for longer, 60s by default (rule E6)."
-"""What ``--patience`` is for."""
+PATIENCE = "Longest time an application may keep another from the speaker; default 60s (rule E6)."
+"""The help of ``--patience``."""
 
 
 def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
-    """An option whose value is a time as documents write it; it is given in ms."""
+    """An option whose value is a time as written in documents, converted to ms."""
 
     def read(_context: click.Context, _option: click.Parameter, text: str | None) -> int | None:
         from prima.language.values import read_value
@@ -99,26 +131,26 @@ def coloured() -> bool:
 
 
 def columns() -> int:
-    """How wide a table on stdout may be: as the terminal, or 80 columns where there is none."""
+    """Maximum width of a table: the terminal's, or 80 if stdout is not a terminal."""
     import shutil
 
     return shutil.get_terminal_size((80, 24)).columns if sys.stdout.isatty() else 80
 
 
 def clean(text: str) -> str:
-    """Text for a terminal, in lines: without what it would obey."""
+    """Text with control characters made visible, except newlines and tabs."""
     return visible(text, "\n\t")
 
 
 def escape_for_people() -> None:
-    """Let stdout show with escapes what its encoding lacks, as stderr does."""
+    """Write characters that stdout's encoding lacks as escapes, as stderr does."""
     out = sys.stdout
     if isinstance(out, io.TextIOWrapper) and not _is_utf8(out) and out.errors in REFUSING:
         out.reconfigure(errors="backslashreplace")
 
 
 def write_for_programs() -> None:
-    """Let what programs read go to stdout as UTF-8, whatever encoding people see there."""
+    """Write UTF-8 to stdout from now on, whatever the terminal's encoding."""
     if isinstance(sys.stdout, io.TextIOWrapper) and not _is_utf8(sys.stdout):
         sys.stdout.reconfigure(encoding="utf-8", errors="strict")
 
@@ -128,18 +160,18 @@ def _is_utf8(out: io.TextIOWrapper) -> bool:
 
 
 def put(text: str) -> None:
-    """Text for people, to stdout."""
+    """Print text for people to stdout."""
     click.echo(clean(text), nl=not text.endswith("\n"))
 
 
 def tell(text: str) -> None:
-    """A message, to stderr; if nothing can be written there, nobody is told."""
+    """Print a message to stderr, if anything can be written there."""
     with suppress(OSError):
         click.echo(clean(text), err=True)
 
 
 def tell_problems(problems: list[Problem]) -> None:
-    """What is odd in the documents of a run."""
+    """Print the errors and warnings of a run's documents."""
     from prima.errors import listed
     from prima.markup.limits import LIMITS
 
@@ -148,10 +180,10 @@ def tell_problems(problems: list[Problem]) -> None:
 
 
 def tell_cut(*transcripts: Transcript) -> None:
-    """Say of transcripts that they end before their runs did; what is there has been shown.
+    """Report transcripts that end before their runs did.
 
     Raises:
-        click.exceptions.Exit: with 2: one ends at a line that cannot be read.
+        click.exceptions.Exit: with 2, if one ends at an unreadable line.
     """
     for transcript in transcripts:
         if message := transcript.cut or transcript.early:
@@ -161,7 +193,7 @@ def tell_cut(*transcripts: Transcript) -> None:
 
 
 def print_json(data: Any) -> None:
-    """Data as JSON, to stdout."""
+    """Print data as JSON to stdout."""
     import json
 
     write_for_programs()
@@ -169,7 +201,7 @@ def print_json(data: Any) -> None:
 
 
 def raise_limits(given: tuple[str, ...]) -> None:
-    """Raise the limits on documents, as ``NAME=NUMBER``.
+    """Raise limits on documents, given as ``NAME=NUMBER``.
 
     Raises:
         UsageError: there is no such limit, or it cannot be that high.
@@ -188,38 +220,18 @@ def raise_limits(given: tuple[str, ...]) -> None:
         setattr(LIMITS, name, int(number))
 
 
-class SourceLines:
-    """The lines of files, each file read once, for the source line of a problem."""
-
-    def __init__(self) -> None:
-        self._held: dict[str, list[str]] = {}
-
-    def __call__(self, file: str) -> list[str]:
-        """A file's lines; none where it cannot be read."""
-        if file not in self._held:
-            from prima.errors import DocumentError
-            from prima.loading.files import read_file
-            from prima.markup.reader import decode
-
-            try:
-                self._held[file] = decode(file, read_file(file)).split("\n")
-            except (DocumentError, UsageError):
-                self._held[file] = []
-        return self._held[file]
-
-
 def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
-    """See whether a command may write to a file, before it does anything else.
+    """Check that a command may write to a file, before it does anything else.
 
-    What commands wrote earlier may be replaced, and so may what is no file, as ``/dev/null``.
+    Files that commands wrote earlier may be replaced; so may devices such as ``/dev/null``.
 
     Args:
         output: the path to write to.
-        made: what is written, as "page".
-        inputs: paths of what it is made of.
+        made: the kind of output, such as "page".
+        inputs: the files that it is made from.
 
     Raises:
-        UsageError: it is an input, a document, or where a scenario's expected table stands.
+        UsageError: it is an input, a document, or a scenario's expected table.
     """
     from pathlib import Path
 
@@ -227,22 +239,20 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
     from prima.testing.golden import golden_of
 
     if any(same_file(output, path) for path in inputs):
-        raise UsageError(f"{output}: this is what the {made} is made of; write elsewhere.")
+        raise UsageError(f"{output}: the {made} is made from this file; write elsewhere.")
     path, real = Path(output), Path(os.path.realpath(output))
     if real.is_file() and _begins_document(real):
-        raise UsageError(
-            f"{output}: this is a document that somebody has written; write elsewhere."
-        )
+        raise UsageError(f"{output}: this file is a document; write elsewhere.")
     beside = [one.with_suffix(".xml") for one in (path, real) if one.suffix == ".txt"]
     for scenario in (*map(Path, inputs), *beside):
         if scenario.is_file() and is_scenario(scenario) and same_file(golden_of(scenario), path):
             raise UsageError(
-                f"{output}: here stands the expected table of {scenario}; write elsewhere."
+                f"{output}: this is the expected table of {scenario}; write elsewhere."
             )
 
 
 def _begins_document(path: Path) -> bool:
-    """Whether a file is a document that somebody writes, as far as its beginning tells."""
+    """Whether a file begins as a document that somebody has written."""
     import re
 
     from prima.loading import is_grammar
@@ -253,13 +263,29 @@ def _begins_document(path: Path) -> bool:
         with path.open("rb") as stream:
             data = stream.read(GLANCE)
     except OSError:
-        return False  # writing tells what is wrong
+        return False  # writing reports the error
     root = rb"<(?:[\w.-]+:)?(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
     return bool(re.match(root, root_of(data))) or is_grammar(data)
 
 
+def copy_folder(source: Path, folder: str) -> None:
+    """Copy a folder that comes with PRIMA to a new one.
+
+    Raises:
+        UsageError: the new one exists already, or cannot be written.
+    """
+    import shutil
+
+    try:
+        shutil.copytree(source, folder)
+    except FileExistsError:
+        raise UsageError(f"{folder}: already exists; name a new folder.") from None
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be written: {error.strerror or error}.") from None
+
+
 def same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two paths are one file, that is there or not; what is no file is never one."""
+    """Whether two paths name the same file, which need not exist; false for devices."""
     if os.path.isfile(one) and os.path.isfile(other):
         return os.path.samefile(one, other)
     there = os.path.exists(one) or os.path.exists(other)
@@ -267,16 +293,16 @@ def same_file(one: str | Path, other: str | Path) -> bool:
 
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
-    """Run with the transcript written line by line, so that nothing is lost on the way.
+    """Run and write the transcript line by line, so that an interrupted run is kept.
 
-    The file is opened when there is something to write: a run that is refused leaves it as it is.
+    The file is opened at the first line: a refused run leaves it untouched.
     """
     stream: IO[str] | None = None
 
     def write(line: str) -> None:
         nonlocal stream
         if stream is None:
-            line.encode()  # may be refused, too
+            line.encode()  # may raise, before the file is opened
             opened = open(output, "w", encoding="utf-8", buffering=1)  # noqa: SIM115
             stream = files.enter_context(opened)
         stream.write(line)
@@ -296,18 +322,18 @@ def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
 
 
 def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
-    """Write lines, and tell a terminal now and then how far the run is."""
+    """Write lines, and show the progress of the run now and then."""
     import time
 
-    told = time.monotonic()
+    shown = time.monotonic()
     count = 0
 
     def note(line: str) -> None:
-        nonlocal told, count
+        nonlocal shown, count
         write(line)
         count += 1
-        if time.monotonic() - told > PROGRESS_SECONDS:
-            told = time.monotonic()
+        if time.monotonic() - shown > PROGRESS_SECONDS:
+            shown = time.monotonic()
             seconds = line.removeprefix('{"time":').partition(",")[0]
             click.echo(f"\r{seconds} s, {count} records ", err=True, nl=False)
 

@@ -11,7 +11,7 @@ from prima.cli.common import check_output, columns, put, tell
 from prima.cli.report import write_page
 
 SCENARIO = "follow-during-navigation.xml"
-"""Figure 5.3 of the thesis: the robot's own application and the place's, on one robot."""
+"""Figure 5.3 of the thesis: an FA and an EA on one robot."""
 
 
 @click.command()
@@ -27,9 +27,9 @@ SCENARIO = "follow-during-navigation.xml"
 def demo(output: str, no_open: bool) -> None:
     """Run two applications on one robot, and show the run as a report.
 
-    A personality that follows the user and a place that guides them: Figure 5.3 of the
-    thesis. The transcript is printed. The report is written to a file, and opened in the
-    browser where there is a terminal and a display.
+    A personality that follows the user, and a service that guides them: Figure 5.3 of the
+    thesis. The transcript is printed. The report is written to a file, and opened in a
+    browser if there is a terminal and a display.
 
     \b
     prima demo
@@ -53,7 +53,7 @@ def is_terminal() -> bool:
 
 
 def _has_display() -> bool:
-    """Whether somebody sits at a terminal of this machine and could see a browser."""
+    """Whether the user is at a terminal of this machine and can see a browser."""
     if not is_terminal():
         return False
     if sys.platform in ("darwin", "win32"):
@@ -62,7 +62,7 @@ def _has_display() -> bool:
 
 
 def _open(path: str) -> None:
-    """Open a page in the user's browser, and say so if that fails."""
+    """Open a page in the user's browser, or report that it fails."""
     import webbrowser
     from pathlib import Path
 

@@ -50,8 +50,8 @@ def diff(
 ) -> None:
     """Compare two transcripts by behaviour: moved, added, lost, split, changed, delayed.
 
-    In the place of a transcript a scenario may stand, which is run; or one scenario
-    under two policies. Exit code 0 if they are alike, 1 if they differ.
+    A scenario may take the place of a transcript: it is run first. One scenario may
+    be run under two policies. Exit code 0 if the runs are alike, 1 if they differ.
 
     \b
     prima diff mediated.jsonl fifo.jsonl
@@ -62,7 +62,7 @@ def diff(
     from prima.transcript.diff import difference_json, format_difference
 
     if output is not None and form != "html":
-        raise UsageError("-o goes with --format html; other formats go to stdout.")
+        raise UsageError("-o works only with --format html; other formats go to stdout.")
     (one, first), (other, second) = _runs(before, after, policies)
     if output is not None:
         check_output(output, "page", one, other)
@@ -88,10 +88,10 @@ def diff(
 def _runs(
     before: str, after: str | None, policies: tuple[str, ...]
 ) -> list[tuple[str, str | None]]:
-    """The two files to compare, each with the policy that it is run under, if one is named.
+    """The two files to compare, each with its policy, if any.
 
     Raises:
-        UsageError: it is not two runs that are named.
+        UsageError: not two runs are named.
     """
     if policies and (after is not None or len(policies) != 2):
         raise UsageError("Name one scenario and two policies: --policy fifo --policy prima.")

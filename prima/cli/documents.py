@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import tell
-from prima.errors import UsageError
+from prima.cli.common import copy_folder, tell
 
 
 @click.command()
@@ -17,14 +16,7 @@ def documents(folder: str) -> None:
     prima documents my-robot
     prima run my-robot/scenarios/follow-during-navigation.xml
     """
-    import shutil
-
     from prima import api
 
-    try:
-        shutil.copytree(api.documents_folder(), folder)
-    except FileExistsError:
-        raise UsageError(f"{folder}: is there already; name a new folder.") from None
-    except OSError as error:
-        raise UsageError(f"{folder}: cannot be written: {error.strerror}.") from None
+    copy_folder(api.documents_folder(), folder)
     tell(f"{folder}: applications, worlds, robots and scenarios")

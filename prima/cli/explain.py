@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[Completion]:
-    """Rules and codes that begin so, or else files."""
+    """Rules and codes with this prefix, or else files."""
     from click.shell_completion import CompletionItem
 
     from prima.checks.codes import diagnoses
@@ -32,11 +32,11 @@ def _codes(_context: click.Context, _parameter: click.Parameter, begun: str) -> 
 @click.argument("row", type=int, required=False)
 @format_option
 def explain(what: str | None, row: int | None, form: str) -> None:
-    """Explain a RULE of mediation, a problem's CODE, or why a ROW of a transcript came.
+    """Explain a RULE of mediation, a problem's CODE, or the reason for a ROW of a transcript.
 
-    A rule comes with a run that shows it: a picture, rows of its table, and how to run it.
-    A code comes with a wrong example, what prima validate says of it, and a right one.
-    Without argument, all rules and codes are listed with a line each.
+    For a rule, a run shows it: a picture, rows of its table, and the command to run it.
+    For a code, there are a wrong example, the output of prima validate, and a right one.
+    Without arguments, all rules and codes are listed.
 
     \b
     prima explain
@@ -52,29 +52,34 @@ def explain(what: str | None, row: int | None, form: str) -> None:
         return
     rule = named(what)
     known = bool(rule) or what in diagnoses()
-    if row is not None and known and not os.path.exists(what):
-        kind = "rule" if rule else "code"
-        raise UsageError(f"{what} is a {kind}, which has no rows: prima explain {what}.")
-    if row is None and rule:
+    if row is not None:
+        if known and not os.path.exists(what):
+            kind = "rule" if rule else "code"
+            raise UsageError(f"{what} is a {kind}, which has no rows: prima explain {what}.")
+        _row(what, row, form)
+    elif rule:
         _rule(rule, form)
-    elif row is None and (known or not os.path.exists(what)):
+    elif known or not os.path.exists(what):
         _code(what, form)
-    elif row is None:
-        raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
     else:
-        from prima import api
+        raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
 
-        transcript = api.read(what, partial=True)
-        text = api.explain_row(transcript, row)
-        if form == "json":
-            print_json({"row": row, "lines": text.split("\n")})
-        else:
-            put(text)
-        tell_cut(transcript)
+
+def _row(file: str, row: int, form: str) -> None:
+    """Print the reasons for a row of a transcript."""
+    from prima import api
+
+    transcript = api.read(file, partial=True)
+    text = api.explain_row(transcript, row)
+    if form == "json":
+        print_json({"row": row, "lines": text.split("\n")})
+    else:
+        put(text)
+    tell_cut(transcript)
 
 
 def _list(form: str) -> None:
-    """Every rule and every code in a few words."""
+    """List every rule and code in a few words."""
     from prima.checks.codes import diagnoses
     from prima.handbook.rulebook import rules
 
@@ -95,15 +100,15 @@ def _list(form: str) -> None:
     _lines({code: one.title for code, one in diagnoses().items()})
 
 
-def _lines(told: dict[str, str]) -> None:
-    """A line for each name."""
-    width, line = max(map(len, told)), columns()
-    for name, text in told.items():
+def _lines(texts: dict[str, str]) -> None:
+    """Print a line for each name."""
+    width, line = max(map(len, texts)), columns()
+    for name, text in texts.items():
         put(f"{name:{width}}  {shorten(text, line - width - 2, placeholder=' ...')}")
 
 
 def _rule(name: str, form: str) -> None:
-    """A rule with its example."""
+    """Print a rule with its example."""
     from prima.handbook.rulebook import data, shown
 
     if form == "json":
@@ -113,10 +118,10 @@ def _rule(name: str, form: str) -> None:
 
 
 def _code(code: str, form: str) -> None:
-    """A code with its examples.
+    """Print a code with its examples.
 
     Raises:
-        UsageError: there is no such code, nor a rule or a file of that name.
+        UsageError: no code, rule or file has that name.
     """
     from prima.checks.codes import diagnoses
     from prima.handbook.examples import data, shown

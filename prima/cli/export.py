@@ -21,7 +21,7 @@ from prima.exports import FORMATS
     metavar="FORMAT",
     shell_complete=suggesting(*FORMATS),
     help=f"{one_of(f'{name} ({use})' for name, use in FORMATS.items())};"
-    " by default what OUTPUT's suffix tells.",
+    " by default according to OUTPUT's suffix.",
 )
 @click.option(
     "-o",
@@ -35,13 +35,13 @@ from prima.exports import FORMATS
     "langs",
     multiple=True,
     metavar="[APP=]TAG",
-    help="In what language it is spoken, by all or by one application; for eaf.",
+    help="Language of all applications or of one; only for eaf.",
 )
 def export(transcript: str, to: str | None, output: str | None, langs: tuple[str, ...]) -> None:
     """Write a transcript in the format of another tool.
 
-    Who said and did what, the events, the devices, the streams, the floor, each
-    decision's rule and the reactions stand in tiers; docs/exports.md says which.
+    Tiers hold what was said and done, by whom, the events, devices, streams, floor,
+    rules of decisions and reactions; docs/exports.md lists them.
 
     \b
     prima export mediated.jsonl --to eaf -o mediated.eaf
@@ -52,9 +52,9 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
 
     form = to.lower() if to else Path(output or "").suffix.lower()[1:]
     if not form:
-        raise UsageError(f"say in what format: --to {one_of(FORMATS)}.")
+        raise UsageError(f"Name a format: --to {one_of(FORMATS)}.")
     if output is None and form == "mcap" and sys.stdout.isatty():
-        raise UsageError("mcap is no text for a terminal: name a file with -o.")
+        raise UsageError("mcap is a binary format: name a file with -o.")
     if output is not None:
         check_output(output, "export")
     made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
@@ -71,15 +71,15 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
 
 
 def _languages(langs: Iterable[str]) -> dict[str, str]:
-    """``APP=TAG`` and ``TAG`` as the interface wants them.
+    """The language of each application, and of all under ``""``.
 
     Raises:
-        UsageError: one application, or all, are given two.
+        UsageError: an application, or all, have two.
     """
     found: dict[str, str] = {}
     for lang in langs:
         app, _, tag = lang.rpartition("=")
         if found.setdefault(app, tag) != tag:
             whose = f"of {app}" if app else "of all"
-            raise UsageError(f"--lang tells two languages {whose}: {found[app]} and {tag}.")
+            raise UsageError(f"--lang gives two languages {whose}: {found[app]} and {tag}.")
     return found

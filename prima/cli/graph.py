@@ -19,14 +19,14 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 
 @click.command()
 @click.argument("file", type=click.Path())
-@click.option("--to", type=Choice(FORMATS), help="By default what OUTPUT's suffix tells, or svg.")
+@click.option("--to", type=Choice(FORMATS), help="By default according to OUTPUT's suffix, or svg.")
 @click.option(
     "--what",
     type=Choice(["states", "tree", "streams", "map"]),
     help="An application's states; a transcript's tree of Atomic Behaviors, or its streams;"
     " a world's map.",
 )
-@click.option("--row", type=int, help="The tree as it was at this row of the transcript's table.")
+@click.option("--row", type=int, help="Draw the tree as of this row of the transcript's table.")
 @click.option(
     "-o",
     "--output",
@@ -37,8 +37,8 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
     """Draw the states of an application, the trees and streams of a run, or a world's map.
 
-    FILE is an application, a transcript or a world; its content tells which. Nothing else
-    is needed to draw SVG; DOT and Mermaid are for other programs.
+    FILE is an application, a transcript or a world, which is detected. SVG needs no
+    other program; DOT and Mermaid are for other programs.
 
     \b
     prima graph documents/fa/follow.xml -o follow.svg
@@ -51,9 +51,13 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
 
     form = to or SUFFIXES.get(Path(output or "").suffix.lower())
     if output and form is None:
-        raise UsageError(f"{output}: say in what format: --to svg, dot, mermaid or json.")
+        raise UsageError(
+            f"{output}: unknown suffix; name a format: --to svg, dot, mermaid or json."
+        )
     if form is None and sys.stdout.isatty():
-        raise UsageError("say where the picture goes: -o FILE.svg, or --to dot or mermaid.")
+        raise UsageError(
+            "Name the file to write: -o FILE.svg; or print text with --to dot or mermaid."
+        )
     if output is not None:
         check_output(output, "picture", file)
     read: list[Transcript] = []

@@ -10,11 +10,16 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     PATIENCE,
+    bound_option,
     check_output,
     clean,
     columns,
     duration_option,
+    ea_option,
+    fa_option,
     format_option,
+    hosts_option,
+    isolate_option,
     limit_option,
     map_option,
     raise_limits,
@@ -40,8 +45,8 @@ FASTEST = 1000.0
 @click.argument("scenario", type=click.Path(), required=False)
 @click.option("--robot", type=click.Path(), help="The robot, whose document names its drivers.")
 @click.option("--world", type=click.Path(), help="The site's map, and what its areas offer.")
-@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
-@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@fa_option
+@ea_option
 @click.option("-o", "--output", type=click.Path(), help="Write the journal here, as it grows.")
 @click.option("--resume", "journal", type=click.Path(), help="Go on with a run that was cut off.")
 @click.option(
@@ -72,24 +77,11 @@ FASTEST = 1000.0
     shell_complete=suggesting(*POLICIES),
     help=f"The mediator's policy: {USAGE}.",
 )
-@click.option(
-    "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
-)
+@bound_option
 @duration_option("--patience", PATIENCE)
 @why_option
-@click.option(
-    "--allow-host",
-    "hosts",
-    metavar="HOST[:PORT]",
-    multiple=True,
-    help="Let VoiceXML documents fetch from this host; without, no network is used.",
-)
-@click.option(
-    "--isolate",
-    type=click.Choice(["ea", "all", "none"]),
-    default="ea",
-    help="Whose scripts get a process of their own: each EA's, each application's or none's.",
-)
+@hosts_option
+@isolate_option
 @map_option
 @limit_option
 @format_option
@@ -221,9 +213,10 @@ class Rows:
     """Prints the rows of a run as they happen."""
 
     def __init__(self, visit: Visit, why: bool) -> None:
-        from prima.transcript.table import Growing, format_head, layout
+        from prima.transcript.rows import GrowingTable
+        from prima.transcript.table import format_head, layout
 
-        self._table = Growing()
+        self._table = GrowingTable()
         self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
         click.echo(format_head(self._shape))
 

@@ -10,13 +10,12 @@ from prima.errors import UsageError
 
 
 @click.command()
-@click.option("--stdio", is_flag=True, help="Speak over stdin and stdout, as it always does.")
+@click.option("--stdio", is_flag=True, help="Use stdin and stdout: the default, and the only way.")
 def lsp(stdio: bool) -> None:
     """Serve an editor while documents are written (Language Server Protocol).
 
-    The editor starts it and shows what it tells: problems as you type, completion,
-    documentation, definitions, renaming, quick fixes. docs/editors.md says how to set
-    editors up.
+    The editor starts it and shows problems as you type, completion, documentation,
+    definitions, renaming and quick fixes. docs/editors.md says how to set editors up.
 
     \b
     nvim --cmd 'au FileType xml lua vim.lsp.start({name="prima", cmd={"prima", "lsp"}})' tour.xml
@@ -32,6 +31,6 @@ def lsp(stdio: bool) -> None:
         message = 'The language server needs pygls: pip install "prima[editor]".'
         raise UsageError(message) from None
     if sys.stdin is None or sys.stdin.isatty():
-        message = "An editor starts this and speaks with it; docs/editors.md says how to set it up."
+        message = "An editor starts this command; docs/editors.md says how to set it up."
         raise UsageError(f"lsp: {message} To check a file here: prima validate FILE.")
     serve()

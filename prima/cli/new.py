@@ -13,11 +13,11 @@ KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
 @click.argument("kind", type=Choice(KINDS))
 @click.argument("name", type=click.Path())
 def new(kind: str, name: str) -> None:
-    """Start a document: commented, valid, and running as it is.
+    """Start a document that is commented, valid, and runs.
 
-    NAME is the file, with or without its ending. A scenario takes in the applications,
-    the world and the robot that are in its folder, and what is lacking is written beside
-    it. No file is ever overwritten.
+    NAME is the file, with or without its suffix. A scenario uses the applications, the
+    world and the robot in its folder; missing ones are written beside it. No file is
+    ever overwritten.
 
     \b
     prima new ea guide

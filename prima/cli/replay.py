@@ -15,7 +15,7 @@ from prima.cli.common import check_output, tell, write_for_programs
 @click.argument("scenario", type=click.Path(), required=False)
 @click.option("-o", "--output", type=click.Path(), help="Write the replayed transcript here.")
 def replay(transcript: str, scenario: str | None, output: str | None) -> None:
-    """Run a transcript's inbound events again and check that the same comes out.
+    """Run a transcript's inbound events again and check that the result is the same.
 
     The journal of a live run names what it was made with; other transcripts need their scenario.
 

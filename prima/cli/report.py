@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     "scenarios",
     multiple=True,
     type=click.Path(),
-    help="The scenario of a transcript: shows its map, and the user's way. Twice for two.",
+    help="The scenario of a transcript: adds the map and the user's path. Twice for two.",
 )
 def report(
     runs: tuple[str, ...],
@@ -48,9 +48,8 @@ def report(
 ) -> None:
     """Show a run as a page for the browser, or compare two.
 
-    A scenario is run for it; a transcript is shown as it is. The page holds a timeline,
-    the map with robot and user, and the transcript with the reasons of every row. It
-    needs nothing beside it, and no network.
+    A scenario is run first. The page has a timeline, the map with robot and user, and
+    the transcript with the reasons for every row. It is one file and needs no network.
 
     \b
     prima report documents/scenarios/navigate-alone.xml -o navigate.html
@@ -64,12 +63,9 @@ def report(
         raise UsageError("Name a scenario, or a transcript, as prima run -o writes it.")
     wanted = list(product(runs, policies or (None,)))
     if len(wanted) > 2:
-        raise UsageError(
-            f"These are {len(wanted)} runs, and a report shows one run or compares two;"
-            " name one or two."
-        )
+        raise UsageError(f"These are {len(wanted)} runs; a report shows one run or compares two.")
     if output is None and sys.stdout.isatty():
-        raise UsageError("Say where the page goes: -o report.html.")
+        raise UsageError("Name the file to write: -o report.html.")
     output = None if output == "-" else output
     if output is not None:
         check_output(output, "page", *runs, *scenarios)
@@ -85,7 +81,7 @@ def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
 
     Raises:
         DocumentError: one is wrong.
-        UsageError: they are not as many as the transcripts, nor one for all.
+        UsageError: they are neither one for each transcript, nor one for all.
     """
     from prima import api
 
@@ -94,7 +90,7 @@ def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
     transcripts = [path for path in runs if not is_markup(path)]
     if not transcripts:
         raise UsageError(
-            "--scenario is for a transcript; a scenario that is run brings its own map."
+            "--scenario works only with transcripts; a scenario that is run has its own map."
         )
     if len(scenarios) not in (1, len(transcripts)):
         raise UsageError("Name one --scenario for all transcripts, or one for each.")
@@ -102,13 +98,13 @@ def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
 
 
 def _scenarios(shown: list[Run], maps: list[Loaded]) -> list[Loaded | None]:
-    """The scenario of each run: its own, or else the next of those named."""
+    """The scenario of each run: its own, or the next one after --scenario."""
     left = iter(maps if len(maps) > 1 else maps * len(shown))
     return [run.scenario or next(left, None) for run in shown]
 
 
 def write_page(page: str, output: str | None) -> None:
-    """Write a page to a file, or to stdout where there is none.
+    """Write a page to a file, or to stdout.
 
     Raises:
         UsageError: it cannot be written.

@@ -12,10 +12,15 @@ from click.exceptions import Exit
 from prima.cli.common import (
     MAPS,
     PATIENCE,
+    bound_option,
     check_output,
     columns,
     duration_option,
+    ea_option,
+    fa_option,
     format_option,
+    hosts_option,
+    isolate_option,
     limit_option,
     map_option,
     put,
@@ -32,64 +37,52 @@ from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.api import Transcript
-    from prima.experiments.batch import Options
+    from prima.experiments.plan import Options
+    from prima.loading import Loaded
 
 MOST_WORKERS = 256
-"""More processes than this are a slip of the finger."""
-ENDS_OF_FOLDERS = ("/", os.sep)
+"""More processes than this are a typing error."""
+FOLDER_ENDINGS = ("/", os.sep)
 
 
 @click.command()
 @click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1, type=click.Path())
-@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
-@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@fa_option
+@ea_option
 @click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
 @click.option(
     "-o",
     "--output",
     type=click.Path(),
-    help="Write the transcript here as JSON lines; those of several runs into this folder.",
+    help="Write the transcript here as JSON lines; for several runs, a folder.",
 )
 @click.option(
     "--policy",
     "policies",
     multiple=True,
     shell_complete=suggesting(*POLICIES),
-    help=f"The mediator's policy: {USAGE}. Several: a run under each.",
+    help=f"The mediator's policy: {USAGE}. Repeat for a run under each.",
 )
-@click.option(
-    "--bound", type=click.IntRange(1), help="Let nobody wait longer than this many loops (rule E4)."
-)
+@bound_option
 @duration_option("--patience", PATIENCE)
 @why_option
-@click.option(
-    "--allow-host",
-    "hosts",
-    metavar="HOST[:PORT]",
-    multiple=True,
-    help="Let VoiceXML documents fetch from this host; without, no network is used.",
-)
-@click.option(
-    "--isolate",
-    type=click.Choice(["ea", "all", "none"]),
-    default="ea",
-    help="Whose scripts get a process of their own: each EA's, each application's or none's.",
-)
+@hosts_option
+@isolate_option
 @click.option(
     "--from",
     "lists",
     metavar="FILE",
     multiple=True,
     type=click.Path(),
-    help="Run the scenarios that this file names, one in a line; - is standard input.",
+    help="Run the scenarios listed in this file, one per line; - is standard input.",
 )
 @click.option(
     "-j",
     "--workers",
     type=click.IntRange(1, MOST_WORKERS),
-    help="Make so many runs at once; by default as many as there are cores.",
+    help="Number of runs at once. By default the number of cores.",
 )
-@click.option("--resume", is_flag=True, help="Leave out runs whose transcripts are up to date.")
+@click.option("--resume", is_flag=True, help="Skip runs whose transcripts are up to date.")
 @map_option
 @limit_option
 @format_option
@@ -115,14 +108,15 @@ def run(
     """Run scenarios in simulation and print the mediated transcript, or a row for each run.
 
     Without SCENARIO, the applications named by --fa and --ea run in an empty room,
-    and the user says what --say tells, one after the other, to the questions.
+    and each --say answers one question, in order.
 
-    With -o the transcript is written as JSON lines while the run goes on, and
-    only a summary is printed; after -o - they go to stdout. Exit code 3 if the run ended by an error or a limit.
+    With -o the transcript is written as JSON lines during the run, and only a
+    summary is printed; -o - writes the lines to stdout. Exit code 3 if the run
+    ended by an error or a limit.
 
-    Several scenarios, a folder of them or several policies are a batch: all runs are
-    made on all cores, whatever becomes of one of them, each with a row, and with a
-    transcript in the folder after -o. The exit code is the highest of them.
+    Several scenarios, a folder of them or several policies are a batch: the runs use
+    all cores, a failed run does not stop the others, and each has a row and a
+    transcript in the folder after -o. The exit code is the highest of all runs.
 
     \b
     prima run documents/scenarios/follow-during-navigation.xml -o mediated.jsonl
@@ -130,108 +124,136 @@ def run(
     prima run documents/scenarios --policy prima --policy fifo -o runs/
     prima run documents/scenarios --policy prima --policy fifo -o runs/ --resume
     """
-    from prima.experiments.batch import Options
+    from prima.experiments.plan import Options
 
     raise_limits(limits)
     applications = bool(fas or eas)
-    if bool(scenarios or lists) == applications:
-        raise UsageError("Name a scenario, or applications with --fa and --ea.")
-    if not applications and says:
-        raise UsageError(
-            "A scenario says itself what the user says; --say goes with --fa and --ea."
-        )
-    if maps and not applications:
-        raise UsageError(MAPS)
-    several = len(scenarios) > 1 or len(policies) > 1 or any(map(os.path.isdir, scenarios))
-    if lists or workers or resume or several or (output and output.endswith(ENDS_OF_FOLDERS)):
-        if applications:
-            raise UsageError(
-                "Applications named by --fa and --ea are one run: for several, write scenarios."
-            )
-        if why:
-            raise UsageError("--why goes with one run: prima show TRANSCRIPT --why.")
-        if resume and output is None:
-            raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
-        if output == "":
-            raise UsageError("-o: name the folder that the transcripts go into.")
-        is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
-        if output == "-" or is_file:
-            raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
+    _check_source(bool(scenarios or lists), applications, bool(says), bool(maps))
+    options = Options(bound, hosts, resume, isolate=isolate, patience=patience)
+    if lists or workers or resume or _are_several(scenarios, policies, output):
+        _check_batch(applications, why, resume, output)
         from prima.cli.batch import listed, run_all
 
         paths = [*scenarios, *(path for name in lists for path in listed(name))]
-        run_all(
-            paths,
-            policies,
-            output or "",
-            Options(bound, hosts, resume, isolate=isolate, patience=patience),
-            workers or 0,
-            form,
-        )
+        run_all(paths, policies, output or "", options, workers or 0, form)
         return
-    policy = policies[0] if policies else None
     if output == "-":
         output, form = None, "json"
-    _run_one(
-        next(iter(scenarios), None),
-        fas,
-        eas,
-        says,
-        output,
-        policy,
-        Options(bound, hosts, isolate=isolate, patience=patience),
-        why,
-        form,
-        maps,
-    )
+    scenario = next(iter(scenarios), None)
+    loaded = _load(scenario, fas, eas, says, maps)
+    if output is not None:
+        _check_file(output, os.path.dirname(scenario or ""), loaded)
+    tell_problems(loaded.problems)
+    policy = policies[0] if policies else None
+    _report_end(_run_one(loaded, output, policy, options, why, form))
 
 
-def _run_one(
+def _check_source(scenarios: bool, applications: bool, says: bool, maps: bool) -> None:
+    """Refuse a run of both scenarios and applications, and options that the source excludes.
+
+    Raises:
+        UsageError: the options contradict each other.
+    """
+    if scenarios == applications:
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if says and not applications:
+        raise UsageError(
+            "--say works only with --fa and --ea: a scenario has the user's answers in it."
+        )
+    if maps and not applications:
+        raise UsageError(MAPS)
+
+
+def _are_several(scenarios: tuple[str, ...], policies: tuple[str, ...], output: str | None) -> bool:
+    """Whether scenarios, policies or the output name a batch."""
+    several = len(scenarios) > 1 or len(policies) > 1
+    return several or any(map(os.path.isdir, scenarios)) or (output or "").endswith(FOLDER_ENDINGS)
+
+
+def _check_batch(applications: bool, why: bool, resume: bool, output: str | None) -> None:
+    """Refuse options that only one run can have.
+
+    Raises:
+        UsageError: one of them is given.
+    """
+    if applications:
+        raise UsageError("--fa and --ea name one run; for several, write scenarios.")
+    if why:
+        raise UsageError("--why works only with one run: prima show TRANSCRIPT --why.")
+    if resume and output is None:
+        raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
+    if output == "":
+        raise UsageError("-o: name the folder that the transcripts go into.")
+    is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
+    if output == "-" or is_file:
+        raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
+
+
+def _load(
     scenario: str | None,
     fas: tuple[str, ...],
     eas: tuple[str, ...],
     says: tuple[str, ...],
+    maps: tuple[str, ...],
+) -> Loaded:
+    """A scenario, or applications in an empty room."""
+    from prima import api
+
+    if scenario is not None:
+        return api.load_scenario(scenario)
+    return api.stage(fas, eas, says, maps=maps)
+
+
+def _check_file(output: str, folder: str, loaded: Loaded) -> None:
+    """Refuse to write a transcript to a folder or over a document.
+
+    Raises:
+        UsageError: it would.
+    """
+    if os.path.isdir(output):
+        hint = f"For a transcript in it, write {output}/."
+        raise UsageError(f"{output}: cannot be written: Is a directory. {hint}")
+    check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
+
+
+def _run_one(
+    loaded: Loaded,
     output: str | None,
     policy: str | None,
     options: Options,
     why: bool,
     form: str,
-    maps: tuple[str, ...],
-) -> None:
-    """Run one scenario, or applications without one."""
+) -> Transcript:
+    """Run, and write the transcript to a file or print it."""
     from prima import api
 
-    loaded = (
-        api.load_scenario(scenario)
-        if scenario is not None
-        else api.stage(fas, eas, says, maps=maps)
-    )
-
-    def rehearse(sink: api.Sink | None, keep: bool) -> api.Transcript:
+    def rehearse(sink: api.Sink | None, keep: bool = False) -> Transcript:
         given = options.bound, sink, keep, options.hosts, options.isolate, options.patience
         return api.rehearse(loaded, policy, *given)
 
     if output is not None:
-        if os.path.isdir(output):
-            hint = f"For a transcript in it, write {output}/."
-            raise UsageError(f"{output}: cannot be written: Is a directory. {hint}")
-        folder = os.path.dirname(scenario or "")
-        check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
-    tell_problems(loaded.problems)
-    if output is not None:
-        transcript = run_into(
-            output,
-            lambda sink: rehearse(sink, False),
-        )
+        transcript = run_into(output, rehearse)
         tell(f"{output}: {_outline(transcript)}")
     elif form == "json":
         write_for_programs()
-        transcript = rehearse(sys.stdout.write, False)
+        transcript = rehearse(sys.stdout.write)
     else:
-        transcript = rehearse(None, True)
+        transcript = rehearse(None, keep=True)
         put(transcript.table(why, columns()))
+    return transcript
+
+
+def _report_end(transcript: Transcript) -> None:
+    """Print why a run ended early, and what failed in it.
+
+    Raises:
+        Exit: an application ended by an error.
+        RunError: the run ended by a limit.
+    """
     if transcript.unfinished:
-        tell(f"{_stopped(transcript)} {'; '.join(transcript.unfinished)}.")
+        seconds = transcript.summary().seconds
+        until = "; ".join(transcript.unfinished)
+        tell(f"The run was stopped at {seconds:g} s, the scenario's until: {until}.")
     if transcript.defects and "PRIMA_DEBUG" in os.environ:
         raise transcript.defects[0]
     if transcript.failures:
@@ -243,11 +265,6 @@ def _run_one(
         raise RunError(TOO_MUCH)
     if transcript.failures:
         raise Exit(3)
-
-
-def _stopped(transcript: Transcript) -> str:
-    seconds = transcript.summary().seconds
-    return f"The run was stopped at {seconds:g} s, the scenario's until:"
 
 
 def _outline(transcript: Transcript) -> str:

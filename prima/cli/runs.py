@@ -1,4 +1,4 @@
-"""Runs that a command is given: as a transcript, or as a scenario that is run for it."""
+"""Runs for a command: a transcript, or a scenario that is run first."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 class Run(NamedTuple):
-    """A transcript, and the scenario that was run for it, if one was."""
+    """A transcript, and the scenario that was run for it, if any."""
 
     transcript: Transcript
     scenario: Loaded | None
 
 
 def is_markup(path: str) -> bool:
-    """Whether a file is XML, as far as its name and its beginning tell."""
+    """Whether a file is XML, by its name and its beginning."""
     if path.endswith(".jsonl"):
         return False
     try:
@@ -34,8 +34,8 @@ def run_of(path: str, policy: str | None = None, whole: bool = True) -> Run:
 
     Args:
         path: a transcript or a scenario.
-        policy: what a scenario is run under in place of its own.
-        whole: whether all records of a transcript are read, or what is compared of it.
+        policy: replaces the scenario's own.
+        whole: read all records of a transcript, not only those that a diff needs.
 
     Raises:
         DocumentError: the scenario is wrong.
@@ -48,7 +48,7 @@ def run_of(path: str, policy: str | None = None, whole: bool = True) -> Run:
     if not is_markup(path):
         found = api.read(path, partial=True) if whole else api.skim(path)
         if policy is not None:
-            raise UsageError(f"{path}: --policy runs a scenario, and this is a transcript.")
+            raise UsageError(f"{path}: --policy works only with a scenario; this is a transcript.")
         return Run(found, None)
     loaded = api.load_scenario(path)
     made = api.rehearse(loaded, policy)

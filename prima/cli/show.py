@@ -11,7 +11,7 @@ from prima.cli.common import columns, put, tell_cut, why_option
 @click.argument("transcript", type=click.Path())
 @why_option
 def show(transcript: str, why: bool) -> None:
-    """Print a transcript as the table that people read.
+    """Print a transcript as a table.
 
     \b
     prima show mediated.jsonl --why

@@ -20,10 +20,10 @@ from prima.cli.common import Choice, print_json, put, write_for_programs
     help="What to print.",
 )
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
-    """Run situations under every policy and measure what became of units, streams and channel.
+    """Run situations under every policy and measure the effects on units, streams and channel.
 
-    Without SCENARIOS these are the ten situations of the thesis. docs/measures.md
-    says what the columns count. A "!" marks a run in which an application failed.
+    Without SCENARIOS the ten situations of the thesis are run. docs/measures.md
+    defines the columns. A "!" marks a run in which an application failed.
 
     \b
     prima study

@@ -14,7 +14,10 @@ from prima.cli.common import (
     clean,
     coloured,
     columns,
+    ea_option,
+    fa_option,
     format_option,
+    hosts_option,
     limit_option,
     map_option,
     put,
@@ -34,7 +37,7 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
     from prima.messages import Record
     from prima.talk import Conversation, Game
-    from prima.transcript.table import Row
+    from prima.transcript.row import Row
 
 COLOURS = {"U": "cyan", "E": "yellow"}
 """Colours of rows, by who does it."""
@@ -42,33 +45,27 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 
 @click.command()
 @click.argument("scenario", type=click.Path(), required=False)
-@click.option("--fa", "fas", multiple=True, type=click.Path(), help="Run this as the robot's own.")
-@click.option("--ea", "eas", multiple=True, type=click.Path(), help="Run this as the place's.")
+@fa_option
+@ea_option
 @click.option("--world", type=click.Path(), help="Let --fa and --ea run in this world.")
 @click.option("--robot", type=click.Path(), help="Let --fa and --ea run on this robot.")
 @click.option(
-    "--step", is_flag=True, help="Let time wait for you: the default unless in a terminal."
+    "--step", is_flag=True, help="Stop time until you type: the default outside a terminal."
 )
 @click.option(
-    "--real-time", is_flag=True, help="Let time go on by itself: the default in a terminal."
+    "--real-time", is_flag=True, help="Let time pass by itself: the default in a terminal."
 )
-@click.option("--save", "target", type=click.Path(), help="Write the session here at its end.")
 @click.option(
-    "--scripted", is_flag=True, help="Let the scenario's user do what it says as well as you."
+    "--save", "target", type=click.Path(), help="Write the session here as a scenario at its end."
 )
+@click.option("--scripted", is_flag=True, help="Carry out the scenario's user actions too.")
 @click.option(
     "--policy",
     shell_complete=suggesting(*POLICIES),
     help=f"The mediator's policy: {USAGE}.",
 )
 @why_option
-@click.option(
-    "--allow-host",
-    "hosts",
-    metavar="HOST[:PORT]",
-    multiple=True,
-    help="Let VoiceXML documents fetch from this host; without, no network is used.",
-)
+@hosts_option
 @map_option
 @limit_option
 @format_option
@@ -89,11 +86,12 @@ def talk(
     limits: tuple[str, ...],
     form: str,
 ) -> None:
-    """Play the user of a run: type what he says and does, and see what the robot makes of it.
+    """Play the user of a run: type what they say and do, and watch the robot react.
 
-    A line is said; /touch head, /walk 3 0.5, /message from Ann: I'm late and others are
-    done; /help names them all. Time stands still while you type. An empty line lets it go
-    on, and the end of input ends the session. /save FILE or --save FILE keeps it as a scenario, for prima run.
+    The user says what you type. Lines such as /touch head, /walk 3 0.5 or
+    /message from Ann: I'm late are actions; /help lists them. Time stands still while
+    you type; an empty line lets it go on. The end of input ends the session.
+    /save FILE or --save FILE writes it as a scenario for prima run.
 
     Exit code 3 if an application ended by an error; 1 if a line from a file or pipe was wrong.
 
@@ -107,32 +105,24 @@ def talk(
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
-    if (scenario is None) == (not fas and not eas):
-        raise UsageError("Name a scenario, or applications with --fa and --ea.")
-    if scenario is not None and (world or robot):
-        raise UsageError("A scenario names its own world and robot; leave out --world and --robot.")
-    if maps and scenario is not None:
-        raise UsageError(MAPS)
-    if step and real_time:
-        raise UsageError("Write --step or --real-time, not both.")
+    _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
     if scenario is not None:
         loaded = api.load_scenario(scenario)
     else:
         loaded = api.stage(fas, eas, (), world, robot, maps)
     tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
-    sink = _write if form == "json" else None
+    json = form == "json"
     web = api.fetcher(list(hosts), len(loaded.cast.documents))
-    game = Game(loaded, folder, policy, scripted, web, sink)
+    game = Game(loaded, folder, policy, scripted, web, _write if json else None)
     terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
-    real = real_time or (terminal and not step)
-    screen = Screen(game, why, form == "json", terminal)
+    screen = Screen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
     sources = [os.path.join(folder, name) for name in names]
-    conversation = Conversation(game, screen, real, sources)
+    conversation = Conversation(game, screen, real_time or (terminal and not step), sources)
     if target is not None:
         conversation.check_target(target)
-    if form == "json":
+    if json:
         write_for_programs()
         _write([_head(game, loaded)])
     _greet(game, screen)
@@ -141,6 +131,37 @@ def talk(
             _converse(conversation, screen)
         finally:
             _keep(conversation, target)
+    _finish(conversation, terminal)
+
+
+def _check_options(
+    scenario: str | None, applications: bool, staged: bool, maps: bool, both_times: bool
+) -> None:
+    """Refuse options that contradict each other.
+
+    Raises:
+        UsageError: they do.
+    """
+    if (scenario is None) == (not applications):
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    if scenario is not None and staged:
+        raise UsageError(
+            "--world and --robot work only with --fa and --ea: a scenario names its own."
+        )
+    if scenario is not None and maps:
+        raise UsageError(MAPS)
+    if both_times:
+        raise UsageError("Write --step or --real-time, not both.")
+
+
+def _finish(conversation: Conversation, terminal: bool) -> None:
+    """Set the exit code.
+
+    Raises:
+        Exit: an application ended by an error, or a line from a file or pipe was wrong.
+        RunError: the run ended by a limit.
+    """
+    game = conversation.game
     if game.stopped == "limit":
         raise RunError(TOO_MUCH)
     if game.failures:
@@ -150,7 +171,7 @@ def talk(
 
 
 def _keep(conversation: Conversation, target: str | None) -> None:
-    """Write the session where --save says."""
+    """Write the session to the file after --save."""
     if target is not None:
         conversation.save(target)
         tell(f"Saved {target}.")
@@ -166,7 +187,7 @@ def _write(records: list[Record]) -> None:
 
 
 def _head(game: Game, loaded: Loaded) -> Record:
-    """The first record: without the scenario's digest, as its user is another one."""
+    """The first record, without the scenario's digest, since its user is replaced."""
     from prima.loading.heads import VERSION
 
     scenario = game.cast.scenario
@@ -190,13 +211,15 @@ def _head(game: Game, loaded: Loaded) -> Record:
 
 def _greet(game: Game, screen: Screen) -> None:
     if game.scene.left_out:
-        tell("The scenario's user is you: what he does there is left out; --scripted keeps it.")
+        tell(
+            "You are the scenario's user: their scripted actions are left out; --scripted keeps them."
+        )
     if screen.interactive:
         tell("Type what you say, /help for commands, /quit to end.")
 
 
 class Screen:
-    """Prints rows, answers and messages; above the line that is being typed, if there is one."""
+    """Prints rows, answers and messages above the line being typed, if any."""
 
     def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
         self.interactive = interactive
@@ -222,14 +245,14 @@ class Screen:
         self._print("\n".join(lines), styled=True)
 
     def show(self, text: str) -> None:
-        """Show what was asked for: among records, that is a message."""
+        """Show the result of a command; with JSON records on stdout, as a message."""
         if self._json:
             self.tell(text)
         else:
             self._print(text)
 
     def tell(self, text: str) -> None:
-        """Tell what has gone wrong, or has been done."""
+        """Print a message."""
         if self.typist is not None:
             self.typist.clear()
         tell(text)
@@ -271,18 +294,12 @@ def _edit_lines(conversation: Conversation) -> None:
 
 
 def _step_by_step(conversation: Conversation, screen: Screen) -> None:
-    """Time waits for every line."""
+    """Read lines while time stands still."""
     piped = Piped()
-    alone = sys.stdin is not None and sys.stdin.isatty() and not screen.interactive
     conversation.begin()
     while not conversation.done:
         try:
-            if screen.interactive:
-                text: str | None = input(conversation.prompt)
-            else:
-                if alone:
-                    click.echo(conversation.prompt, nl=False, err=True)
-                text = piped.line(None)
+            text = _ask(conversation.prompt, piped, screen.interactive)
         except EOFError:
             click.echo()
             return
@@ -294,8 +311,22 @@ def _step_by_step(conversation: Conversation, screen: Screen) -> None:
         conversation.line(text)
 
 
+def _ask(prompt: str, piped: Piped, interactive: bool) -> str | None:
+    """The next line, or None at the end of input; who types it is prompted.
+
+    Raises:
+        EOFError: the end of input, at a terminal.
+        UnicodeDecodeError: the line is not UTF-8.
+    """
+    if interactive:
+        return input(prompt)
+    if sys.stdin is not None and sys.stdin.isatty():
+        click.echo(prompt, nl=False, err=True)
+    return piped.line(None)
+
+
 def _real_time(conversation: Conversation, typist: Typist) -> None:
-    """Time goes on by itself, but while somebody types."""
+    """Read lines while time passes, except while the user types."""
     game = conversation.game
     clock = Clock()
     while not conversation.done:

@@ -1,4 +1,4 @@
-"""Lines that somebody types, or a pipe gives, while time may go on meanwhile."""
+"""Lines typed or piped in, while time may pass."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from contextlib import contextmanager, suppress
 from typing import Protocol
 
 GLANCE = 0.1
-"""How often (s) it is looked whether a line has been begun."""
+"""How often to check whether a line has been begun (s)."""
 LONGEST_BYTES = 8004
-"""What is kept of a line: more than a line may have."""
+"""Maximum length that is kept of a line, above the limit on lines."""
 
 
 class Typist(Protocol):
@@ -28,26 +28,26 @@ class Typist(Protocol):
         """
 
     def begun(self) -> bool:
-        """Whether a line has been begun and is not at its end, as far as one can tell."""
+        """Whether a line has been begun and not finished, as far as can be known."""
 
     def ready(self) -> None:
-        """The last line has been carried out: the next one may be typed."""
+        """Allow the next line, after the last one has been carried out."""
 
     def clear(self) -> None:
-        """Take what is being typed off the screen."""
+        """Erase the line being typed from the screen."""
 
     def restore(self) -> None:
-        """Put it there again."""
+        """Show the line being typed again."""
 
 
 class Piped:
-    """Lines of a pipe or file, each kept only as far as a line may go."""
+    """Lines of a pipe or file; too long ones are cut."""
 
     def __init__(self) -> None:
         self._held = b""
         self._over = sys.stdin is None
         self._cut = False
-        """Whether the rest of a line is passed over."""
+        """Whether the rest of a line is skipped."""
 
     def line(self, wait: float | None) -> str | None:
         """See :class:`Typist`."""
@@ -66,7 +66,7 @@ class Piped:
         return line.decode()
 
     def _take(self, got: bytes) -> None:
-        """Keep what was read; of a line that is too long, its beginning."""
+        """Keep what was read, and the beginning of a line that is too long."""
         for piece in got.splitlines(keepends=True):
             ends = piece.endswith(b"\n")
             begun = len(self._held) - self._held.rfind(b"\n") - 1
@@ -74,24 +74,23 @@ class Piped:
             self._held += b"\n" if ends else b""
 
     def begun(self) -> bool:
-        """Lines of a pipe come whole."""
+        """Never: lines of a pipe come whole."""
         return False
 
     def ready(self) -> None:
-        """Nothing waits to be asked."""
+        """Do nothing: no thread waits."""
 
     def clear(self) -> None:
-        """Nothing is on the screen."""
+        """Do nothing: no line is on the screen."""
 
     def restore(self) -> None:
-        """Nothing is on the screen."""
+        """Do nothing: no line is on the screen."""
 
 
 class Keyboard:
-    """Lines typed at a terminal by somebody whom rows do not disturb; use as a context.
+    """Lines typed at a terminal while rows are printed above them; a context manager.
 
-    Lines are edited in a thread of their own. All else, and all that is printed, belongs to
-    the thread that asks for them.
+    Lines are edited in a thread of their own. Only the thread that asks for lines prints.
     """
 
     def __init__(self, prompt: str) -> None:
@@ -161,14 +160,14 @@ class Keyboard:
 
 
 class Clock:
-    """Time that goes on by itself, but stands still while a line is being typed."""
+    """Real time, except that it stands still while a line is being typed."""
 
     def __init__(self) -> None:
         self._start = time.monotonic()
 
     @property
     def now(self) -> int:
-        """How much time has passed (ms)."""
+        """The time that has passed (ms)."""
         return round((time.monotonic() - self._start) * 1000)
 
     def back(self, now: int) -> None:
@@ -197,13 +196,13 @@ class Clock:
 
 @contextmanager
 def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
-    """Give the terminal back as it was, however the session ends.
+    """Restore the terminal, however the session ends.
 
-    An interrupt, or the end of the terminal, ends the process at once: an exception would be
-    lost or changed in compiled modules, or while a line is edited.
+    An interrupt, or the end of the terminal, ends the process at once: an exception could be
+    lost or changed while a line is edited.
 
     Args:
-        on_signal: is called before that; what it raises is lost.
+        on_signal: called before that; its exceptions are ignored.
     """
     restore = _restoring()
 
@@ -230,7 +229,7 @@ def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
 
 
 def _restoring() -> Callable[[], None]:
-    """What gives the terminal back as it is now; nothing where there is none."""
+    """A function that restores the terminal's present state, if there is a terminal."""
     try:
         import termios
     except ImportError:
@@ -248,7 +247,7 @@ def _restoring() -> Callable[[], None]:
 
 
 def _typed() -> str:
-    """What has been typed of the line so far."""
+    """The line as typed so far."""
     try:
         import readline
 
@@ -258,10 +257,10 @@ def _typed() -> str:
 
 
 def edit_lines(complete: Callable[[str], list[str]]) -> None:
-    """Let lines be edited, recalled and completed, where the system has the means.
+    """Turn on editing, history and completion of lines, if the system has readline.
 
     Args:
-        complete: gives the lines that a line may become.
+        complete: returns the completions of a line.
     """
     try:
         import readline

@@ -34,25 +34,29 @@ MOST_JOBS = 64
 
 @click.command()
 @click.argument("paths", nargs=-1, type=click.Path())
-@click.option("-k", "word", metavar="WORD", default="", help="Only scenarios with it in the path.")
+@click.option(
+    "-k", "word", metavar="WORD", default="", help="Only scenarios with WORD in the path."
+)
 @click.option(
     "--policy",
     shell_complete=suggesting(*POLICIES),
     help=f"Run under this policy: {USAGE}.",
 )
 @click.option(
-    "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Run so many at once."
+    "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Number of runs at once."
 )
 @click.option(
     "--compare",
     "compare",
     type=Choice(["text", "behavior"]),
     default="text",
-    help="How tables are compared; behavior allows times to be off by less than 0.5 s.",
+    help="How to compare tables; behavior ignores differences in time below 0.5 s.",
 )
-@click.option("--update", is_flag=True, help="Write tables anew that differ, or are not there.")
+@click.option("--update", is_flag=True, help="Write tables that differ or are missing.")
 @click.option("-y", "--yes", is_flag=True, help="With --update: do not ask.")
-@click.option("--coverage", "cover", is_flag=True, help="Tell what of the documents was reached.")
+@click.option(
+    "--coverage", "cover", is_flag=True, help="Show how much of the documents was reached."
+)
 @click.option("--coverage-xml", type=click.Path(), help="Write coverage here (Cobertura).")
 @click.option(
     "--fail-under",
@@ -80,10 +84,10 @@ def test(
 ) -> None:
     """Run scenarios, and check what they expect.
 
-    PATHS are scenarios, or folders with scenarios; without any, it is this folder. A
-    scenario says what it expects by <expect>, <never> and <in-order>; a table beside it
-    (NAME.txt for NAME.xml) is compared with that of the run. One without either passes if
-    no application ends by an error.
+    PATHS are scenarios or folders with scenarios; the default is this folder. A scenario
+    states its expectations by <expect>, <never> and <in-order>; a table beside it (NAME.txt
+    for NAME.xml) is compared with the run's. A scenario without either passes if no
+    application ends by an error.
 
     Exit code 0 if all is as expected, 1 if not, 3 if a run ended by an error.
 
@@ -102,10 +106,7 @@ def test(
     raise_limits(limits)
     if limits and jobs > 1:
         raise UsageError("--limit works in one process: leave out --jobs.")
-    found = find(paths or ["."])
-    chosen = [path for path in found if word.casefold() in path.casefold()]
-    if not chosen:
-        raise UsageError(f'None of {len(found)} scenarios has "{word}" in its path.')
+    chosen = _chosen(find(paths or ["."]), word)
     _check_outputs(chosen, junit_file, coverage_xml)
     cover = cover or coverage_xml is not None or fail_under is not None
     results: list[Result] = []
@@ -121,7 +122,27 @@ def test(
         _update(results, set(paths), yes)
     _finish(results, coverage if cover else None, fail_under, form)
     _write(results, coverage, junit_file, coverage_xml)
-    under = fail_under is not None and _under(coverage, fail_under)
+    _set_exit_code(results, fail_under is not None and _under(coverage, fail_under))
+
+
+def _chosen(found: list[str], word: str) -> list[str]:
+    """Those scenarios whose path contains a word.
+
+    Raises:
+        UsageError: there are none.
+    """
+    chosen = [path for path in found if word.casefold() in path.casefold()]
+    if not chosen:
+        raise UsageError(f'None of {len(found)} scenarios has "{word}" in its path.')
+    return chosen
+
+
+def _set_exit_code(results: list[Result], under: bool) -> None:
+    """End with the exit code of the results.
+
+    Raises:
+        Exit: a run failed, or less was reached than required.
+    """
     statuses = {result.status for result in results}
     if "error" in statuses:
         raise Exit(3)
@@ -131,11 +152,11 @@ def test(
 
 def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> None:
     if yes and not update:
-        raise UsageError("--yes goes with --update.")
+        raise UsageError("--yes works only with --update.")
     if update and policy is not None:
-        raise UsageError("A table is that of the scenario's own policy: leave out --policy.")
+        raise UsageError("Expected tables are for the scenario's own policy: leave out --policy.")
     if update and form == "json":
-        raise UsageError("--update shows the differences first: leave out --format json.")
+        raise UsageError("--update prints differences as text: leave out --format json.")
     if policy is not None:
         from prima.loading import FAVOURITE
         from prima.scheduler.policy import policy_named
@@ -147,14 +168,14 @@ def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> No
 
 
 def _check_outputs(scenarios: list[str], *outputs: str | None) -> None:
-    """See whether results and coverage may be written where they shall.
+    """Check the files for results and coverage.
 
     Raises:
-        UsageError: both go to one file, or one would replace what the tests are made of.
+        UsageError: they are one file, or one would replace an input.
     """
     paths = [path for path in outputs if path]
     if len(paths) == 2 and same_file(*paths):
-        raise UsageError(f"{paths[0]}: results and coverage go to two files; name another one.")
+        raise UsageError(f"{paths[0]}: results and coverage need two files; name another one.")
     for path in paths:
         check_output(path, "test", *scenarios)
 
@@ -169,9 +190,9 @@ def _paint(text: str, status: str) -> str:
 
 
 def _report(results: list[Result]) -> None:
-    """Each result in a line, then what was not as expected."""
+    """Print each result in a line, then the failures."""
     from prima.cli.common import clean
-    from prima.testing.telling import format_result, row
+    from prima.testing.summary import format_result, row
 
     wide = max(len(result.path) for result in results)
     for result in results:
@@ -188,7 +209,7 @@ def _finish(
 ) -> None:
     from prima.testing.coverage import coverage_data, format_coverage
     from prima.testing.running import result_data
-    from prima.testing.telling import counts, summary
+    from prima.testing.summary import counts, summary
 
     if form == "json":
         print_json(
@@ -231,7 +252,7 @@ def _write(
 
 
 def _update(results: list[Result], named: set[str], yes: bool) -> None:
-    """Write the tables of runs that are else as expected; each has been shown before."""
+    """Write the tables of runs without other failures; each has been shown before."""
     from prima.testing.golden import write_golden
 
     for result in results:
@@ -251,10 +272,10 @@ def _update(results: list[Result], named: set[str], yes: bool) -> None:
 
 
 def _agreed(result: Result, yes: bool) -> bool:
-    """Whether the author wants a table written."""
+    """Whether the author agrees to write a table."""
     if yes:
         return True
     if not sys.stdin.isatty():
-        tell(f"{result.file}: not written. Look at it, then add --yes.")
+        tell(f"{result.file}: not written. To write it, add --yes.")
         return False
     return click.confirm(f"Write {result.file}?", err=True)

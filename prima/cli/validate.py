@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 
 import click
 from click.exceptions import Exit
@@ -12,7 +14,6 @@ from click.exceptions import Exit
 from prima.checks.ignores import KINDS, SETTINGS
 from prima.cli.common import (
     Choice,
-    SourceLines,
     coloured,
     limit_option,
     map_option,
@@ -26,7 +27,7 @@ from prima.markup.limits import LIMITS
 
 WATCH_SECONDS = 0.3
 MANY = 50
-"""From so many files on, a terminal is told how far it is."""
+"""The number of files from which progress is shown on a terminal."""
 
 
 @click.command()
@@ -36,18 +37,20 @@ MANY = 50
     "form",
     type=Choice(["text", "short", "json", "sarif"]),
     default="text",
-    help="What to print; short leaves out the source lines.",
+    help="What to print; short omits source lines.",
 )
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 @click.option("--strict", is_flag=True, help="Count warnings as problems: exit code 1.")
-@click.option("--notes", is_flag=True, help="Print notes too: what holds and units cost others.")
+@click.option(
+    "--notes", is_flag=True, help="Print notes too: the cost of holds and units to others."
+)
 @click.option(
     "--with",
     "fas",
     metavar="FA",
     multiple=True,
     type=click.Path(),
-    help="Certify what each of FILES, an EA, can do to this FA.",
+    help="Certify how each of FILES, an EA, can affect this FA.",
 )
 @click.option("--robot", type=click.Path(), default="", help="The robot's profile for --with.")
 @map_option
@@ -65,9 +68,9 @@ def validate(
 ) -> None:
     """Check documents of any kind: applications, worlds, robots, scenarios, VoiceXML.
 
-    All problems of every file are printed, each with its place, its source line and
-    what to write instead. A folder stands for all documents in it. Exit code 1 if any
-    problem is an error, or with --strict a warning; 2 if a file cannot be read.
+    All problems of every file are printed with place, source line and remedy. A folder
+    stands for all documents in it. Exit code 1 if any problem is an error, or with
+    --strict a warning; 2 if a file cannot be read.
 
     \b
     prima validate documents/fa/follow.xml documents/ea
@@ -79,10 +82,10 @@ def validate(
     """
     raise_limits(limits)
     if robot and not fas:
-        raise UsageError("--robot goes with --with.")
-    if fas and (watch or notes or strict or maps or form in ("short", "sarif")):
-        raise UsageError("A certificate (--with) takes --format text or json alone.")
+        raise UsageError("--robot works only with --with.")
     if fas:
+        if any((watch, notes, strict, maps, form in ("short", "sarif"))):
+            raise UsageError("--with works only with --robot and --format text or json.")
         _certify(fas, files, robot, form)
         return
     if watch:
@@ -96,9 +99,7 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
     from prima.certificate import certificate_data, certificates, format_certificate
     from prima.loading import is_application
 
-    applications = [
-        name for name in _expanded(eas) if name in eas or is_application(name)
-    ]  # of a folder's documents, those that can be certified
+    applications = [name for name in _expanded(eas) if name in eas or is_application(name)]
     found = certificates(fas, applications, robot)
     if form == "json":
         print_json([certificate_data(one) for one in found])
@@ -109,7 +110,7 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
 def _check(
     files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]
 ) -> tuple[int, int, int]:
-    """Check and print; gives how many files could not be read, and the errors and warnings."""
+    """Check and print; return the numbers of unreadable files, errors and warnings."""
     from prima import loading  # not the whole interface, for a quick start
 
     problems: list[Problem] = []
@@ -127,19 +128,21 @@ def _check(
     _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell(f"prima: {message}")
-    errors = sum(problem.severity == "error" for problem in problems)
-    warnings = sum(problem.severity == "warning" for problem in problems)
+    counts = Counter(problem.severity for problem in problems)
     if form in ("text", "short") and not unread:
-        counts = f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
-        tell(f"files: {len(names)}; {counts}")
-    return len(unread), errors, warnings
+        tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
+    return len(unread), counts["error"], counts["warning"]
+
+
+def _counts(errors: int, warnings: int) -> str:
+    return f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
 
 
 def _expanded(files: tuple[str, ...]) -> Iterator[str]:
-    """The files named, with all documents of folders among them.
+    """The files, and the documents in the folders.
 
     Raises:
-        UsageError: a folder holds no document.
+        UsageError: a folder contains no document.
     """
     for name in files:
         if not os.path.isdir(name):
@@ -150,7 +153,7 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
         found = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
         if not found:
             raise UsageError(
-                f"{name}: holds no documents (files whose names end in {one_of(KINDS)})."
+                f"{name}: contains no documents (files with the suffix {one_of(KINDS)})."
             )
         yield from found
 
@@ -160,10 +163,10 @@ def _show(every: list[Problem], form: str) -> None:
     if form == "json":
         from prima.errors.rendering import problem_data
 
-        told = [problem_data(one) for one in problems]
+        data = [problem_data(one) for one in problems]
         if len(every) > LIMITS.problems:
-            told[-1]["more"] = len(every) - LIMITS.problems
-        print_json(told)
+            data[-1]["more"] = len(every) - LIMITS.problems
+        print_json(data)
     elif form == "sarif":
         from prima import __version__
         from prima.checks.codes import diagnoses
@@ -172,6 +175,7 @@ def _show(every: list[Problem], form: str) -> None:
         print_json(sarif(problems, __version__, diagnoses()))
     elif problems and form == "text":
         from prima.errors.rendering import render
+        from prima.testing.sources import SourceLines
 
         lines = SourceLines()
         for problem in problems:
@@ -182,7 +186,7 @@ def _show(every: list[Problem], form: str) -> None:
 
 
 def _watch(files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]) -> None:
-    """Check now and after every change, until somebody interrupts."""
+    """Check now and after every change, until interrupted."""
     import time
 
     seen: dict[str, float] | None = None
@@ -199,16 +203,13 @@ def _watch(files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]
 
 
 def _changes(files: tuple[str, ...]) -> dict[str, float]:
-    """When each document in the folders of the files was changed: a scenario names others."""
+    """The modification time of each document in the files' folders: a scenario names others."""
     from pathlib import Path
 
     folders = {name if os.path.isdir(name) else os.path.dirname(name) or "." for name in files}
     found: dict[str, float] = {}
-    for folder in folders:
-        for path in Path(folder).rglob("*"):
-            if path.suffix in KINDS or path.name == SETTINGS:
-                try:
-                    found[str(path)] = path.stat().st_mtime_ns
-                except OSError:
-                    continue
+    for path in (path for folder in folders for path in Path(folder).rglob("*")):
+        if path.suffix in KINDS or path.name == SETTINGS:
+            with suppress(OSError):
+                found[str(path)] = path.stat().st_mtime_ns
     return found

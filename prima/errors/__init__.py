@@ -1,4 +1,4 @@
-"""What can go wrong, divided by who broke the rule.
+"""Errors, divided by who caused them.
 
 The *author* of a document gets a list of :class:`Problem`, all at once, inside
 a :class:`DocumentError`. Whoever called the program wrongly, or named something
@@ -76,7 +76,7 @@ TOO_MUCH = (
     "the run made more records, or more text, than a run may."
     " Let what comes again and again in it wait longer each time, or end the run earlier (until)."
 )
-"""Why a run ends that goes past its limits, and what an author can do."""
+"""The message for a run that exceeds its limits, with a remedy."""
 
 
 class PrimaError(Exception):
@@ -84,7 +84,7 @@ class PrimaError(Exception):
 
 
 class DocumentError(PrimaError):
-    """Documents are wrong; ``problems`` says all of it, in document order."""
+    """Documents have errors; ``problems`` lists them in document order."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = sorted(problems)
@@ -92,8 +92,8 @@ class DocumentError(PrimaError):
 
 
 class UsageError(PrimaError):
-    """The caller asked for something that is not there or makes no sense."""
+    """The caller asked for something that does not exist or is impossible."""
 
 
 class RunError(PrimaError):
-    """A run was ended by an error or a limit; what it had recorded is kept."""
+    """A run was ended by an error or a limit; its records are kept."""

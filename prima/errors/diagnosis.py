@@ -1,4 +1,4 @@
-"""A kind of problem as data: its code, what it means, and what it says at a place."""
+"""A kind of problem as data: code, meaning and message."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NO_HINT = Hint()
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """What can be wrong with a document in one way.
+    """One kind of problem.
 
     ``message`` and ``remedy`` are templates: ``{name}`` is a parameter. A wrong and a right example
     are in the folder of its code in ``prima/handbook/examples``.
@@ -20,7 +20,7 @@ class Diagnosis:
     code: str
     title: str
     meaning: str
-    """What ``prima explain CODE`` says."""
+    """The explanation that ``prima explain CODE`` prints."""
     rule: str = ""
     """The rule of mediation, or the section of a Recommendation or of the thesis."""
     severity: Severity = "error"
@@ -28,12 +28,12 @@ class Diagnosis:
     remedy: str = ""
 
     def says(self, message: str, remedy: str = "", severity: Severity | None = None) -> Diagnosis:
-        """The same diagnosis in other words, for another way in which it comes about."""
+        """The same diagnosis with another message, for another cause."""
         kind = severity or self.severity
         return replace(self, message=message, remedy=remedy, severity=kind)
 
     def at(self, place: Place, hint: Hint = NO_HINT, **parameters: object) -> Problem:
-        """The problem at a place; ``hint`` says more exactly than the remedy what to write instead."""
+        """The problem at a place; ``hint`` is a more exact remedy."""
         return Problem(
             place,
             self.severity,

@@ -1,4 +1,4 @@
-"""Guesses at what was meant: the known word nearest to an unknown one."""
+"""Suggestions: the known word nearest to an unknown one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from itertools import islice
 from prima.errors.problems import Edit, Fix, Hint, Span
 
 MANY_LETTERS, MANY_WORDS = 60, 300
-"""Beyond these no guess is made at what was meant: it would take too long."""
+"""Limits of words that are compared, to bound the time."""
 MOST_COMPARED = 30_000
-"""Pairs of words that are compared for the guesses at one document."""
+"""Maximum number of comparisons for one document."""
 
 
 @contextmanager
 def few_guesses() -> Iterator[None]:
-    """Let only so many guesses be made meanwhile, however much is wrong with a document."""
+    """Bound the comparisons while a document is checked."""
     token = _guesses.set(_Guesses())
     try:
         yield
@@ -26,7 +26,7 @@ def few_guesses() -> Iterator[None]:
 
 
 class _Guesses:
-    """How many comparisons are left for the guesses at one document."""
+    """The number of comparisons left for one document."""
 
     def __init__(self) -> None:
         self.left = MOST_COMPARED
@@ -36,7 +36,7 @@ _guesses: ContextVar[_Guesses | None] = ContextVar("guesses", default=None)
 
 
 def guessable(word: str, known: Iterable[str]) -> list[str]:
-    """The words among which it may be looked for what was meant by another, in order.
+    """The words that may be compared with another, in order.
 
     None if there are too many, or if too much has been guessed at a document (:func:`few_guesses`).
     """
@@ -50,7 +50,7 @@ def guessable(word: str, known: Iterable[str]) -> list[str]:
 
 
 def nearest_word(word: str, known: Iterable[str]) -> str:
-    """The known word that is most like another one, or nothing."""
+    """The known word most similar to another, or nothing."""
     words = guessable(word, known)
     alike = [one for one in words if one.casefold() == word.casefold()]
     if words and not alike:
@@ -61,17 +61,17 @@ def nearest_word(word: str, known: Iterable[str]) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Give ``Did you mean "x"?`` for the known word nearest to ``word``, or nothing."""
+    """``Did you mean "x"?`` with the known word nearest to ``word``, or nothing."""
     return meant(nearest_word(word, known)).text
 
 
 def suggestion(word: str, known: Iterable[str], *spans: Span) -> Hint:
-    """The same as a hint; its fix writes the known word into some spans."""
+    """The same as a hint, with a fix that writes the known word into some spans."""
     return meant(nearest_word(word, known), *spans)
 
 
 def meant(word: str, *spans: Span) -> Hint:
-    """Ask whether a word was meant, and write it into some spans; nothing without a word."""
+    """A hint that suggests a word and writes it into some spans; nothing without a word."""
     return replaced(f'Did you mean "{word}"?', word, *spans) if word else Hint()
 
 

@@ -1,4 +1,4 @@
-"""Problems of documents: where, what is wrong, what to write instead, and the edits that do it."""
+"""Problems of documents: place, message, remedy, and fixes."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import Literal, NamedTuple, Self
 from prima.errors.words import counted
 
 MOST_TOLD = 1_000
-"""Problems that are listed; the others are counted."""
+"""Maximum number of similar problems listed; others are counted."""
 
 LONGEST_TEXT = 450
-"""Characters of a message or remedy beyond which its middle is left out."""
+"""Length of a message or remedy above which its middle is omitted."""
 CUT = " [...] "
-"""What is there in place of the middle of a text."""
+"""Replaces the middle of a long text."""
 
 Severity = Literal["error", "warning", "note"]
 SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
-"""The worst first."""
+"""Severities, worst first."""
 
 
 class Place(NamedTuple):
-    """Where something stands: a file, and a line and column counted from 1.
+    """A place: a file, and a line and column counted from 1.
 
     Columns count characters, not bytes.
     """
@@ -45,26 +45,26 @@ class Span(NamedTuple):
 
     @classmethod
     def of(cls, place: Place, text: str) -> Self:
-        """Text on one line that begins at a place."""
+        """The span of a text on one line that begins at a place."""
         return cls(place.line, place.column, place.line, place.column + len(text))
 
 
 class Edit(NamedTuple):
-    """Text in place of what a span holds; an empty span is where to insert it."""
+    """Text that replaces a span; an empty span is an insertion."""
 
     span: Span
     text: str
 
 
 class Fix(NamedTuple):
-    """What can be done at once: edits of the file in which the problem is."""
+    """A fix: edits of the file with the problem."""
 
     title: str
     edits: tuple[Edit, ...]
 
 
 class Hint(NamedTuple):
-    """What to write instead, as a sentence and as fixes of which one may be chosen."""
+    """A remedy: a sentence, and alternative fixes."""
 
     text: str = ""
     fixes: tuple[Fix, ...] = ()
@@ -84,7 +84,7 @@ class _Problem(NamedTuple):
 
 
 class Problem(_Problem):
-    """One thing wrong in a document, with what to write instead where that is known.
+    """One problem of a document, with a remedy if one is known.
 
     ``parameters`` are the names and numbers in the message. A message or remedy that quotes very
     long names is cut in its middle: a name may be as long as a document, and be in thousands of
@@ -117,7 +117,7 @@ class Problem(_Problem):
 
     @property
     def sentence(self) -> tuple[Severity, str, str, str]:
-        """What it says, wherever it is."""
+        """What identifies it, apart from its place."""
         return self.severity, self.code, self.message, self.remedy
 
     def get(self, name: str) -> str:
@@ -126,19 +126,19 @@ class Problem(_Problem):
 
 
 def _brief(text: str) -> str:
-    """A text of which, if it is very long, only the beginning and the end are left."""
+    """A text; if very long, only its beginning and end."""
     if len(text) <= LONGEST_TEXT:
         return text
     return text[: 2 * LONGEST_TEXT // 3] + CUT + text[-LONGEST_TEXT // 3 :]
 
 
 def in_order(problems: Iterable[Problem]) -> list[Problem]:
-    """Problems once each, in document order."""
+    """Problems without duplicates, in document order."""
     return sorted(dict.fromkeys(problems))  # a set would mix up what is nearly in order
 
 
 def few(problems: list[Problem], most: int) -> list[Problem]:
-    """At most so many of problems that say the same; the last of these tells how many more there are."""
+    """Limit the problems with the same message; the last one counts those omitted."""
     counts = Counter(problem.sentence for problem in problems)
     if max(counts.values(), default=0) <= most:
         return problems
@@ -156,7 +156,7 @@ def few(problems: list[Problem], most: int) -> list[Problem]:
 
 
 def listed(problems: Sequence[Problem], most: int = MOST_TOLD) -> list[Problem]:
-    """So many of the problems, errors before all others, and one that says how many there are more.
+    """The first problems, errors before all others, and one that counts those omitted.
 
     They keep their order.
     """

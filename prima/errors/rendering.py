@@ -1,4 +1,4 @@
-"""Problems as authors and machines read them: with their source line, or as SARIF 2.1.0."""
+"""Problems as text with source lines, as JSON, and as SARIF 2.1.0."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from prima.errors.problems import Fix, Problem, Severity
 from prima.errors.visible import visible
 
 WIDEST = 100
-"""Columns of a source line that are shown."""
+"""Maximum width of a source line."""
 COLOURS: dict[Severity, str] = {"error": "31", "warning": "33", "note": "36"}
 LEVELS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "note"}
 TOKEN = re.compile(r"""<[^\s/>]*|"[^"]*"?|'[^']*'?|[^\s<>"'=]+|\S""")
 SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 Lines = Callable[[str], list[str]]
-"""Gives the lines of a file, or none where it cannot be read."""
+"""Returns the lines of a file; none if it cannot be read."""
 
 
 def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
-    """A problem with its source line and a caret under what is wrong."""
+    """A problem with its source line and a caret."""
     place, (severity, code, message, remedy) = problem.place, problem.sentence
 
     def paint(text: str, style: str) -> str:
@@ -44,7 +44,7 @@ def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
 
 
 def excerpt(line: str, column: int) -> tuple[str, str]:
-    """A source line, cut around a column, and what marks the token there under it."""
+    """A source line, cut around a column, and the carets under the token there."""
     start = min(max(column - 1, 0), len(line))
     token = TOKEN.match(line, start, start + WIDEST)
     length = len(token[0]) if token else 1
@@ -62,19 +62,19 @@ def excerpt(line: str, column: int) -> tuple[str, str]:
 
 
 def _width(letter: str) -> int:
-    """How many columns of a terminal a character takes."""
+    """The width of a character in columns of a terminal."""
     if unicodedata.combining(letter):
         return 0
     return 2 if unicodedata.east_asian_width(letter) in "WF" else 1
 
 
 def _blank(letter: str) -> str:
-    """What stands under a character so that the columns stay: a tab under a tab."""
+    """The padding under a character: a tab under a tab."""
     return "\t" if letter == "\t" else " " * _width(letter)
 
 
 def problem_data(problem: Problem) -> dict[str, Any]:
-    """A problem as plain data."""
+    """A problem as data for JSON."""
     return {
         "file": problem.place.file,
         "line": problem.place.line,
@@ -119,7 +119,7 @@ def sarif(
 
 
 def _result(problem: Problem, rule: int) -> dict[str, Any]:
-    """A problem as a result of a SARIF log; ``rule`` is where the log explains its code."""
+    """A problem as a result of a SARIF log; ``rule`` is the index of its code."""
     file = {"uri": _uri(problem.place.file)}
     region = {"startLine": problem.place.line, "startColumn": problem.place.column}
     result = {
@@ -148,7 +148,7 @@ def _sarif_fix(fix: Fix, file: dict[str, str]) -> dict[str, Any]:
 
 
 def _uri(path: str) -> str:
-    """A file's name as a URI reference: relative if it is."""
+    """A file's name as a URI reference, relative for a relative name."""
     from urllib.parse import quote
 
     return ("file://" if path.startswith("/") else "") + quote(path.replace("\\", "/"))

@@ -10,14 +10,14 @@ import re
 
 HARMFUL = re.compile(
     "[\x00-\x1f\x7f-\x9f"  # control characters: a terminal obeys them
-    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u206f"  # marks of direction: they turn what is around
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u206f"  # marks of direction
     "\u2028\u2029"  # ends of lines
-    "\u180e\ufeff\ufff9-\ufffb\U000e0001-\U000e007f"  # others that nobody sees
-    "\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]"  # no characters at all
+    "\u180e\ufeff\ufff9-\ufffb\U000e0001-\U000e007f"  # other invisible characters
+    "\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]"  # not characters
 )
-"""What is not shown. Joiners, spaces of every kind and soft hyphens are: scripts need them."""
+"""Characters not shown; joiners, spaces and soft hyphens are, since scripts need them."""
 MARK = "\ufffd"
-"""What is shown for it."""
+"""Replaces such a character."""
 
 
 def visible(text: str, keep: str = "") -> str:
@@ -35,7 +35,7 @@ def _shown(letter: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """JSON in which such characters are escaped: it means the same, and does nothing as it is."""
+    """JSON with such characters escaped, which does not change its meaning."""
     return HARMFUL.sub(_escape, text) if "\x7f" in text or not text.isascii() else text
 
 

@@ -1,4 +1,4 @@
-"""``prima study``: the same situations under every policy, measured by the thesis's criteria."""
+"""``prima study``: situations under every policy, measured by the thesis's criteria."""
 
 from __future__ import annotations
 
@@ -12,17 +12,19 @@ from prima.api import Transcript, documents_folder, load_scenario, rehearse
 from prima.errors import UsageError
 from prima.messages import Json
 from prima.scheduler import policy as known
-from prima.transcript.criteria import Criteria, observe
+from prima.transcript.criteria import Criteria
 from prima.transcript.diff import compare
-from prima.transcript.table import Row, read_table
+from prima.transcript.observer import observe
+from prima.transcript.row import Row
+from prima.transcript.table import read_table
 
 POLICIES = (
     *reversed(known.POLICIES),
     *(f"prima+{extension}" for extension in (*known.EXTENSIONS, "all")),
 )
-"""All that a study compares unless it is told otherwise."""
+"""The policies that a study compares by default."""
 EXPECTED = ".txt"
-"""The suffix of the table beside a scenario that its author expects."""
+"""The suffix of the expected table beside a scenario."""
 
 
 @dataclass(slots=True)
@@ -33,15 +35,15 @@ class Result:
     policy: str
     criteria: Criteria
     distance: int | None
-    """Rows to move, of those that the expected table has and this run has, too."""
+    """Number of rows of the expected table that come in another order."""
     missing: int | None
-    """Rows of the expected table that this run lacks."""
+    """Number of rows of the expected table that this run lacks."""
     seconds: float
     failures: list[str]
 
 
 def situations() -> list[Path]:
-    """The ten situations of the thesis's Table 5.2, as scenarios that come with the package."""
+    """The ten situations of the thesis's Table 5.2, as scenarios in the package."""
     folder = documents_folder() / "scenarios"
     found = {path.stem: path for path in (folder / "situations").glob("*.xml")}
     found["s03"] = folder / "follow-during-navigation.xml"
@@ -55,7 +57,7 @@ def study(
 
     Raises:
         DocumentError: documents are wrong.
-        UsageError: no such file or policy.
+        UsageError: a file or policy is unknown.
     """
     chosen = list(policies)
     for path in scenarios or situations():
@@ -82,11 +84,11 @@ def _expected(path: Path) -> list[Row] | None:
     try:
         return read_table(table.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise UsageError(f"{table}: this is no table of a transcript: {error}.") from None
+        raise UsageError(f"{table}: not a table of a transcript: {error}.") from None
 
 
 def _distance(expected: list[Row] | None, transcript: Transcript) -> tuple[int | None, int | None]:
-    """How far a run's order is from the expected one."""
+    """The distance of a run's order from the expected one."""
     if expected is None:
         return None, None
     rows = read_table(transcript.table())
@@ -108,20 +110,20 @@ COLUMNS = (
     ("mean s", "response_mean"),
     ("max s", "response_max"),
 )
-"""Headings and the criteria beneath them; times belong to the count before them."""
+"""Headings and their criteria; times belong to the count before them."""
 COUNTED = {"reaction_mean": "reactions", "response_mean": "responses"}
-"""How many times each mean is made of."""
+"""The count over which each mean is taken."""
 
 
 def result_data(result: Result) -> dict[str, Json]:
-    """A result as plain data, criteria beside the rest."""
+    """A result as data for JSON, with its criteria among its fields."""
     data = asdict(result)
     criteria = data.pop("criteria")
     return {**data, **criteria}
 
 
 def format_csv(results: Iterable[Result]) -> str:
-    """One line for each situation and policy."""
+    """Results as CSV: a line for each situation and policy."""
     made = io.StringIO()
     names = [one.name for one in fields(Result) if one.name != "criteria"]
     writer = csv.DictWriter(
@@ -137,25 +139,26 @@ def format_csv(results: Iterable[Result]) -> str:
 
 
 def format_table(results: list[Result]) -> str:
-    """The table that people read: situations by policies, then the sums of each policy."""
+    """The table: situations by policies, then the sums of each policy."""
     heads = ["situation", "policy", *(head for head, _ in COLUMNS), "moved", "missing"]
     lines = [_cells(result) for result in results]
     policies = list(dict.fromkeys(result.policy for result in results))
     if len({result.situation for result in results}) > 1:
         lines += [_sums(policy, [r for r in results if r.policy == policy]) for policy in policies]
-    widths = [
-        max(len(head), *(len(line[index]) for line in lines)) for index, head in enumerate(heads)
-    ]
+    return _aligned([heads, *lines])
+
+
+def _aligned(lines: list[list[str]]) -> str:
+    """Lines of cells in columns, with an empty line before each other first cell."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     made: list[str] = []
-    before = ""
-    for line in [heads, *lines]:
-        if line[0] != before and made:
+    before = lines[0][0]
+    for line in lines:
+        if line[0] != before:
             made.append("")
         before = line[0]
-        cells = [
-            cell.ljust(wide) if index < 2 else cell.rjust(wide)
-            for index, (cell, wide) in enumerate(zip(line, widths, strict=True))
-        ]
+        cells = [cell.ljust(wide) for cell, wide in zip(line[:2], widths, strict=False)]
+        cells += [cell.rjust(wide) for cell, wide in zip(line[2:], widths[2:], strict=True)]
         made.append("  ".join(cells).rstrip())
     return "\n".join(made) + "\n"
 
@@ -172,20 +175,22 @@ def _cells(result: Result) -> list[str]:
 
 
 def _sums(policy: str, results: list[Result]) -> list[str]:
-    """A policy in all situations: counts are added, means are those of all of its runs."""
-    values = []
-    for _, name in COLUMNS:
-        counts = [getattr(result.criteria, name) for result in results]
-        if name in COUNTED:
-            weights = [getattr(result.criteria, COUNTED[name]) for result in results]
-            total = sum(mean * weight for mean, weight in zip(counts, weights, strict=True))
-            values.append(_shown(total / sum(weights) if sum(weights) else 0.0))
-        else:
-            values.append(_shown(max(counts) if name.endswith("_max") else sum(counts)))
+    """A policy in all situations: counts are added, means are taken over all runs."""
+    values = [_shown(_sum(name, [result.criteria for result in results])) for _, name in COLUMNS]
     known = [r for r in results if r.distance is not None]
     distance = sum(r.distance or 0 for r in known) if known else None
     missing = sum(r.missing or 0 for r in known) if known else None
     return ["all", policy, *values, _shown(distance), _shown(missing)]
+
+
+def _sum(name: str, criteria: list[Criteria]) -> float:
+    """One criterion of all runs: the sum, the maximum, or the mean over all reactions."""
+    values: list[float] = [getattr(one, name) for one in criteria]
+    if name not in COUNTED:
+        return max(values) if name.endswith("_max") else sum(values)
+    weights: list[int] = [getattr(one, COUNTED[name]) for one in criteria]
+    total = sum(mean * weight for mean, weight in zip(values, weights, strict=True))
+    return total / sum(weights) if sum(weights) else 0.0
 
 
 def _shown(value: float | None) -> str:

@@ -20,26 +20,25 @@ FORMATS = {
     "mcap": "Foxglove",
     "csv": "spreadsheets and statistics",
 }
-"""The formats by their names, which are also the files' suffixes, and for what they are;
-each is a module of this package with a function ``write``."""
+"""Formats and their uses, by names that are also suffixes and modules of this package."""
 
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """What an export has written."""
+    """The size of an export, and why it may be incomplete."""
 
     tiers: int
     marks: int
     """Intervals and points."""
     seconds: float
     cut: str = ""
-    """What is wrong with the line at which the transcript breaks off, if it does."""
+    """The error in the line at which the transcript breaks off, if any."""
     early: str = ""
-    """That the transcript ends before its run did, between two lines."""
+    """A message that the transcript ends before its run did, if so."""
 
 
 def installed(library: str) -> bool:
-    """Whether a library is there, found out without loading it."""
+    """Whether a library is installed; does not import it."""
     try:
         return find_spec(library) is not None
     except ValueError:
@@ -47,22 +46,22 @@ def installed(library: str) -> bool:
 
 
 def checked(name: str, languages: Mapping[str, str]) -> dict[str, str]:
-    """The languages, if they and the format are right; see :func:`prima.api.export`.
+    """The languages, checked with the format; see :func:`prima.api.export`.
 
     Raises:
-        UsageError: there is no such format, its library is missing, it names no languages,
-            or a tag is none.
+        UsageError: the format is unknown, its library is missing, it has no languages,
+            or a tag is malformed.
     """
     if name not in FORMATS:
         hint = did_you_mean(name, FORMATS) or f"Name {one_of(FORMATS)}."
-        raise UsageError(f'There is no format "{name}". {hint}')
+        raise UsageError(f'Unknown format "{name}". {hint}')
     if name == "mcap" and not installed("mcap"):
-        raise UsageError("mcap needs one more library: pip install 'prima[export]'.")
+        raise UsageError("mcap needs another library: pip install 'prima[export]'.")
     if languages and name != "eaf":
-        raise UsageError(f"Languages go with eaf; {name} does not name them: leave them out.")
+        raise UsageError(f"--lang works only with --to eaf, not with {name}.")
     for tag in languages.values():
         if not TAG.fullmatch(tag):
-            raise UsageError(f'"{tag}" is no language tag: write one as en or pt-BR.')
+            raise UsageError(f'"{tag}" is not a language tag: write one such as en or pt-BR.')
     return dict(languages)
 
 
@@ -74,7 +73,7 @@ def write(
     version: str,
     out: IO[bytes],
 ) -> None:
-    """Write a timeline in a format; ``records`` are the transcript's once more."""
+    """Write a timeline in a format; ``records`` are the transcript's, read once more."""
     if name == "mcap":
         from prima.exports import mcap
 

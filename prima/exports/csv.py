@@ -11,7 +11,7 @@ from prima.exports.timeline import COLUMNS, Timeline
 HEAD = ("tier", "kind", "start", "end", "text", *COLUMNS)
 NUMBERS = frozenset({"serial", "seconds"})
 FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
-"""What makes a spreadsheet take a cell for a formula, in full width as well."""
+"""Characters with which a spreadsheet's formula begins, also in full width."""
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
@@ -35,5 +35,5 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
 
 
 def harmless(text: str) -> str:
-    """Text that no spreadsheet takes for a formula: with an apostrophe before it, if need be."""
+    """Text that a spreadsheet does not take for a formula: an apostrophe is put before one."""
     return f"'{text}" if text.lstrip(" '").startswith(FORMULA) else text

@@ -9,9 +9,9 @@ from xml.sax.saxutils import escape, quoteattr
 from prima.exports.timeline import KINDS, Part, Timeline, clean, unused
 
 MARK_MS = 200
-"""How long (ms) a point is shown, where the next leaves it the time: EAF has none."""
+"""Duration (ms) of a point, unless the next comes earlier: EAF has no points."""
 UNKNOWN = "und"
-"""The language of what nobody has told the language of (ISO 639-3)."""
+"""The code of an unknown language (ISO 639-3)."""
 
 CHILDREN = {
     "does": ("rule", "behavior", "outcome"),
@@ -19,7 +19,7 @@ CHILDREN = {
     "why": ("rule", "behavior", "losers"),
     "reactions": ("event", "seconds"),
 }
-"""Details that stand in tiers of their own, each associated with its annotation."""
+"""Details with tiers of their own, each associated with its annotation."""
 
 CONSTRAINTS = {
     "Time_Subdivision": "Time subdivision of parent annotation's time interval,"
@@ -30,29 +30,25 @@ CONSTRAINTS = {
     "Included_In": "Time alignable annotations within the parent annotation's time interval,"
     " gaps are allowed",
 }
-"""ELAN's four stereotypes of dependent tiers, in its own words, which it looks for."""
+"""ELAN's four stereotypes of dependent tiers, with the descriptions that it expects."""
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The document, in pieces.
 
-    ``languages`` has the language tag of each application that has one, and of
-    all others, and the user, under the empty name; what the transcript tells comes after them.
+    ``languages`` has the language tags of applications; the empty name stands for the user
+    and all others. Those of the transcript come second.
     """
-    told = {} if "" in languages else timeline.languages
-    languages = {**told, **languages}
+    languages = {**({} if "" in languages else timeline.languages), **languages}
     parts = timeline.parts()
-    names = {part.name for part in parts}
     children = [
         (part, column)
         for part in parts
         for column in CHILDREN.get(part.tier.kind, ())
         if any(column in mark.about for mark in part.marks)
     ]
-    rules = sorted(
-        {m.about["rule"] for p, column in children for m in p.marks if "rule" in m.about}
-    )
-    details = sum(column in mark.about for part, column in children for mark in part.marks)
+    rules = sorted({m.about["rule"] for p, _ in children for m in p.marks if "rule" in m.about})
+    details = sum(_count(part, column) for part, column in children)
     yield from _head(timeline, timeline.marks + details)
     slots = _Slots(parts)
     yield from slots.write()
@@ -62,11 +58,17 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
         firsts[part.name] = number
         yield from _tier(part, number, slots, languages)
         number += len(part.marks)
+    names = {part.name for part in parts}
     for part, column in children:
         child = unused(f"{part.name} {column}", names)
         yield from _child(part, firsts[part.name], child, column, number, rules)
-        number += sum(column in mark.about for mark in part.marks)
+        number += _count(part, column)
     yield from _types(rules, {tag for tag in languages.values() if tag})
+
+
+def _count(part: Part, column: str) -> int:
+    """The number of marks with a detail."""
+    return sum(column in mark.about for mark in part.marks)
 
 
 def _head(timeline: Timeline, annotations: int) -> Iterator[str]:
@@ -93,7 +95,7 @@ def _date(value: object) -> str:
 
 
 class _Slots:
-    """Two time slots for each annotation: those that share one would be moved together."""
+    """Two time slots for each annotation: annotations that share a slot would move together."""
 
     def __init__(self, parts: list[Part]) -> None:
         times: list[tuple[int, int]] = []
@@ -120,7 +122,7 @@ class _Slots:
 
 
 def _end(part: Part, place: int) -> int:
-    """When an annotation ends; what takes no time is shown for a while."""
+    """The end of an annotation; a point is extended."""
     mark = part.marks[place]
     if mark.end > mark.start:
         return mark.end
@@ -150,7 +152,7 @@ def _tier(part: Part, first: int, slots: _Slots, languages: dict[str, str]) -> I
 def _child(
     part: Part, first: int, name: str, column: str, number: int, rules: list[str]
 ) -> Iterator[str]:
-    """A tier of one detail of a part's annotations; its own are numbered from ``number``."""
+    """A tier with one detail of a part's annotations, numbered from ``number``."""
     kind = "rule" if column == "rule" else "detail"
     entries = {rule: place for place, rule in enumerate(rules, 1)}
     yield (

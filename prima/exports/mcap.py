@@ -17,7 +17,7 @@ from prima.transcript.record import model
 
 ENCODER = json.JSONEncoder(ensure_ascii=False)
 MS = 1_000_000
-"""Nanoseconds of a millisecond."""
+"""Nanoseconds per millisecond."""
 MARK: dict[str, Json] = {
     "type": "object",
     "title": "prima.Mark",
@@ -32,11 +32,11 @@ MARK: dict[str, Json] = {
 """The JSON Schema of a tier's messages."""
 
 Message = tuple[int, int, str, bytes]
-"""When (ms), an order within that time, the topic, the message."""
+"""Time (ms), order at that time, topic, message."""
 
 
 class _Counting:
-    """A stream that knows how much was written, as a pipe does not."""
+    """A stream that counts bytes, for pipes, which have no position."""
 
     def __init__(self, out: IO[bytes]) -> None:
         self._out = out
@@ -55,7 +55,7 @@ class _Counting:
 
 
 def write(timeline: Timeline, records: Iterable[Record], version: str, out: IO[bytes]) -> None:
-    """Write the file; ``records`` are the transcript's, gone through once more."""
+    """Write the file; ``records`` are the transcript's, read once more."""
     from mcap.writer import Writer
 
     writer = Writer(_Counting(out))  # type: ignore[arg-type]
@@ -81,7 +81,7 @@ def write(timeline: Timeline, records: Iterable[Record], version: str, out: IO[b
 
 
 def record_schema() -> dict[str, Json]:
-    """The records' JSON Schema, each field with one type, since readers know no alternatives."""
+    """The records' JSON Schema; each field has one type, since readers do not support several."""
     properties: dict[str, Json] = {}
     for name, field in model().model_json_schema()["properties"].items():
         kinds = [kind for kind in field.get("anyOf", [field]) if kind["type"] != "null"]
@@ -91,7 +91,7 @@ def record_schema() -> dict[str, Json]:
 
 
 def _topics(timeline: Timeline) -> list[tuple[str, list[Interval]]]:
-    """Each part of a tier with its topic, as ``/navigate/says``."""
+    """The topic of each part of a tier, such as ``/navigate/says``, with its marks."""
     names = {"/records"}
     return [
         (unused("/" + part.name.replace(": ", "/").replace(" ", "_"), names), part.marks)
@@ -100,7 +100,7 @@ def _topics(timeline: Timeline) -> list[tuple[str, list[Interval]]]:
 
 
 def _mark_messages(topic: str, marks: list[Interval]) -> Iterator[Message]:
-    """A message when a mark begins, and one when it is over, unless the next begins then."""
+    """A message at the start of each mark, and one at its end unless the next begins then."""
     for number, mark in enumerate(marks):
         times: dict[str, Json] = {"start": mark.start / 1000, "end": mark.end / 1000}
         told = {"text": mark.text, "active": True, **times, **mark.about}

@@ -9,7 +9,7 @@ from prima.exports.timeline import Interval, Part, Tier, Timeline
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The file, in pieces: interval tiers without gaps, and point tiers."""
-    # Praat wants a tier at least, even of a run in which nothing happened.
+    # Praat requires at least one tier, even if the run is empty.
     parts = timeline.parts() or [Part("run", Tier("run", "events", "robot"), [])]
     ends = (_end(mark) for part in parts if not part.tier.points for mark in part.marks)
     end = max(1, timeline.end, *ends)
@@ -39,7 +39,7 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
 
 
 def _end(mark: Interval) -> int:
-    """When an interval ends; each has to last at least 1 ms."""
+    """The end of an interval; each lasts at least 1 ms."""
     return max(mark.end, mark.start + 1)
 
 

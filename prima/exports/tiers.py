@@ -1,4 +1,4 @@
-"""Makes the timeline of a run: what each tier shows of its spells, streams, floor and events."""
+"""Builds the timeline of a run: the tiers of its spells, streams, floor and events."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from prima.exports.timeline import (
 from prima.language.values import LONGEST_MS
 from prima.messages import Json, Record
 from prima.transcript.record import Entry
+from prima.transcript.row import describe
 from prima.transcript.run import Run, run_of
 from prima.transcript.spans import Saying, Spell
-from prima.transcript.table import describe
 
 
 def timeline(name: str, records: Iterable[Record]) -> Timeline:
-    """Make the timeline of a transcript's records; ``name`` is for messages.
+    """The timeline of a transcript's records; ``name`` is for messages.
 
     Raises:
-        UsageError: a record lacks what its phase has, or it is too much for one file.
+        UsageError: a record lacks a field of its phase, or the run is too long for one file.
     """
     run = run_of(records, name)
     if run.end * 1000 > LONGEST_MS:
@@ -52,7 +52,7 @@ def _ms(seconds: float) -> int:
 
 
 class _Builder:
-    """Fills the tiers; marks of one tier that begin together come in the order of their ends."""
+    """Fills the tiers; marks of one tier with the same start are in the order of their ends."""
 
     def __init__(self, name: str, run: Run) -> None:
         self._name = name
@@ -61,7 +61,7 @@ class _Builder:
         self._marks = self._letters = 0
 
     def result(self) -> Timeline:
-        """The timeline; what has not ended ends with the last record."""
+        """The timeline; open marks end with the last record."""
         run = self._run
         self._speech()
         self._behaviors()
@@ -86,7 +86,7 @@ class _Builder:
         tier = self._tiers.get((kind, device or who))
         if tier is None:
             if len(self._tiers) >= MOST_TIERS:
-                raise UsageError(f"{self._name}: it makes more than {MOST_TIERS} tiers.")
+                raise UsageError(f"{self._name}: more than {MOST_TIERS} tiers.")
             name = KINDS[kind] or (f"device: {device}" if device else f"{who}: {kind}")
             name, whose = clean(name, LONGEST_NAME), clean(who, LONGEST_NAME)
             tier = Tier(name, kind, whose, kind in POINTS)
@@ -102,8 +102,8 @@ class _Builder:
         self._letters += len(mark.text) + sum(map(len, kept.values()))
         if self._marks > MOST_MARKS or self._letters > MOST_LETTERS:
             raise UsageError(
-                f"{self._name}: it is too long for one file: more than {MOST_MARKS} intervals, or"
-                f" {MOST_LETTERS} letters. Cut the transcript after whole lines."
+                f"{self._name}: too long for one file: more than {MOST_MARKS} intervals, or"
+                f" {MOST_LETTERS} characters. Cut the transcript after whole lines."
             )
 
     # Behaviors ------------------------------------------------------------------------------
@@ -123,7 +123,7 @@ class _Builder:
             self._put(tier, use.begin, use.end, f"{spell.start.app}: {_title(spell)}", about)
 
     def _speech(self) -> None:
-        """What applications and the user say, and who speaks when."""
+        """Add what applications and the user say, and who speaks when."""
         entries = enumerate(self._run.entries, 1)
         turns: list[tuple[int, Entry | Saying]] = [(n, one) for n, one in entries if one.spoken]
         turns += [(one.closed, one) for one in self._run.sayings]
@@ -143,7 +143,7 @@ class _Builder:
                 self._put(floor, mark.start / 1000, mark.end / 1000, tier.who, about)
 
     def _hear(self, entry: Entry, until: float) -> None:
-        """What the user said is known when it is over; when it began is worked out."""
+        """Add what the user said; its start is computed, as the record comes at its end."""
         text = clean(entry.text)
         told = entry.data.get("duration")
         known = isinstance(told, int | float) and 0 <= told <= LONGEST_MS
@@ -156,7 +156,7 @@ class _Builder:
     # Streams, floor, reactions --------------------------------------------------------------
 
     def _streams(self) -> None:
-        """The states of streams; what has taken no time is not shown."""
+        """Add the states of streams, except those without duration."""
         for one in sorted(self._run.states, key=attrgetter("closed")):
             if _ms(one.begin) == _ms(one.end):
                 continue
@@ -167,7 +167,7 @@ class _Builder:
             self._put(tier, one.begin, one.end, f"{one.tree} {one.state}{by}", about)
 
     def _holders(self) -> None:
-        """Who holds the mediator's floor, whatever is beneath."""
+        """Add who holds the mediator's floor."""
         held: list[tuple[float, str, str]] = []
         for one in self._run.floors:
             holder = one.stack[-1] if one.stack else ""
@@ -180,7 +180,7 @@ class _Builder:
                 self._put(self._tier("holder", "robot"), begin, end, holder, about)
 
     def _reactions(self) -> None:
-        """From events to the applications' first Commands because of them."""
+        """Add reactions, from each event to an application's first Command because of it."""
         for one in self._run.reactions:
             name, app = clean(one.event.event), one.start.app
             seconds = f"{(_ms(one.end) - _ms(one.begin)) / 1000:.3f}"
@@ -198,7 +198,7 @@ class _Builder:
     # Points ---------------------------------------------------------------------------------
 
     def _entry(self, entry: Entry) -> None:
-        """What happens at one time."""
+        """Add a record as a point."""
         match entry.phase:
             case "decision":
                 self._decision(entry)
@@ -231,7 +231,7 @@ class _Builder:
         self._put(tier, entry.time, entry.time, f"{entry.rule} {winner}", about)
 
     def _point(self, entry: Entry, text: str) -> None:
-        """Something of the user's or the surroundings' happens."""
+        """Add a point of the user or the surroundings."""
         user = entry.actor == "user"
         tier = self._tier("user-does", "user") if user else self._tier("events", "environment")
         about = {
@@ -266,7 +266,7 @@ def _about(spell: Spell) -> dict[str, str]:
 
 
 def _values(data: dict[str, Json]) -> str:
-    """An event's plain values, in brackets."""
+    """An event's scalar values, in brackets."""
     plain = [(key, one) for key, one in data.items() if not isinstance(one, dict | list)]
     told = ", ".join(f"{key} {_value(one)}" for key, one in plain)
     return f" ({told})" if told else ""

@@ -1,4 +1,4 @@
-"""A run on a time axis: tiers of intervals and points, which each format writes in its way.
+"""A run on a time axis: tiers of intervals and points, which all formats write.
 
 Times are whole milliseconds of the run.
 """
@@ -6,7 +6,7 @@ Times are whole milliseconds of the run.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import count
@@ -16,19 +16,19 @@ from prima.errors.visible import visible
 from prima.messages import Json
 
 TAG = re.compile(r"[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*")
-"""A language tag (BCP 47), as far as its form goes."""
+"""The form of a language tag (BCP 47)."""
 MOST_MARKS = 1_000_000
-"""Intervals and points of one export."""
+"""Maximum number of intervals and points of one export."""
 MOST_LETTERS = 200_000_000
-"""Letters of all their texts and details together."""
+"""Maximum length of all their texts and details together."""
 MOST_TIERS = 1000
-"""Tiers, those that hold what overlaps included."""
+"""Maximum number of tiers, including those for overlaps."""
 LONGEST_TEXT = 5000
-"""Letters of one text."""
+"""Maximum length of one text."""
 LONGEST_NAME = 100
-"""Letters of a tier's name, and of whose it is."""
+"""Maximum length of a tier's name, and of its owner's."""
 MOST_PARTS = 8
-"""Parts of a unit that its text names."""
+"""Maximum number of a unit's parts that its text names."""
 
 BLANKS = re.compile(r"[\t-\r\x1c-\x20\x85\u2028\u2029]+")
 
@@ -47,7 +47,7 @@ COLUMNS = (
     "source",
     "note",
 )
-"""The details that an interval or a point may have, besides its text."""
+"""The details of an interval or a point besides its text."""
 
 
 KINDS = {
@@ -64,27 +64,27 @@ KINDS = {
     "why": "why",
     "device": "",
 }
-"""Kinds of tiers in their order, with the names of those that are there only once."""
+"""Kinds of tiers in order, with the names of those that occur once."""
 POINTS = frozenset({"user-does", "events", "why"})
-"""Kinds that consist of points."""
+"""Kinds of tiers with points."""
 
 
 @dataclass(slots=True)
 class Interval:
-    """Something from ``start`` to ``end`` (ms); a point where these are the same."""
+    """Something from ``start`` to ``end`` (ms); a point if they are equal."""
 
     start: int
     end: int
     text: str
     about: dict[str, str] = field(default_factory=dict)
-    """Details by the names of :data:`COLUMNS`; those that are empty are left out."""
+    """Details by the names of :data:`COLUMNS`, without empty ones."""
 
 
 @dataclass(slots=True)
 class Tier:
-    """Intervals of one kind, by their start; ``points`` tells that all are points.
+    """Intervals of one kind, by their start; with ``points``, all are points.
 
-    ``kind`` is one of :data:`KINDS`; ``who`` whose it is: an application's name,
+    ``kind`` is one of :data:`KINDS`; ``who`` is the owner: an application's name,
     ``user``, ``robot`` or ``environment``.
     """
 
@@ -95,9 +95,9 @@ class Tier:
     marks: list[Interval] = field(default_factory=list)
 
     def lanes(self, least: int = 1) -> list[list[Interval]]:
-        """The marks divided so that in no part two overlap, as few parts as are needed.
+        """The marks in as few lanes as possible, without overlaps in a lane.
 
-        ``least`` is how long (ms) each counts at the least.
+        ``least`` is the minimum duration of each (ms).
         """
         lanes: list[list[Interval]] = []
         busy: list[tuple[int, int]] = []
@@ -117,7 +117,7 @@ class Tier:
 
 @dataclass(slots=True)
 class Part:
-    """A tier, or what of it no other part overlaps, with a name that no other has."""
+    """A tier, or a part of it without overlaps, with a unique name."""
 
     name: str
     tier: Tier
@@ -131,53 +131,55 @@ class Timeline:
     tiers: list[Tier]
     end: int
     head: dict[str, Json]
-    """What the run's first record tells; empty if the transcript does not begin with it."""
+    """The data of the run record; empty if the transcript does not begin with it."""
     name: str = ""
-    """The transcript's, for messages."""
+    """The transcript's name, for messages."""
     over: bool = False
-    """Whether the transcript tells how the run ended."""
+    """Whether the transcript has the end of the run."""
     _parts: list[Part] | None = None
     languages: dict[str, str] = field(default_factory=dict)
-    """The language of each application of which the transcript tells it."""
+    """The languages of applications, as far as the transcript has them."""
 
     @property
     def marks(self) -> int:
-        """How many intervals and points there are."""
+        """The number of intervals and points."""
         return sum(len(tier.marks) for tier in self.tiers)
 
     def check_names(self, names: Iterable[str]) -> None:
-        """Make sure that applications are of this run; the empty name is no application's.
+        """Check that applications are part of this run; the empty name is allowed.
 
         Raises:
-            UsageError: there is no such application.
+            UsageError: an application is unknown.
         """
         known = {tier.who for tier in self.tiers if tier.kind in ("does", "says", "streams")}
         for name in names:
             if name and name not in known:
                 hint = did_you_mean(name, known) or f"There is {one_of(known) or 'none'}."
-                raise UsageError(f'{self.name}: nothing is done by an application "{name}". {hint}')
+                raise UsageError(f'{self.name}: unknown application "{name}". {hint}')
 
     def parts(self) -> list[Part]:
-        """Tiers in which nothing overlaps; what does goes to a second one, ``NAME-2`` and so on.
+        """The tiers without overlaps; overlapping marks go to ``NAME-2`` and so on.
 
         Raises:
-            UsageError: there would be too many.
+            UsageError: there are too many.
         """
         if self._parts is None:
-            names: set[str] = set()
-            self._parts = []
-            for tier in self.tiers:
-                for number, marks in enumerate(tier.lanes(), 1):
-                    if len(names) == MOST_TIERS:
-                        message = f"it makes more than {MOST_TIERS} tiers, since too much overlaps."
-                        raise UsageError(f"{self.name}: {message} Try --to csv.")
-                    name = unused(tier.name if number == 1 else f"{tier.name}-{number}", names)
-                    self._parts.append(Part(name, tier, marks))
+            self._parts = list(self._divided())
         return self._parts
+
+    def _divided(self) -> Iterator[Part]:
+        names: set[str] = set()
+        lanes = ((tier, n, lane) for tier in self.tiers for n, lane in enumerate(tier.lanes(), 1))
+        for tier, number, marks in lanes:
+            if len(names) == MOST_TIERS:
+                message = f"more than {MOST_TIERS} tiers, because too many intervals overlap."
+                raise UsageError(f"{self.name}: {message} Try --to csv.")
+            name = unused(tier.name if number == 1 else f"{tier.name}-{number}", names)
+            yield Part(name, tier, marks)
 
 
 def unused(name: str, names: set[str]) -> str:
-    """A name that is not among ``names`` yet, and is then."""
+    """A name that is not in ``names``; adds it."""
     found = name
     for number in count(2):
         if found not in names:
@@ -188,7 +190,7 @@ def unused(name: str, names: set[str]) -> str:
 
 
 def clean(text: object, longest: int = LONGEST_TEXT) -> str:
-    """One line of text that every format can hold, not too long."""
+    """One line of text of limited length that every format can hold."""
     line = str(text)
     if len(line) > longest:
         line = line[:longest] + "..."

@@ -1,4 +1,4 @@
-"""WebVTT (W3C): what the applications and the user say, as captions with voices."""
+"""WebVTT (W3C): the speech of applications and user as captions with voices."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from prima.exports.timeline import Interval, Tier, Timeline, clean
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
-    """The file, in pieces: a cue for each utterance, and notes of what happens besides."""
+    """The file, in pieces: a cue for each utterance, and notes for other events."""
     told: list[tuple[Interval, Tier]] = [
         (mark, tier)
         for tier in timeline.tiers

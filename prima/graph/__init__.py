@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 FORMATS = ("svg", "dot", "mermaid", "json")
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
 SUFFIXES |= {".json": "json"}
-"""What a file's suffix says about its format."""
+"""Formats by suffix."""
 WHATS = ("states", "tree", "streams", "map")
 MOST_BOXES = 300
-"""Boxes of a picture in SVG; the other formats take any number."""
+"""Maximum number of boxes in SVG; other formats have no limit."""
 
 
 def picture(
@@ -32,43 +32,32 @@ def picture(
     row: int | None = None,
     read: list[Transcript] | None = None,
 ) -> str:
-    """Draw an application, a transcript or a world; which of them it is its content tells.
+    """Draw an application, a transcript or a world; the file's content determines which.
 
     Args:
         path: an application in PRIMA's language or VoiceXML, a transcript, or a world.
         to: ``svg``, ``dot``, ``mermaid`` or ``json``.
         what: ``states`` of an application; ``tree`` or ``streams`` of a transcript;
             ``map`` of a world. By default the states, the tree, or the map.
-        row: of a tree, the row of the transcript's table at whose time it is shown; by
-            default all of the run.
-        read: is given the transcript that was read; one that was cut off is drawn as far
+        row: draw the tree as of this row of the transcript's table; by default the whole
+            run.
+        read: the transcript read is appended to this; an incomplete one is drawn as far
             as it goes.
 
     Raises:
-        UsageError: the file cannot be read or has nothing of that kind, or no such format.
-        DocumentError: the application or the world is wrong.
+        UsageError: the file cannot be read or does not fit, or the format is unknown.
+        DocumentError: the application or the world has errors.
     """
     for name, word, known in (("to", to, FORMATS), ("what", what or "states", WHATS)):
         if word not in known:
             hint = did_you_mean(word, known) or f"Write {one_of(known)}."
-            raise UsageError(f'There is no {name} "{word}". {hint}')
-    if _transcript(path):
-        if what in ("states", "map"):
-            lacks = "states" if what == "states" else "map"
-            message = f"this is a transcript, which has no {lacks}. Write --what tree or streams."
-            raise UsageError(f"{path}: {message}")
-        if what == "streams" and row is not None:
-            raise UsageError("--row goes with --what tree.")
-        from prima import api
-
-        transcript = api.read(path, partial=True)
-        if read is not None:
-            read.append(transcript)
-        return streams(transcript, to) if what == "streams" else tree(transcript, row, to)
+            raise UsageError(f'Unknown {name} "{word}". {hint}')
+    if _is_transcript(path):
+        return _run_picture(path, to, what, row, read)
     if what in ("tree", "streams") or row is not None:
-        asked = f"--what {what}" if what in ("tree", "streams") else "--row"
-        remedy = "prima run SCENARIO -o FILE.jsonl makes one."
-        raise UsageError(f"{path}: {asked} needs a transcript; {remedy}")
+        option = f"--what {what}" if what in ("tree", "streams") else "--row"
+        remedy = "prima run SCENARIO -o FILE.jsonl writes one."
+        raise UsageError(f"{path}: {option} needs a transcript; {remedy}")
     if _root(path) == "world":
         if what == "states":
             raise UsageError(f"{path}: this is a world, which has no states. Write --what map.")
@@ -78,8 +67,25 @@ def picture(
     return _shown(states(path), to, path)
 
 
+def _run_picture(
+    path: str | Path, to: str, what: str, row: int | None, read: list[Transcript] | None
+) -> str:
+    """Draw a transcript; see :func:`picture`."""
+    from prima import api
+
+    if what in ("states", "map"):
+        message = f"this is a transcript, which has no {what}. Write --what tree or streams."
+        raise UsageError(f"{path}: {message}")
+    if what == "streams" and row is not None:
+        raise UsageError("--row works only with --what tree.")
+    transcript = api.read(path, partial=True)
+    if read is not None:
+        read.append(transcript)
+    return streams(transcript, to) if what == "streams" else tree(transcript, row, to)
+
+
 def _root(path: str | Path) -> str:
-    """The tag with which a document begins; empty where it is none of PRIMA's."""
+    """The root tag of a document of PRIMA; empty for others."""
     from prima.loading import is_grammar, is_voicexml
     from prima.loading.files import read_file
     from prima.markup.reader import parse
@@ -89,11 +95,11 @@ def _root(path: str | Path) -> str:
 
 
 def world_map(path: str | Path, to: str = "svg") -> str:
-    """Draw the map of a world; in DOT and Mermaid only its places and ways.
+    """Draw the map of a world; DOT and Mermaid show only places and ways.
 
     Raises:
-        UsageError: the file cannot be read, or it is too much.
-        DocumentError: the world is wrong.
+        UsageError: the file cannot be read, or the map is too large.
+        DocumentError: the world has errors.
     """
     from prima.graph import worldmap
     from prima.loading.files import read_file
@@ -109,11 +115,11 @@ def world_map(path: str | Path, to: str = "svg") -> str:
 
 
 def states(path: str | Path) -> Graph:
-    """The states of an application and what leads from one to another.
+    """The states of an application and the transitions between them.
 
     Raises:
-        UsageError: the file cannot be read, or is no application.
-        DocumentError: the application is wrong.
+        UsageError: the file cannot be read, or is not an application.
+        DocumentError: the application has errors.
     """
     from prima.interpreter.elements import Document
     from prima.loading import read_application
@@ -139,7 +145,7 @@ def states(path: str | Path) -> Graph:
 
 
 def _refuse_others(path: str | Path, data: bytes) -> None:
-    """Say what to do with a document that is no application."""
+    """Raise an error for a document that is not an application."""
     from prima.loading import is_grammar, is_voicexml
     from prima.markup.reader import parse
 
@@ -160,19 +166,19 @@ def _refuse_others(path: str | Path, data: bytes) -> None:
         raise UsageError(f"{path}: {message}")
 
 
-def _transcript(path: str | Path) -> bool:
+def _is_transcript(path: str | Path) -> bool:
     """Whether a file begins as a transcript does, and not as XML."""
     from prima.loading.files import read_file
 
     try:
         if not Path(path).is_file():
-            read_file(path)  # says what is wrong
+            read_file(path)  # raises an error
         with Path(path).open("rb") as stream:
             begin = stream.read(200).removeprefix(b"\xef\xbb\xbf").lstrip()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except ValueError:
-        raise UsageError(f"{path!r} is not a file's name.") from None
+        raise UsageError(f"{path!r} is not a file name.") from None
     if not begin:
         raise UsageError(f"{path}: the file is empty.")
     return begin[:1] == b"{"
@@ -182,7 +188,8 @@ def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str
     """Draw the Atomic Behaviors of a run, or those in working memory at a row of its table.
 
     Raises:
-        UsageError: there is no such row, a record lacks what its phase has, or it is too much.
+        UsageError: there is no such row, a record lacks a field of its phase, or the tree is
+            too large.
     """
     from prima.graph import run
 
@@ -196,7 +203,7 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
     """Draw the history of a run's Communication Streams.
 
     Raises:
-        UsageError: a record lacks what its phase has, or it is too much.
+        UsageError: a record lacks a field of its phase, or there are too many streams.
     """
     from prima.graph import run
 
@@ -204,7 +211,7 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
 
 
 def _time(transcript: Transcript, row: int) -> float:
-    """When a row of the table is, in seconds."""
+    """The time of a row, in seconds."""
     rows = transcript.rows()
     if not rows:
         raise UsageError(f"{transcript.name}: the transcript has no rows.")
@@ -214,7 +221,7 @@ def _time(transcript: Transcript, row: int) -> float:
 
 
 def _told(graph: Graph) -> str:
-    """A description in sentences, for who cannot see the picture."""
+    """A description of the picture as text, for accessibility."""
     sentences = []
     for node in list(graph.nodes.values())[:40]:
         edges = graph.out(node.key)[:8]

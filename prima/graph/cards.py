@@ -20,15 +20,15 @@ WIDTH = 236.0
 PAD = 9.0
 LEADING = 15.0
 TITLE = 24.0
-"""How high a card's name is."""
+"""Height of a card's name."""
 COLUMNS = 6
-"""Columns of one row of the page, where there are many."""
+"""Maximum number of columns in one row of the page."""
 GAP = 22.0
 MARGIN = 18.0
 MANY_BACK = 6
-"""Ways back to one card that are drawn; if there are more, none is."""
+"""Maximum number of lines back to one card; if there are more, none is drawn."""
 LONGEST_BOW = 900.0
-"""How far a line goes back within a column."""
+"""Maximum length of a line back within a column."""
 LEGEND = (
     ("go", "leads to"),
     ("call", "calls and comes back"),
@@ -38,17 +38,17 @@ LEGEND = (
 
 @dataclass(slots=True)
 class Way:
-    """An edge as a card shows it: from how high on it begins, and its lines."""
+    """An edge as a card shows it: where it begins, and its lines of text."""
 
     edge: Edge
     at: float
     lines: list[tuple[str, float]]
-    """Each with how far it stands in: what goes on with a reason, further."""
+    """Lines with their indentation: continuation lines are indented further."""
 
 
 @dataclass(slots=True)
 class Card:
-    """A node with its words broken into lines."""
+    """A node with its text wrapped."""
 
     node: Node
     height: float = 0.0
@@ -87,7 +87,7 @@ def draw(graph: Graph) -> str:
 
 
 def _legend(graph: Graph, y: float) -> list[str]:
-    """What the kinds of lines mean, of those that are there."""
+    """A legend for the kinds of lines that occur."""
     kinds = {edge.kind for edge in graph.edges}
     parts, x = [], MARGIN
     for kind, words in LEGEND:
@@ -131,7 +131,7 @@ def _pill(mark: str) -> float:
 
 
 def _name(graph: Graph, edge: Edge) -> str:
-    """Where an edge leads, as its card says it."""
+    """The target of an edge, as shown on its card."""
     if not edge.target:
         return edge.words
     if edge.kind == "stay":
@@ -141,7 +141,7 @@ def _name(graph: Graph, edge: Edge) -> str:
 
 
 def _drawn(graph: Graph, card: Card) -> list[str]:
-    """A card's box and words."""
+    """A card's box and text."""
     node, x, y = card.node, card.x, card.y
     kind = "box any" if node.kind == "any" else "box first" if node.start else "box"
     told = "start: " if node.start else ""
@@ -181,7 +181,7 @@ def _drawn(graph: Graph, card: Card) -> list[str]:
 
 
 class _Band:
-    """The cards of some columns, one row of the page."""
+    """One row of the page: the cards of some columns."""
 
     def __init__(self, graph: Graph, cards: dict[str, Card], columns: list[int]) -> None:
         self.graph, self.cards = graph, cards
@@ -215,7 +215,7 @@ class _Band:
         self.left = self._lefts(columns)
 
     def _near(self, key: str, edge: Edge) -> bool:
-        """Whether a line is drawn: not to another row of the page, nor back to where many go."""
+        """Whether a line is drawn: not to another row of the page, nor back to a crowded card."""
         target = edge.target
         if target not in self.cards or edge.kind == "stay":
             return False
@@ -223,23 +223,26 @@ class _Band:
         return key == target or not (back and target in self.crowded)
 
     def _lefts(self, columns: list[int]) -> list[float]:
-        """Where each column begins: the more lines between two, the more room."""
+        """The left edge of each column; more lines between two columns get more room."""
         count = max(columns, default=0) + 1
         lines = [0] * (count + 1)
-        for key, card in self.cards.items():
-            for way in card.ways:
-                if self._near(key, way.edge):
-                    one, two = self.column[key], self.column[way.edge.target]
-                    for gutter in range(min(one, two), max(one, two)):
-                        lines[gutter] += 1
-                    lines[one] += one == two
+        near = [
+            (self.column[key], self.column[way.edge.target])
+            for key, card in self.cards.items()
+            for way in card.ways
+            if self._near(key, way.edge)
+        ]
+        for one, two in near:
+            for gutter in range(min(one, two), max(one, two)):
+                lines[gutter] += 1
+            lines[one] += one == two
         left = [MARGIN]
         for gutter in range(count):
             left.append(left[-1] + WIDTH + min(54 + 4.0 * lines[gutter], 150))
         return left
 
     def draw(self, top: float) -> tuple[list[str], float, float]:
-        """The row's parts, and where it ends at the right and below."""
+        """The row's parts, and its right and bottom edges."""
         for index, (key, card) in enumerate(self.cards.items()):
             card.x = self.left[self.column[key]]
             card.y = top + self.layout.aside[index]
@@ -262,7 +265,7 @@ class _Band:
         return parts, right, bottom
 
     def _line(self, key: str, card: Card, way: Way, top: float) -> list[str]:
-        """An edge's line with its head; a stub where the whole line would only confuse."""
+        """An edge's line with its head; a stub if the whole line is not drawn."""
         edge, y = way.edge, card.y + way.at - 2
         if not edge.target or edge.kind == "stay":
             return []
@@ -308,6 +311,6 @@ class _Band:
 
 
 def _curve(x1: float, y1: float, x2: float, y2: float) -> str:
-    """A curve that begins and ends level."""
+    """A curve that begins and ends horizontally."""
     middle = (x1 + x2) / 2
     return f"C{middle:.1f} {y1:.1f} {middle:.1f} {y2:.1f} {x2:.1f} {y2:.1f}"

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 
-from prima.graph.model import Graph, Node, clean, settle
-from prima.graph.thrown import Taker, Throws, chosen
-from prima.graph.words import (
+from prima.graph.labels import (
     ASKED,
     condition,
     handled,
@@ -17,6 +15,8 @@ from prima.graph.words import (
     quoted,
     sayings,
 )
+from prima.graph.model import Graph, Node, clean, settle
+from prima.graph.throws import Taker, Throws, chosen
 from prima.interpreter.elements import (
     Act,
     Block,
@@ -50,13 +50,13 @@ from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 
 ANY = ":any"
-"""The key of what holds in all states; no form can have it as its id."""
+"""The key for all states; no form can have it as its id."""
 QUESTIONS = 3
-"""Questions of a state that are shown."""
+"""Number of questions of a state that are shown."""
 
 
 def states(document: Document) -> Graph:
-    """The states of an application and what leads from one to another."""
+    """The states of an application and the transitions between them."""
     return _Reader(document).graph
 
 
@@ -67,7 +67,7 @@ class _Reader:
         self.here = ANY
         self.hints: dict[str, list[str]] = {}
         self.scopes: list[Sequence[Handler]] = []
-        """The handlers that may take what is thrown, innermost first."""
+        """The handlers that may take a thrown event, innermost first."""
         self.throws = Throws()
         for form in document.forms.values():
             self._form(form)
@@ -106,24 +106,11 @@ class _Reader:
         self._describe(node, form, items)
 
     def _describe(self, node: Node, form: Form, items: Sequence[Item]) -> None:
-        """What is special about a state, and what it asks or says."""
-        runs = _runs(_contents(form))
+        """Describe a state: its marks, and what it asks or says."""
         commands = _commands(_contents(form))
-        fields = [item for item in items if isinstance(item, Field)]
         leaving = [one for one in commands if _leaves(one)]
-        grouped = any(isinstance(step.what, GroupTemplate) for run in runs for step in run.steps)
-        holds = [form.hold, *(item.hold for item in items)]
-        connects = form.connect or any(field.connect for field in fields)
-        marks = {
-            "asks": bool(fields),
-            "sleeps": not _leaves_at_its_end(form.items),
-            "leaves the user": bool(leaving),
-            "unit": grouped or any(isinstance(item, Unit) for item in items),
-            "holds its stream": any(hold is not None for hold in holds),
-            "faces the user": connects,
-        }
-        node.marks = [mark for mark, there in marks.items() if there]
-        questions = [text for field in fields for text in _asked(field)]
+        node.marks = _marks(form, items, bool(leaving))
+        questions = [text for item in items if isinstance(item, Field) for text in _asked(item)]
         node.notes = [f"asks {quoted(text)}" for text in questions[:QUESTIONS]]
         if len(questions) > QUESTIONS:
             node.notes.append(f"and {len(questions) - QUESTIONS} more")
@@ -134,7 +121,7 @@ class _Reader:
         node.notes += [clean(goal) for goal in list(goals)[:2]]
 
     def _everywhere(self) -> None:
-        """What the document itself handles and listens for, in all its states."""
+        """Add the document's own handlers and links, which are active in all states."""
         self.here = ANY
         self.hints = _hints(self.document, None)
         self.scopes = [self.document.handlers]
@@ -170,7 +157,7 @@ class _Reader:
         name: str = "",
         truth: bool = False,
     ) -> bool:
-        """Note all ways out of content; whether nothing behind it is ever reached."""
+        """Add all transitions of content; return whether it never reaches its end."""
         conditions = list(conditions)
         for act in content:
             told = joined(base, conditions)
@@ -203,7 +190,7 @@ class _Reader:
     def _branches(
         self, act: If, base: str, conditions: list[str], name: str, truth: bool
     ) -> tuple[bool, list[str]]:
-        """Note the ways out of an ``if``; whether it has no other, and what holds behind it."""
+        """Add the transitions of an ``if``; return whether it never ends, and what holds after it."""
         ends: list[bool] = []
         told: list[str] = []
         for cond, branch in act.branches:
@@ -222,7 +209,7 @@ class _Reader:
             self._to(act.form, "go", told)
 
     def _throw(self, event: str | Expression, told: str) -> None:
-        """Note where the handlers lead that take what is thrown; a computed event is not known."""
+        """Add the transitions of handlers that take a thrown event, unless it is computed."""
         if isinstance(event, Expression):
             return
         with self.throws.following(event) as followed:
@@ -233,7 +220,7 @@ class _Reader:
             self._taken(event, told)
 
     def _throw_in_states(self, event: str, told: str) -> None:
-        """What the document's handlers throw is taken by a state's own handlers first."""
+        """Events that the document's handlers throw go to a state's own handlers first."""
         for form in self.document.forms.values():
             if any(takes(name, event) for handler in form.handlers for name in handler.events):
                 self.here, self.scopes = form.id, [form.handlers]
@@ -262,6 +249,23 @@ class _Reader:
             self.graph.edge(self.here, "", "missing", told, form)
 
 
+def _marks(form: Form, items: Sequence[Item], leaving: bool) -> list[str]:
+    """The special properties of a state, each in one or two words."""
+    runs = _runs(_contents(form))
+    fields = [item for item in items if isinstance(item, Field)]
+    grouped = any(isinstance(step.what, GroupTemplate) for run in runs for step in run.steps)
+    holds = [form.hold, *(item.hold for item in items)]
+    marks = {
+        "asks": bool(fields),
+        "sleeps": not _leaves_at_its_end(form.items),
+        "leaves the user": leaving,
+        "unit": grouped or any(isinstance(item, Unit) for item in items),
+        "holds its stream": any(hold is not None for hold in holds),
+        "faces the user": form.connect or any(field.connect for field in fields),
+    }
+    return [mark for mark, applies in marks.items() if applies]
+
+
 def _around(items: Sequence[Item], outer: Sequence[Sequence[Handler]] = ()) -> _Scopes:
     """The handlers of each item and of the units around it, innermost first, by its identity."""
     found: _Scopes = {}
@@ -276,7 +280,7 @@ _Scopes = dict[int, list[Sequence[Handler]]]
 
 
 def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
-    """What is known of where events come from in a state: links, watches, delays of its own."""
+    """The known sources of events in a state: links, watches, its own delays."""
     found: dict[str, list[str]] = {}
     for link in [*document.links, *(form.links if form else [])]:
         if link.event:
@@ -298,7 +302,7 @@ def _blocks(form: Form) -> list[Sequence[Act]]:
 
 
 def _contents(form: Form) -> list[Sequence[Act]]:
-    """Every piece of executable content of a state."""
+    """All executable content of a state."""
     found = _blocks(form)
     found += [handler.content for handler in form.handlers]
     found += [filled.content for filled in form.filled]
@@ -320,7 +324,7 @@ def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:
 
 
 def _leaves_at_its_end(items: Sequence[Item]) -> bool:
-    """Whether a state is left before its items are through: then it never waits for events."""
+    """Whether a state is left before its items end, so that it never waits for events."""
     for item in items:
         if item.cond is not None or item.expr is not None:
             continue
@@ -338,7 +342,7 @@ def _leaves_at_its_end(items: Sequence[Item]) -> bool:
 
 
 def _never_ends(content: Sequence[Act]) -> bool:
-    """Whether content leaves its state in each case."""
+    """Whether content always leaves its state."""
     for act in content:
         if isinstance(act, Goto | Exit | Return):
             return not (isinstance(act, Goto) and act.item is not None)
@@ -349,7 +353,7 @@ def _never_ends(content: Sequence[Act]) -> bool:
 
 
 def _stays(handler: Handler) -> bool:
-    """Whether a handler does something and leaves the state as it is."""
+    """Whether a handler does something without a transition."""
     acts = all_acts(handler.content)
     ways = any(isinstance(act, Goto | Exit | Return | Throw) for act in acts)
     return bool(acts) and not ways and not ASKED.issuperset(handler.events)
@@ -366,7 +370,7 @@ def _title(command: CommandTemplate) -> str:
 
 
 def _goal(command: CommandTemplate) -> str:
-    """A Command that leaves the user, and where it goes."""
+    """A Command that leaves the user, and its goal."""
     to = command.args.get("to")
     goal = f"{{{to.code}}}" if isinstance(to, Expression) else str(to or "")
     return f"{_title(command)}{' to ' + goal if goal else ''}"
@@ -379,6 +383,6 @@ def _asked(field: Field) -> list[str]:
 
 
 def _text(text: Text) -> str:
-    """Text with the expressions in it in braces."""
+    """Text with its expressions in braces."""
     shown = [f"{{{part.code}}}" if isinstance(part, Expression) else part for part in text]
     return "".join(part if isinstance(part, str) else " " for part in shown)

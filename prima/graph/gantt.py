@@ -1,4 +1,4 @@
-"""The picture of Communication Streams over time: a row for each, from its begin to its end."""
+"""The picture of Communication Streams over time, with a row for each."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from prima.transcript.spans import Stream
 ROW, BAR = 26.0, 14.0
 MARGIN = 18.0
 PLOT = 860.0
-"""How wide the time axis is."""
+"""Width of the time axis."""
 STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 14400)
 MOST_APPS = 4
-"""Applications that the legend names."""
+"""Maximum number of applications in the legend."""
 LEGEND = (
     ("away", "suspended, then resumed"),
     ("broken", "broken by no reaction"),
@@ -60,7 +60,7 @@ def _applications(history: History) -> list[tuple[str, str]]:
 
 
 def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> list[str]:
-    """A stream's name, its line and what it was on the way."""
+    """A stream's name, its line and its pieces."""
     middle = y + BAR / 2
     begin, end = left + stream.begin * scale, left + stream.end * scale
     parts = [text(MARGIN, middle + 4, fit(stream.name, left - MARGIN - 8))]
@@ -80,7 +80,7 @@ def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> lis
         parts.append(f"<g><title>{escape(hint)}</title>")
         thin = 0 if span.kind == "runs" else 3
         parts.append(box(x, y - thin, wide, BAR + 2 * thin, kinds.get(span.kind, f"s{shade}"), 2))
-        # What runs on for a moment after the suspension covers its beginning.
+        # A behavior that still runs after the suspension covers its beginning.
         covered = [
             one.end
             for one in stream.pieces
@@ -96,7 +96,7 @@ def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> lis
 
 
 def told(history: History) -> str:
-    """The history in sentences, for who cannot see it."""
+    """The history as text, for accessibility."""
     sentences = []
     for stream in history.streams[:40]:
         what = [

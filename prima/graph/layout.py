@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 from functools import partial
 
 SWEEPS = 12
-"""How often orders and places are improved."""
+"""Number of passes that improve orders and places."""
 THREAD = 9.0
-"""How much room aside a line takes that passes a layer."""
+"""Room that a line takes in a layer it passes through."""
 
 
 @dataclass(slots=True)
@@ -31,12 +31,12 @@ class Link:
     low_at: float = 0.0
     high_at: float = 0.0
     chain: list[int] = field(default_factory=list)
-    """The places of :attr:`Layout.aside` through which it passes, its ends included."""
+    """The indices of :attr:`Layout.aside` through which it passes, including its ends."""
 
 
 @dataclass(slots=True)
 class Layout:
-    """Where each box begins aside; behind the boxes come places that lines pass through."""
+    """The position of each box within its layer, followed by those that lines pass through."""
 
     aside: list[float]
     links: list[Link]
@@ -44,7 +44,7 @@ class Layout:
 
 
 def distances(count: int, starts: Sequence[int], follows: Sequence[Sequence[int]]) -> list[int]:
-    """How many steps each box is from the start; what no way leads to begins anew, one layer on.
+    """The distance of each box from the start; unreachable ones start again, one layer on.
 
     Args:
         count: the number of boxes.
@@ -58,15 +58,15 @@ def distances(count: int, starts: Sequence[int], follows: Sequence[Sequence[int]
         found[begin] = 0 if number < len(starts) or not starts else 1
         queue = [begin]
         for one in queue:
-            for next_one in follows[one]:
-                if found[next_one] < 0:
-                    found[next_one] = found[one] + 1
-                    queue.append(next_one)
+            new = [to for to in dict.fromkeys(follows[one]) if found[to] < 0]
+            for to in new:
+                found[to] = found[one] + 1
+            queue += new
     return found
 
 
 def depths(count: int, edges: Sequence[tuple[int, int]]) -> list[int]:
-    """The layers of boxes without circles: behind all from which an arrow leads there.
+    """The layers of an acyclic graph: each box comes after those that lead to it.
 
     ``edges`` lead from earlier boxes to later ones; others count for nothing.
     """
@@ -197,7 +197,7 @@ class _Work:
     def _wish(
         self, one: int, near: list[list[tuple[int, float, float]]], both: bool
     ) -> tuple[float, float]:
-        """Where a box would be best, and how much that matters."""
+        """The best position of a box, and its weight."""
         every = self.before[one] + self.after[one]
         lines = every if both else near[one]
         if not lines:

@@ -1,4 +1,4 @@
-"""What a picture shows, before anything is drawn: boxes, and arrows between them."""
+"""The content of a picture, independent of format: boxes, and arrows between them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 
 LONGEST = 300
-"""Letters of one text in a picture."""
+"""Maximum length of a text in a picture."""
 MOST_EDGES = 4000
 MOST_LABELS = 12
-"""Reasons to go the same way that are told."""
+"""Maximum number of labels of one arrow."""
 
 INWARD = ("go", "stay", "call", "guess", "back", "child")
 """Kinds of edges that lead to a node; the others lead out of the picture."""
@@ -21,9 +21,9 @@ OUTWARD = {
     "return": "returns",
     "computed": "to a computed target",
     "outside": "goes to",
-    "missing": "goes to what is not there:",
+    "missing": "goes to a missing target:",
 }
-"""Kinds of edges that lead to no node, with the words for them."""
+"""Kinds of edges without a target node, with their texts."""
 
 
 @dataclass(slots=True)
@@ -38,16 +38,16 @@ class Node:
     title: str
     kind: str = "state"
     marks: list[str] = field(default_factory=list)
-    """What is special about it, each in one or two words."""
+    """Special properties, each in one or two words."""
     notes: list[str] = field(default_factory=list)
     source: str = ""
-    """FILE:LINE, where it is known."""
+    """FILE:LINE, if known."""
     group: str = ""
-    """The group that it belongs to: an AB's stream."""
+    """Its group: an AB's stream."""
     shade: int = 0
     start: bool = False
     reached: bool = True
-    """Whether a way from the start leads there, as far as one can tell."""
+    """Whether it may be reached from the start."""
 
 
 @dataclass(slots=True)
@@ -66,13 +66,13 @@ class Edge:
 
     @property
     def words(self) -> str:
-        """Where an edge leads that leads to no node."""
+        """The text of an edge without a target node."""
         return f"{OUTWARD[self.kind]} {self.where}".strip()
 
 
 @dataclass(slots=True)
 class Graph:
-    """A picture's content; ``told`` is its description for who cannot see it."""
+    """A picture's content; ``told`` is a description for accessibility."""
 
     title: str
     told: str = ""
@@ -81,16 +81,16 @@ class Graph:
     """Whether it runs from left to right; else from top to bottom."""
 
     def node(self, key: str, title: str, kind: str = "state", start: bool = False) -> Node:
-        """Add a node, or give the one that is there already."""
+        """Add a node, or return the existing one."""
         if key not in self.nodes:
             self.nodes[key] = Node(key, clean(title), kind, start=start)
         return self.nodes[key]
 
     def edge(self, source: str, target: str, kind: str, label: str = "", where: str = "") -> None:
-        """Add a reason to go from a node to another, or out of the picture.
+        """Add an edge with a label, or the label to an existing edge.
 
         Raises:
-            UsageError: there are more arrows than any picture can show.
+            UsageError: there are too many edges.
         """
         where, label = clean(where), clean(label)
         edge = self._known.get((source, target, kind, where))
@@ -109,7 +109,7 @@ class Graph:
                 edge.labels[-1] = "and more"
 
     def drop(self, edge: Edge) -> None:
-        """Take an edge out again."""
+        """Remove an edge."""
         del self._known[edge.source, edge.target, edge.kind, edge.where]
         self._out[edge.source].remove(edge)
 
@@ -127,17 +127,17 @@ class Graph:
 
 
 def clean(text: object) -> str:
-    """One line of text that every format can hold, not without end."""
+    """One line of text of limited length that every format can hold."""
     return short(visible(" ".join(str(text)[: 4 * LONGEST].split())), LONGEST)
 
 
 def short(text: str, letters: int) -> str:
-    """A text cut to some letters."""
+    """A text, cut if longer."""
     return text if len(text) <= letters else text[: letters - 1].rstrip() + "…"
 
 
 def reach(graph: Graph, starts: Iterable[str], kinds: tuple[str, ...] = INWARD) -> set[str]:
-    """All nodes to which edges of some kinds lead from others, those included."""
+    """All nodes reachable by edges of some kinds, including the start nodes."""
     found = {key for key in starts if key in graph.nodes}
     open_ends = list(found)
     while open_ends:
@@ -149,7 +149,7 @@ def reach(graph: Graph, starts: Iterable[str], kinds: tuple[str, ...] = INWARD) 
 
 
 def settle(graph: Graph, everywhere: dict[str, list[str]]) -> None:
-    """Find what no way leads to, and where returns lead.
+    """Mark unreachable nodes, and add the edges of returns.
 
     Args:
         graph: the states of an application.
@@ -174,20 +174,25 @@ def settle(graph: Graph, everywhere: dict[str, list[str]]) -> None:
 
 
 def _returns(graph: Graph) -> None:
-    """Say to which states a return leads: those that have called a state that leads there."""
-    callers: dict[str, list[str]] = {}
+    """Add edges to the states to which returns lead: those that have called the returning one."""
+    callers = _callers(graph)
+    returns = [edge for edge in graph.edges if edge.kind == "return" and edge.source in callers]
+    for edge in returns:
+        for key in callers[edge.source]:
+            for label in edge.labels or [""]:
+                graph.edge(edge.source, key, "back", label)
+        graph.drop(edge)
+
+
+def _callers(graph: Graph) -> dict[str, list[str]]:
+    """For each state that calls lead to, the calling states."""
     calls: dict[str, list[str]] = {}
     for edge in graph.edges:
         if edge.kind == "call":
             calls.setdefault(edge.target, []).append(edge.source)
+    callers: dict[str, list[str]] = {}
     for target, sources in calls.items():
         for key in reach(graph, [target], ("go", "guess")):
             held = callers.setdefault(key, [])
             held += [source for source in sources if source not in held]
-    for edge in graph.edges:
-        if edge.kind == "return":
-            for key in callers.get(edge.source, []):
-                for label in edge.labels or [""]:
-                    graph.edge(edge.source, key, "back", label)
-            if edge.source in callers:
-                graph.drop(edge)
+    return callers

@@ -1,4 +1,4 @@
-"""What a transcript shows as a picture: the trees of Atomic Behaviors, and the streams' history."""
+"""Pictures of a transcript: the trees of Atomic Behaviors, and the streams' history."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from prima.graph.model import Graph, Node, clean
 from prima.transcript.colours import NOBODY, colours
 from prima.transcript.record import Entry
+from prima.transcript.row import describe
 from prima.transcript.run import Run
 from prima.transcript.run import until as run_until
 from prima.transcript.spans import Behavior, Piece, Stream, base
-from prima.transcript.table import describe
 
 NEVER = float("inf")
 
@@ -20,12 +20,12 @@ NEVER = float("inf")
 
 
 def trees(run: Run, until: float = NEVER) -> Graph:
-    """The Atomic Behaviors with their parents, one group for each stream.
+    """The Atomic Behaviors with their parents, grouped by stream.
 
     Args:
         run: the run.
-        until: a time in seconds: what is in working memory when all that happens then is
-            done. Without it, all that there was in the run.
+        until: a time in seconds: show working memory after that instant; by default show all
+            ABs of the run.
     """
     whole = until == NEVER
     title = "Atomic Behaviors of the run" if whole else f"Working memory at {until:.2f} s"
@@ -41,13 +41,17 @@ def trees(run: Run, until: float = NEVER) -> Graph:
     for one in kept:
         _node(graph, one, _state(one, asked, parents[one.name]), colour, whole)
     for one in kept:
-        for parent in parents[one.name]:
-            if parent in graph.nodes:
-                graph.edge(parent, one.name, "child")
-        unit = base(one.asked.unit)
-        if unit in graph.nodes and not any(name in graph.nodes for name in parents[one.name]):
-            graph.edge(unit, one.name, "call")
+        _edges(graph, one, [name for name in parents[one.name] if name in graph.nodes])
     return graph
+
+
+def _edges(graph: Graph, one: Behavior, parents: list[str]) -> None:
+    """Draw the arrows to an AB: from its parents, or else from its unit."""
+    for parent in parents:
+        graph.edge(parent, one.name, "child")
+    unit = base(one.asked.unit)
+    if unit in graph.nodes and not parents:
+        graph.edge(unit, one.name, "call")
 
 
 def _node(graph: Graph, one: Behavior, state: str, colour: Mapping[str, int], whole: bool) -> None:
@@ -63,7 +67,7 @@ def _node(graph: Graph, one: Behavior, state: str, colour: Mapping[str, int], wh
 
 
 def _state(one: Behavior, asked: Mapping[str, Behavior], parents: list[str]) -> str:
-    """How an AB is: one that waits is linked while a parent has not ended."""
+    """The state of an AB; a waiting one is linked while a parent has not ended."""
     if one.state != "waiting":
         return one.state
     held = [asked[parent].state for parent in parents if parent in asked]
@@ -97,7 +101,7 @@ def _marks(request: Entry, node: Node) -> list[str]:
 
 
 def in_words(piece: Piece) -> str:
-    """What a piece of a stream is, in words."""
+    """A piece of a stream, in words."""
     by = f" by {piece.by}" if piece.by else ""
     rule = f" ({piece.rule})" if piece.rule else ""
     return {"runs": "active", "away": "suspended", "broken": "broken"}[piece.kind] + by + rule

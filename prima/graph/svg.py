@@ -1,4 +1,4 @@
-"""SVG without any program: text that is measured before it is written, boxes, lines."""
+"""SVG: text of known width, boxes, lines."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ STYLE = STYLE.replace("/* applications in the dark */", applications(dark=True))
 
 
 def measure(text: str, size: float = SIZE, bold: bool = False) -> float:
-    """How wide a text is at the most, in pixels; real fonts make it a little narrower."""
+    """Maximum width of a text in pixels; real fonts are a little narrower."""
     ems = 0.0
     for letter in text:
         if unicodedata.combining(letter):
@@ -110,7 +110,7 @@ def fit(text: str, width: float, size: float = SIZE, bold: bool = False) -> str:
 
 
 def wrap(text: str, width: float, lines: int, size: float = SIZE) -> list[str]:
-    """A text in lines of a width, at most so many; the last is cut where it is too long."""
+    """A text wrapped to a width and a number of lines; the last is cut if too long."""
     found: list[str] = []
     rest = text.strip()
     while rest and len(found) < lines - 1 and measure(rest, size) > width:
@@ -153,7 +153,7 @@ def head(x: float, y: float, kind: str, turn: str) -> str:
 
 
 def picture(title: str, told: str, width: float, height: float, parts: list[str]) -> str:
-    """A whole picture, with a name and a description for who cannot see it."""
+    """A whole picture, with a title and a description for accessibility."""
     begin = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
         f' width="{width:.0f}" height="{height:.0f}" role="img" aria-labelledby="title told">'

@@ -11,19 +11,19 @@ from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 
 MEANS = re.compile(r"[^\w ,?!'/=]|_")
-"""What may mean something in Mermaid, and is written by its number."""
+"""Characters that may be syntax in Mermaid, and are escaped."""
 DATES = "YYYY-MM-DD HH:mm:ss.SSS"
 DASHED = ("call", "back", "guess", "stay")
 
 
 def lines(node: Node) -> list[str]:
-    """A node's words, a line each."""
+    """The lines of a node's text."""
     marks = [", ".join(node.marks)] if node.marks else []
     return [node.title, *marks, *node.notes]
 
 
 def ends(graph: Graph) -> dict[tuple[str, str], Edge]:
-    """What is outside of a picture and has to be a node there, by its kind and name."""
+    """Targets outside the application, which need a node, by kind and name."""
     found: dict[tuple[str, str], Edge] = {}
     for edge in graph.edges:
         if edge.kind not in INWARD:
@@ -43,7 +43,7 @@ def groups(graph: Graph) -> dict[str, list[Node]]:
 
 
 def quote(text: str) -> str:
-    """A text as DOT has it; lines stay lines."""
+    """A text quoted for DOT, with its line breaks."""
     text = text.replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')
     return '"' + text.replace("\n", "\\n") + '"'
 
@@ -111,7 +111,7 @@ def _edge_lines(edge: Edge) -> list[str]:
 
 
 def dot_streams(history: History) -> str:
-    """The streams' history in DOT: each a chain of what it was."""
+    """The streams' history in DOT: a chain of pieces for each."""
     made = [
         "digraph prima {",
         f"  graph [label={quote(history.title)}, labelloc=t, rankdir=LR];",
@@ -134,7 +134,7 @@ def dot_streams(history: History) -> str:
 
 
 def entity(text: str) -> str:
-    """A text as Mermaid has it: what could mean something there is written by its number."""
+    """A text escaped for Mermaid."""
     return MEANS.sub(lambda match: f"#{ord(match[0])};", text)
 
 
@@ -175,7 +175,7 @@ def _shape(node: Node) -> str:
 
 
 def _classes(graph: Graph, number: dict[str, str]) -> list[str]:
-    """What is dimmed, dashed or filled."""
+    """Styles: dimmed, dashed or filled."""
     held: dict[str, list[str]] = {}
     for key, node in graph.nodes.items():
         if not node.reached:
@@ -211,7 +211,7 @@ def mermaid_streams(history: History) -> str:
 
 
 def _date(seconds: float) -> str:
-    """A time of the run as one of a day, which looks the same in every time zone."""
+    """A time of the run as a time of day, the same in every time zone."""
     ms = round(seconds * 1000)
     clock = f"{ms // 3_600_000 % 24:02}:{ms // 60_000 % 60:02}:{ms // 1000 % 60:02}.{ms % 1000:03}"
     return f"2000-01-{1 + min(ms // 86_400_000, 30):02} {clock}"

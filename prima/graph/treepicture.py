@@ -12,7 +12,7 @@ WIDTH, PAD = 190.0, 8.0
 GAP, STEP = 16.0, 26.0
 MARGIN = 18.0
 PAGE = 1240.0
-"""How wide a row of streams becomes before the next row begins."""
+"""Width of a row of streams before the next row begins."""
 KINDS = (
     ("running", "runs or has run"),
     ("waiting", "waits"),
@@ -45,7 +45,7 @@ def draw(graph: Graph) -> str:
 
 
 def _legend(y: float) -> tuple[list[str], float]:
-    """What boxes' fillings mean, and how far to the right that reaches."""
+    """A legend for the boxes' fillings, and its right edge."""
     parts, x = [], MARGIN
     for kind, words in KINDS:
         parts += [box(x, y - 10, 20, 12, f"s1 {kind}", 3), text(x + 26, y, words, "small")]

@@ -7,10 +7,7 @@ from collections.abc import Iterable, Iterator
 from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError
-from prima.graph.model import Graph, clean, settle
-from prima.graph.model import Node as Box
-from prima.graph.thrown import Taker, Throws, chosen
-from prima.graph.words import (
+from prima.graph.labels import (
     ASKED,
     condition,
     handled,
@@ -20,6 +17,9 @@ from prima.graph.words import (
     quoted,
     sayings,
 )
+from prima.graph.model import Graph, clean, settle
+from prima.graph.model import Node as Box
+from prima.graph.throws import Taker, Throws, chosen
 from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
@@ -28,16 +28,16 @@ from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100
-"""Documents of one application that are read."""
+"""Maximum number of documents of one application."""
 ASKING = ("field", "initial", "record", "menu")
 ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
 GOING_ON = (*sorted(ASKED), "cancel", "maxspeechtimeout")
-"""Events after which the dialog goes on where no handler takes them (5.2.5)."""
+"""Events after which the dialog goes on if no handler takes them (5.2.5)."""
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 
 
 def states(document: VoiceDocument) -> Graph:
-    """The dialogs of an application and what leads from one to another."""
+    """The dialogs of an application and the transitions between them."""
     return _Reader(document).graph
 
 
@@ -52,10 +52,14 @@ class _Reader:
         self.here = ""
         self.hints: dict[str, list[str]] = {}
         self.scopes: list[Node] = []
-        """What may hold handlers of what is thrown, innermost first."""
+        """Elements that may have handlers of a thrown event, innermost first."""
         self.throws = Throws()
-        everywhere: dict[str, list[str]] = {}
         self._declare(self.first)
+        self._read_pages()
+        settle(self.graph, self._everywhere_of())
+
+    def _read_pages(self) -> None:
+        """Read all documents that the first one leads to."""
         done: set[str] = set()
         while waiting := [page for page in self.pages.values() if page and page.uri not in done]:
             for page in waiting:
@@ -67,19 +71,20 @@ class _Reader:
                 for name, dialog in page.dialogs.items():
                     self._dialog(name, dialog)
                 self._everywhere()
-        for page in [page for page in self.pages.values() if page]:
-            own = [self._key(page, name) for name in page.dialogs]
-            leaves = [
-                self._key(other, name)
-                for other in self.pages.values()
-                if other and other.application == page.uri
-                for name in other.dialogs
+
+    def _everywhere_of(self) -> dict[str, list[str]]:
+        """The dialogs, also of leaf documents, in which each document's handlers are active."""
+        pages = [page for page in self.pages.values() if page]
+        found: dict[str, list[str]] = {}
+        for page in pages:
+            leaves = [other for other in pages if other.application == page.uri]
+            found[f"{page.uri}#:any"] = [
+                self._key(one, name) for one in (page, *leaves) for name in one.dialogs
             ]
-            everywhere[f"{page.uri}#:any"] = own + leaves
-        settle(self.graph, everywhere)
+        return found
 
     def _declare(self, page: Page) -> None:
-        """Boxes for all dialogs of a document, in document order."""
+        """Add boxes for all dialogs of a document, in document order."""
         for name, dialog in page.dialogs.items():
             title = name if not name.startswith("#") else f"{dialog.tag} {name[1:]}"
             title = title if page is self.first else f"{page.uri}#{title}"
@@ -91,7 +96,7 @@ class _Reader:
         return f"{page.uri}#{name}"
 
     def _open(self, uri: str) -> Page | None:
-        """A document of the application's folder, read once; none if there is none to read."""
+        """A document of the application's folder, read once; None if it cannot be read."""
         if uri not in self.pages:
             self.pages[uri] = None
             if len(self.pages) <= MOST_PAGES:
@@ -106,31 +111,22 @@ class _Reader:
     # Dialogs --------------------------------------------------------------------------------
 
     def _describe(self, box: Box, dialog: Node) -> None:
-        """What is special about a dialog, and what it asks or says."""
+        """Describe a dialog: its marks, and what it asks or says."""
         parts = parts_of(dialog)
         asking = [one for one in (dialog, *parts) if one.tag in ASKING]
         leaving = [one for one in dialog.walk() if _leaves(one)]
-        tags = {one.tag for one in parts}
-        marks = {
-            "asks": bool(asking),
-            "unit": any(is_unit(one) for one in dialog.walk()),
-            "records": "record" in tags,
-            "calls somebody": "transfer" in tags,
-            "leaves the user": bool(leaving),
-        }
-        box.marks = [mark for mark, there in marks.items() if there]
-        questions = [(one, _asked(one)) for one in asking]
-        told = [f"asks {quoted(text)}" for _, text in questions if text]
-        box.notes = told[:3]
-        if len(told) > 3:
-            box.notes.append(f"and {len(told) - 3} more")
+        box.marks = _marks(dialog, parts, bool(asking), bool(leaving))
+        questions = [text for one in asking if (text := _asked(one))]
+        box.notes = [f"asks {quoted(text)}" for text in questions[:3]]
+        if len(questions) > 3:
+            box.notes.append(f"and {len(questions) - 3} more")
         if not asking:
             said = [text for one in parts if one.tag == "block" and (text := _said(one))]
             box.notes += [f"says {quoted(said[0])}"] if said else []
         box.notes += [clean(TABLE_4_2[one.tag].title) for one in leaving[:1]]
 
     def _dialog(self, name: str, dialog: Node) -> None:
-        """Note all that leads out of a dialog."""
+        """Add all transitions of a dialog."""
         self.here = self._key(self.page, name)
         self._links(dialog.all("link"))
         if dialog.tag == "menu":
@@ -188,7 +184,7 @@ class _Reader:
             self._led(choice, f"{told} or key {clean(own)}" if own else told)
 
     def _everywhere(self) -> None:
-        """What a document handles and listens for in all its dialogs, or in its leaves' too."""
+        """Add handlers and links that are active in all dialogs of a document and its leaves."""
         page = self.page
         self.here = f"{page.uri}#:any"
         self.scopes = self._outer()
@@ -215,7 +211,7 @@ class _Reader:
             self._led(link, " or ".join(([f"said {said}"] if said else []) + keys) or "link")
 
     def _led(self, node: Node, told: str) -> None:
-        """A link or choice: to a document or dialog; one that throws shows at its handlers."""
+        """Add the transition of a link or choice; one that throws shows at its handlers."""
         if node.attributes.keys() & {"next", "expr"}:
             self._target(node, "next", "expr", "go", told)
 
@@ -233,7 +229,7 @@ class _Reader:
         return [self.page.root, *([root.root] if root else [])]
 
     def _throw(self, event: str, told: str) -> None:
-        """Note where the handlers lead that take what is thrown; a computed event is not known."""
+        """Add the transitions of handlers that take a thrown event, unless it is computed."""
         with self.throws.following(event) as followed:
             if not event or not followed:
                 return
@@ -268,7 +264,7 @@ class _Reader:
     def _content(
         self, node: Node, base: str, conditions: list[str], name: str = "", truth: bool = False
     ) -> bool:
-        """Note all ways out of executable content; whether nothing behind it is reached."""
+        """Add all transitions of executable content; return whether it never reaches its end."""
         return self._acts(node.nodes, base, conditions, name, truth)
 
     def _acts(
@@ -321,7 +317,7 @@ class _Reader:
         return all(ends) and complete, [otherwise(told)] if any(ends) and not complete else []
 
     def _target(self, node: Node, plain: str, computed: str, kind: str, told: str) -> None:
-        """An edge to where an element leads."""
+        """Add an edge to an element's target."""
         code = node.get(computed)
         if code:
             for name in literals(code, [*self.page.dialogs, *(f"#{d}" for d in self.page.dialogs)]):
@@ -343,8 +339,21 @@ class _Reader:
             self.graph.edge(self.here, self._key(page, dialog or ""), kind, told)
 
 
+def _marks(dialog: Node, parts: list[Node], asks: bool, leaves: bool) -> list[str]:
+    """The special properties of a dialog, each in one or two words."""
+    tags = {one.tag for one in parts}
+    marks = {
+        "asks": asks,
+        "unit": any(is_unit(one) for one in dialog.walk()),
+        "records": "record" in tags,
+        "calls somebody": "transfer" in tags,
+        "leaves the user": leaves,
+    }
+    return [mark for mark, applies in marks.items() if applies]
+
+
 def _divided(node: Node) -> Iterator[tuple[str | None, list[Node]]]:
-    """An ``if``'s parts, each with its condition; that of ``else`` is none."""
+    """The parts of an ``if`` with their conditions; ``else`` has none."""
     cond: str | None = node.get("cond")
     part: list[Node] = []
     for child in node.nodes:
@@ -364,13 +373,13 @@ def _events(handler: Node) -> list[str]:
 
 
 def _count(handler: Node) -> int:
-    """From which time on a handler takes its events."""
+    """The occurrence from which a handler takes its events."""
     count = handler.get("count", "1")
     return int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
 
 
 def _stays(handler: Node, events: list[str]) -> bool:
-    """Whether a handler does something and leaves the dialog as it is."""
+    """Whether a handler does something without a transition."""
     ways = {"goto", "submit", "exit", "return", "disconnect", "throw"}
     empty = not handler.nodes and not handler.text
     return not (empty or ASKED.issuperset(events) or any(one.tag in ways for one in handler.walk()))
@@ -383,7 +392,7 @@ def _leaves(node: Node) -> bool:
 
 
 def _leaves_at_its_end(form: Node) -> bool:
-    """Whether a form is left before its items are through; else the application ends (2.1.6)."""
+    """Whether a form is left before its items end; otherwise the application ends (2.1.6)."""
     units = {id(one): node for node in form.nodes if is_unit(node) for one in node.nodes}
     for item in [one for one in parts_of(form) if one.tag in ITEMS]:
         around = units.get(id(item))
@@ -396,7 +405,7 @@ def _leaves_at_its_end(form: Node) -> bool:
 
 
 def _never_ends(acts: list[Node]) -> bool:
-    """Whether content leaves its dialog in each case."""
+    """Whether content always leaves its dialog."""
     for act in acts:
         if act.tag in ("submit", "exit", "return", "disconnect", "throw", "goto"):
             return not act.attributes.keys() & {"nextitem", "expritem"}
@@ -408,7 +417,7 @@ def _never_ends(acts: list[Node]) -> bool:
 
 
 def _hints(page: Page) -> dict[str, list[str]]:
-    """What is known of where events come from: links and choices that throw them."""
+    """The known sources of events: links and choices that throw them."""
     found: dict[str, list[str]] = {}
     for node in page.root.walk():
         event = node.get("event")
@@ -421,7 +430,7 @@ def _hints(page: Page) -> dict[str, list[str]]:
 
 
 def _asked(node: Node) -> str:
-    """What a dialog or item asks first."""
+    """The first question of a dialog or item."""
     prompts = [one for one in node.all("prompt") if one.get("count", "1") == "1"]
     text = _said(prompts[0]) if prompts else ""
     return text or (node.text if node.tag in ("menu", "field") else "")

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 MARGIN, TOP = 24.0, 54.0
 WIDE, HIGH = 900.0, 640.0
-"""The most pixels of a map."""
+"""Maximum size of a map (pixels)."""
 MOST_SCALE = 90.0
-"""Pixels of a metre at the most."""
+"""Maximum pixels per metre."""
 LEAST = 300.0
 MOST_STEPS = 1000
-"""Points of a line that labels keep away from."""
+"""Points of a line that labels avoid."""
 BAR = 15.0
-"""How high a label is, in pixels."""
+"""Height of a label (pixels)."""
 LEGEND = (
     ("place", "place"),
     ("way", "way"),
@@ -42,7 +42,7 @@ def shades(world: Map) -> dict[str, int]:
 
 
 class _Sheet:
-    """Where a world's metres are on the page."""
+    """Converts a world's metres to places on the page."""
 
     def __init__(self, world: Map) -> None:
         points = [*world.places.values(), *world.things.values()]
@@ -60,7 +60,7 @@ class _Sheet:
         self._taken: list[tuple[float, float, float, float]] = []
         """Where marks and labels are."""
         self._crossed: list[tuple[float, float]] = []
-        """Points of lines that a label had better not lie on."""
+        """Points of lines that labels should avoid."""
 
     def at(self, point: Point) -> Point:
         """A place on the page."""
@@ -68,12 +68,12 @@ class _Sheet:
         return MARGIN + (x - self.left) * self.scale, TOP + (self.top - y) * self.scale
 
     def keep(self, point: Point, half: float) -> None:
-        """Let no label lie on a mark."""
+        """Keep labels away from a mark."""
         x, y = self.at(point)
         self._taken.append((x - half, y - half, x + half, y + half))
 
     def keep_line(self, a: Point, b: Point) -> None:
-        """Let no label lie on a line, where it has another place."""
+        """Keep labels away from a line, if possible."""
         (x1, y1), (x2, y2) = self.at(a), self.at(b)
         steps = min(int(dist((x1, y1), (x2, y2)) / 6) + 1, MOST_STEPS)
         for step in range(steps + 1):
@@ -81,7 +81,7 @@ class _Sheet:
             self._crossed.append((x1 + (x2 - x1) * share, y1 + (y2 - y1) * share))
 
     def label(self, point: Point, name: str, kind: str = "") -> str:
-        """A name beside a point, where no other one is, as far as there is such a place."""
+        """A name beside a point, at a free place if there is one."""
         name = fit(clean(name), 200)
         x, y = self.at(point)
         wide = measure(name, *((13, True) if kind == "name" else ()))
@@ -98,7 +98,7 @@ class _Sheet:
         return text(*beside[best], name, kind)
 
     def _covered(self, one: tuple[float, float, float, float]) -> int:
-        """How much a label would touch: other labels, the page's edge and, worth less, lines."""
+        """The cost of a label's place: overlaps with labels, the page's edge and, less, lines."""
         left, top, right, bottom = one
         others = sum(
             left < x2 and x1 < right and top < y2 and y1 < bottom for x1, y1, x2, y2 in self._taken
@@ -155,7 +155,7 @@ def _round(x: float, y: float, radius: float, kind: str) -> str:
 
 
 def _ruler(sheet: _Sheet) -> list[str]:
-    """How long a metre is, or ten, or a hundred."""
+    """A scale bar of one, ten or a hundred metres."""
     metres = next((one for one in (1, 2, 5, 10, 20, 50, 100) if one * sheet.scale >= 30), 1000)
     x, end = MARGIN, MARGIN + metres * sheet.scale
     ends = [line(one, 36, one, 44) for one in (x, end)]
@@ -163,7 +163,7 @@ def _ruler(sheet: _Sheet) -> list[str]:
 
 
 def _legend(world: Map, y: float) -> list[str]:
-    """What the marks mean, of those that are there."""
+    """A legend for the marks that occur."""
     held = {
         "place": world.places,
         "way": world.ways,
@@ -190,7 +190,7 @@ def _legend(world: Map, y: float) -> list[str]:
 
 
 def told(world: Map) -> str:
-    """The map in sentences, for who cannot see it."""
+    """The map as text, for accessibility."""
     spots = [f"{name} at {x:g}, {y:g}" for name, (x, y) in list(world.places.items())[:40]]
     things = [f"{name} at {x:g}, {y:g}" for name, (x, y) in list(world.things.items())[:40]]
     ways = [f"{a} to {b}" for a, b in world.ways[:60]]
@@ -206,7 +206,7 @@ def told(world: Map) -> str:
 
 
 def dot(world: Map) -> str:
-    """Places and ways in DOT, each place where it is (``neato -n``)."""
+    """Places and ways in DOT, with positions (``neato -n``)."""
     number = {name: f"n{index}" for index, name in enumerate(world.places, 1)}
     made = [
         "graph prima {",
@@ -220,7 +220,7 @@ def dot(world: Map) -> str:
 
 
 def mermaid(world: Map) -> str:
-    """Places and ways in Mermaid; it knows no places on a page."""
+    """Places and ways in Mermaid, which has no positions."""
     number = {name: f"n{index}" for index, name in enumerate(world.places, 1)}
     made = ["---", f"title: {json.dumps(clean(f'The map of {world.id}'))}", "---", "flowchart LR"]
     made += [f'  {number[name]}["{words.entity(clean(name))}"]' for name in world.places]

@@ -17,9 +17,10 @@ from typing import Any
 from prima import api
 from prima.errors import UsageError, did_you_mean
 from prima.report import strip
+from prima.transcript.row import Row
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import Row, format_rows
+from prima.transcript.table import format_rows
 
 PAGE = "mediation.md"
 HEADING = re.compile(r"^## (?P<title>.+)$")
@@ -29,17 +30,17 @@ POLICY = re.compile(r"^\| `(?P<name>[a-z]+)`.* \| (?P<text>.+) \|$")
 LINK = re.compile(r"\[([^\]]+)\]\([^)]+\)")
 DECIDED = "*Decided.* "
 AROUND = 3
-"""Rows that are shown before and after the one to look at."""
+"""Rows shown before and after the important one."""
 LINE_END = "\n"
 BEFORE, AFTER = 3.0, 7.0
-"""Seconds of the picture before and after that row."""
+"""Seconds shown in the picture before and after that row."""
 WHOLE = 12.0
 """A run no longer than this (s) is shown whole."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule: its name, the section of the page, its sentences without marks, and in brief."""
+    """A rule: name, section of the page, text without markup, and summary."""
 
     name: str
     section: str
@@ -51,9 +52,8 @@ class Rule:
 class Example:
     """A run that shows a rule.
 
-    ``scenario`` is a path within the documents that come with PRIMA; ``look`` says what to
-    see there. ``row`` is a part of the row to look at; without, it is the first that the rule
-    put there.
+    ``scenario`` is a path in the documents that come with PRIMA; ``look`` says what to see.
+    ``row`` is a part of the important row; by default the first row that the rule selected.
     """
 
     scenario: str
@@ -249,11 +249,11 @@ EXAMPLES: dict[str, Example] = {
     "fixed": Example(TOUR, "hello was declared first, and always goes first.", "Yes, fr", "fixed"),
     "none": Example(TOUR, "The two speak at once.", "loses", "none"),
 }
-"""Each rule's example."""
+"""The example of each rule."""
 
 
 def page() -> Path:
-    """The page of the documentation that has the rules; it comes with the package."""
+    """The page of the documentation with the rules, which is in the package."""
     inside = Path(__file__).parent.parent / PAGE
     return inside if inside.is_file() else Path(__file__).parent.parent.parent / "docs" / PAGE
 
@@ -283,7 +283,7 @@ def rules() -> dict[str, Rule]:
 
 
 def _rule(name: str, section: str, text: str) -> Rule:
-    """A rule of the page; where it says that the thesis does not have it, so does the section."""
+    """A rule of the page; its section says whether it is in the thesis."""
     own = _plain(text.removeprefix(DECIDED))
     section = f"{section}, decided" if text.startswith(DECIDED) else section
     return Rule(name, section, own, _brief(own))
@@ -295,17 +295,17 @@ def _brief(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """A line of the page without its marks."""
+    """A line of the page without markup."""
     return LINK.sub(r"\1", text).replace("**", "").replace("*", "").replace("`", "")
 
 
 def named(word: str) -> str:
-    """A rule's name as the page writes it; empty where there is no such rule."""
+    """A rule's name as written on the page; empty if there is no such rule."""
     return next((name for name in rules() if name.lower() == word.lower()), "")
 
 
 def suggestion(word: str) -> str:
-    """Which rules there are for a word that looks like a rule's name; empty if it does not."""
+    """A list of rules for a word that looks like a rule's name; otherwise empty."""
     if not re.fullmatch(r"[A-Za-z]\d+[a-z]?", word):
         return ""
     alike = [name for name in rules() if name[0] == word[0].upper() and name[1:2].isdigit()]
@@ -314,7 +314,7 @@ def suggestion(word: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """An example's run: the rows around the one to look at, its number, and a picture."""
+    """An example's run: the rows around the important one, its number, and a picture."""
 
     rows: list[Row]
     number: int
@@ -322,10 +322,10 @@ class Shown:
 
 
 def run_of(name: str, columns: int = 80) -> Shown:
-    """Run a rule's example, and find where it shows the rule.
+    """Run a rule's example, and find the row that shows the rule.
 
     Raises:
-        UsageError: there is no such rule, or the run does not show it.
+        UsageError: the rule is unknown, or the run does not show it.
     """
     example = _example(name)
     made = api.rehearse(api.documents_folder() / example.scenario, example.policy or None)
@@ -346,7 +346,7 @@ def _example(name: str) -> Example:
 
 
 def _looked_at(name: str, example: Example, rows: list[Row], run: Run) -> int:
-    """The number of the row to look at."""
+    """The number of the important row."""
     found = (row.number for row in rows if example.row in row.what)
     number = next(found if example.row else _decided(name, rows, run), None)
     if number is None:
@@ -355,7 +355,7 @@ def _looked_at(name: str, example: Example, rows: list[Row], run: Run) -> int:
 
 
 def _decided(name: str, rows: list[Row], run: Run) -> Iterator[int]:
-    """The rows of what a rule decided: put there by it, or held back by it before."""
+    """The rows that a rule selected, or that it held back before."""
     yield from (row.number for row in rows if row.rule == name)
     for entry in (one for one in run.entries if one.rule == name):
         behavior = base(entry.behavior or entry.winner)
@@ -365,7 +365,7 @@ def _decided(name: str, rows: list[Row], run: Run) -> Iterator[int]:
 
 
 def commands(name: str) -> list[str]:
-    """The commands that run a rule's example in this folder, one after the other."""
+    """The commands that run a rule's example in this folder."""
     example = _example(name)
     policy = f" --policy {example.policy}" if example.policy else ""
     folder, copied = "documents", f"documents/{example.scenario}"
@@ -379,7 +379,7 @@ def commands(name: str) -> list[str]:
 
 
 def shown(name: str, columns: int = 80) -> str:
-    """A rule as text: its sentences, a picture, rows of the example, and how to run it.
+    """A rule as text: its sentences, a picture, rows of the example, and the command to run it.
 
     Raises:
         UsageError: there is no such rule.
@@ -395,7 +395,7 @@ def shown(name: str, columns: int = 80) -> str:
 
 
 def data(name: str) -> dict[str, Any]:
-    """A rule for a machine to read.
+    """A rule as data for JSON.
 
     Raises:
         UsageError: there is no such rule.

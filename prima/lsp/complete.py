@@ -1,4 +1,4 @@
-"""What may be written at a place of a text."""
+"""Completion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import DEVICES, TABLE_4_2
-from prima.lsp.desk import Desk, Found, Text
+from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.names import dialect
 from prima.lsp.scan import Attr, Page, Tag
@@ -28,13 +28,13 @@ from prima.lsp.tables import (
     roots,
     values,
 )
-from prima.lsp.words import EVENTS, SESSION, VOICEXML_EVENTS
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.lsp.workspace import Found, Text, Workspace
+from prima.markup.vocabulary import Element, Vocabulary
 from prima.scheduler.policy import BASELINES
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 MOST = 500
-"""Proposals of names that are given at once."""
+"""Maximum number of proposals."""
 END_TAG = re.compile(r"</([^\s<>]*)$")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
@@ -53,10 +53,10 @@ SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What may stand in place of a piece of the text.
+    """A proposal that replaces a piece of the text.
 
     ``kind`` is ``element``, ``attribute``, ``value``, ``name``, ``variable``, ``event``,
-    ``file`` or ``text``; in a ``snippet``, ``$1`` and ``$0`` are where one goes on writing.
+    ``file`` or ``text``; in a ``snippet``, ``$1`` and ``$0`` are tab stops.
     """
 
     label: str
@@ -69,24 +69,26 @@ class Proposal:
     doc: str = ""
 
 
-def complete(desk: Desk, path: Path, offset: int, typed: str = "") -> list[Proposal]:
-    """What may be written at an offset; ``typed`` is the sign that has made the editor ask."""
-    text = desk.text(path)
+def complete(workspace: Workspace, path: Path, offset: int, typed: str = "") -> list[Proposal]:
+    """Proposals at an offset; ``typed`` is the character that triggered the request."""
+    text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return []
-    return list(_Completion(desk, path, text, offset, typed).proposals())[:MOST]
+    return list(_Completion(workspace, path, text, offset, typed).proposals())[:MOST]
 
 
 class _Completion:
-    """One question for what may be written."""
+    """One completion request."""
 
-    def __init__(self, desk: Desk, path: Path, text: Text, offset: int, typed: str) -> None:
-        self.desk, self.path, self.text = desk, path, text
+    def __init__(
+        self, workspace: Workspace, path: Path, text: Text, offset: int, typed: str
+    ) -> None:
+        self.workspace, self.path, self.text = workspace, path, text
         self.page: Page = text.page
         self.offset, self.typed = offset, typed
 
     def proposals(self) -> Iterator[Proposal]:
-        """What fits."""
+        """The proposals that fit the place."""
         tag = self.page.tag_at(self.offset)
         if tag is None:
             return self._content()
@@ -123,7 +125,7 @@ class _Completion:
     def _elements(
         self, parent: Tag | None, start: int, end: int, tag: Tag | None
     ) -> Iterator[Proposal]:
-        """Elements that may stand in another; ``tag`` is what is there of one already."""
+        """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
         begin = "" if tag is not None else "<"
         alone = tag is None or (not tag.attributes and not tag.finished)
         if parent is None:
@@ -162,25 +164,17 @@ class _Completion:
             return
         given = {attr.name for attr in tag.attributes if attr is not now}
         bare = now is None or now.first < 0
-        names: list[tuple[str, Attribute | None, bool]] = [
-            (name, *entry) for name, entry in attributes(element).items()
-        ]
-        if tag.parent is None:
-            names += [(name, None, False) for name in ("xmlns", "xml:lang")]
-        for name, item, expression in names:
+        for name, (item, expression) in attributes(element).items():
             other = name.removesuffix("-expr") if expression else f"{name}-expr"
-            if name in given or (other in given and item is not None and item.dynamic):
+            if name in given or (other in given and item.dynamic):
                 continue
-            yield Proposal(
-                name,
-                "attribute",
-                start,
-                end,
-                f'{name}=""' if bare else name,
-                f'{name}="$1"$0' if bare else "",
-                "required" if item is not None and item.required else "",
-                attribute_text(element, name) if item is not None else "",
-            )
+            detail = "required" if item.required else ""
+            doc = attribute_text(element, name)
+            yield _attribute(name, start, end, bare, detail, doc)
+        if tag.parent is None:
+            for name in ("xmlns", "xml:lang"):
+                if name not in given:
+                    yield _attribute(name, start, end, bare)
 
     # Values -------------------------------------------------------------------
 
@@ -208,7 +202,7 @@ class _Completion:
             yield from self._plain(attr, self._parameters(tag))
 
     def _span(self, attr: Attr, words: bool = False) -> tuple[int, int]:
-        """What of a value a proposal replaces: all of it, or the word at the offset."""
+        """The part of a value that a proposal replaces: all of it, or the word at the offset."""
         start, end = attr.first, attr.last if attr.closed else self.offset
         if words:
             before = self.page.text[start : self.offset]
@@ -236,7 +230,7 @@ class _Completion:
         if use.how in ("#", "uri"):
             file, sign, _ = attr.value.partition("#")
             sign = f"{file}#"
-            target = self.desk.target(self.path, file) if file and use.how == "uri" else None
+            target = self.workspace.target(self.path, file) if file and use.how == "uri" else None
             path = target or self.path
         for found in self._known(path, use.kinds, tag):
             name = found.mark.name
@@ -249,7 +243,7 @@ class _Completion:
                 yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
-        found = self.desk.known(path, kinds)
+        found = self.workspace.known(path, kinds)
         if kinds == ("rule",) and path == self.path:
             grammar = tag.inside("grammar")
             home = grammar.start if grammar else -1
@@ -257,7 +251,7 @@ class _Completion:
         return found
 
     def _events(self, tag: Tag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
-        """Events that may come, or with ``own`` those that this document handles."""
+        """Events that may occur, or with ``own`` those that this document handles."""
         voice = dialect(self.page) == "voicexml"
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
         for kind, begins in (
@@ -265,13 +259,13 @@ class _Completion:
             ("service", ("reply.", "error.service.")),
             ("device", ("error.device.",)),
         ):
-            for found in self.desk.known(self.path, (kind,)):
+            for found in self.workspace.known(self.path, (kind,)):
                 for begin in begins:
                     known.setdefault(begin + found.mark.name, _where(self, found))
         if tag.parent is not None and tag.parent.key in TABLE_4_2:
             for begin in ("end.", "cancel."):
                 known[begin + tag.parent.key] = EVENTS[begin[:-1]]
-        for found in self.desk.known(self.path, ("event",)):
+        for found in self.workspace.known(self.path, ("event",)):
             known.setdefault(found.mark.name, _where(self, found))
         for mark in self.text.marks if own else ():
             if mark.kind == ("event",) and mark.start != attr.first:
@@ -283,7 +277,7 @@ class _Completion:
 
     def _commands(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
         span = self._span(attr)
-        for found in self.desk.known(self.path, ("command",)):
+        for found in self.workspace.known(self.path, ("command",)):
             yield Proposal(
                 found.mark.name, "name", *span, found.mark.name, detail=_where(self, found)
             )
@@ -292,7 +286,7 @@ class _Completion:
                 yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
 
     def _parameters(self, tag: Tag) -> list[str]:
-        """Names that a param may give: arguments of an added Command, variables of a form."""
+        """Names for a param: arguments of an added Command, variables of a form."""
         holder = tag.parent
         if holder is None:
             return []
@@ -301,17 +295,17 @@ class _Completion:
             called = holder.get("src").strip()
             for form in self.page.forms.get(called[1:], ()) if called[:1] == "#" else ():
                 found += [one.get("name") for one in form.children if one.key == "var"]
-        for one in self.desk.known(self.path, ("command",)) if holder.key == "command" else ():
+        for one in self.workspace.known(self.path, ("command",)) if holder.key == "command" else ():
             if one.mark.name == holder.get("type"):
                 arguments = one.mark.tag.children
                 found += [child.get("name") for child in arguments if child.key == "argument"]
         return [name for name in found if name]
 
     def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
-        """Documents of the workspace, as seen from this one."""
+        """Documents of the workspace, as paths relative to this one."""
         span, folder = self._span(attr), self.path.parent
-        for path in self.desk.files():
-            text = self.desk.text(path)
+        for path in self.workspace.files():
+            text = self.workspace.text(path)
             if path == self.path or text is None:
                 continue
             if wanted and dialect(text.top) not in wanted:
@@ -325,7 +319,7 @@ class _Completion:
     # Variables ------------------------------------------------------------------
 
     def _visible(self, tag: Tag) -> dict[str, str]:
-        """Variables that an expression in an element may use, with where they are declared."""
+        """Variables visible to an expression in an element, with their declarations."""
         form = tag.inside("form", "menu")
         home = form.start if form else -1
         found: dict[str, str] = {}
@@ -353,7 +347,8 @@ class _Completion:
             known = self._visible(tag)
         elif of == "sensor":
             known = {
-                one.mark.name: _where(self, one) for one in self.desk.known(self.path, ("reading",))
+                one.mark.name: _where(self, one)
+                for one in self.workspace.known(self.path, ("reading",))
             }
         elif of in MEMBERS:
             known = dict.fromkeys(MEMBERS[of], of)
@@ -363,8 +358,16 @@ class _Completion:
             yield Proposal(name, "variable", start, end, name, detail=detail)
 
 
+def _attribute(
+    name: str, start: int, end: int, bare: bool, detail: str = "", doc: str = ""
+) -> Proposal:
+    """An attribute; ``bare`` if it needs a value."""
+    insert, snippet = (f'{name}=""', f'{name}="$1"$0') if bare else (name, "")
+    return Proposal(name, "attribute", start, end, insert, snippet, detail, doc)
+
+
 def _where(asked: _Completion, found: Found) -> str:
-    """Where a name is given, as one says it to the author."""
+    """Where a name is defined, as text."""
     tag = found.mark.tag
     title = tag.get("title")
     at = "" if found.path == asked.path else f" in {found.path.name}"
@@ -372,7 +375,7 @@ def _where(asked: _Completion, found: Found) -> str:
 
 
 def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
-    """Values that stand in no table."""
+    """Values that are in no table."""
     if key == ("scenario", "scenario", "policy"):
         return ("prima", "prima+all", *BASELINES)
     if key == ("voicexml", "property", "name"):
@@ -381,7 +384,7 @@ def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
 
 
 def _snippet(choice: Choice) -> str:
-    """An element with what it needs, and places to go on at."""
+    """A snippet of an element with its required parts and tab stops."""
     element, place = choice.element, 1
     words = [choice.name]
     for name in _needed(choice.vocabulary, element):
@@ -393,7 +396,7 @@ def _snippet(choice: Choice) -> str:
 
 
 def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
-    """Attributes that an element cannot be without, or most often has."""
+    """Attributes that an element requires, or usually has."""
     needed = [item.name for item in element.attributes if item.required]
     if vocabulary is VOICEXML:
         for line in ALTERNATIVES.get(element.key, ()):
@@ -405,7 +408,7 @@ def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
 
 
 def _opening(choice: Choice) -> str:
-    """A whole new document."""
+    """A snippet of a new document."""
     namespace = choice.vocabulary.namespace
     begin = f'{choice.name} xmlns="{namespace}"'
     if choice.vocabulary is VOICEXML:

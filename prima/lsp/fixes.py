@@ -1,4 +1,4 @@
-"""What can be done at once about a problem: the fixes that it carries, in an open text."""
+"""Quick fixes: the fixes of a problem as changes of an open text."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ def changes(lines: Lines, fix: Fix) -> list[Change]:
 
 
 def fixes(lines: Lines, problem: Problem) -> list[tuple[str, list[Change]]]:
-    """What can be done about a problem: titles, and changes of the text."""
+    """The fixes of a problem: titles, and changes of the text."""
     return [(fix.title, changes(lines, fix)) for fix in problem.fixes]

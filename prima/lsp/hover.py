@@ -1,4 +1,4 @@
-"""What a word of a text means."""
+"""Hover: the meaning of a word in a text."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from pathlib import Path
 
 from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
-from prima.lsp.desk import Desk, Found
+from prima.lsp.descriptions import EVENTS, RULES, SESSION, VOICEXML_EVENTS
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import Page, Tag
 from prima.lsp.tables import about_attribute, attributes
-from prima.lsp.words import EVENTS, RULES, SESSION, VOICEXML_EVENTS
+from prima.lsp.workspace import Found, Workspace
 from prima.markup.vocabulary import Element
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
 WORD = re.compile(r"[\w$.\-]+")
 MOST_LETTERS = 200
-"""Of a line of a document that is shown."""
+"""Maximum length of a line of a document that is shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class Meaning:
     end: int
 
 
-def hover(desk: Desk, path: Path, offset: int) -> Meaning | None:
-    """What the word at an offset means, or None."""
-    text = desk.text(path)
+def hover(workspace: Workspace, path: Path, offset: int) -> Meaning | None:
+    """The meaning of the word at an offset, or None."""
+    text = workspace.text(path)
     if text is None or text.page.aside(offset):
         return None
     page = text.page
@@ -45,7 +45,7 @@ def hover(desk: Desk, path: Path, offset: int) -> Meaning | None:
         return _element(tag, tag.start + 1, tag.name_end)
     mark = mark_at(text.marks, offset)
     if mark is not None:
-        return Meaning(_name(desk, path, mark), mark.start, mark.end)
+        return Meaning(_name(workspace, path, mark), mark.start, mark.end)
     return _attribute(page, tag, offset) if tag is not None else None
 
 
@@ -55,7 +55,7 @@ def _element(tag: Tag | None, start: int, end: int) -> Meaning | None:
 
 
 def element_text(element: Element) -> str:
-    """What an element is, with its source, its rules and its attributes."""
+    """The description of an element: meaning, source, rules and attributes."""
     lines = [f"**`<{element.tag}>`** {element.doc}"]
     if element.source:
         lines.append(f"*{_source(element.source)}*")
@@ -84,7 +84,7 @@ def _attribute(page: Page, tag: Tag, offset: int) -> Meaning | None:
 
 
 def attribute_text(element: Element, name: str) -> str:
-    """What an attribute is: its meaning, kind, default and bounds."""
+    """The description of an attribute: meaning, kind, default and bounds."""
     item, expression = attributes(element).get(name, (None, False))
     if item is None:
         return ""
@@ -111,21 +111,21 @@ def _bound(kind: str, value: float) -> str:
     return f"{value / 1000:g}s" if value >= 1000 else f"{value:g}ms"
 
 
-def _name(desk: Desk, path: Path, mark: Mark) -> str:
-    """A name with where it is declared."""
+def _name(workspace: Workspace, path: Path, mark: Mark) -> str:
+    """A name and its declarations."""
     lines = [f"**{mark.kind[0]} `{mark.name}`**"]
     known = _known(mark)
     if known:
         lines.append(known)
-    given = desk.given(path, mark)
-    lines += [_declaration(desk, path, found) for found in given[:5]]
+    given = workspace.given(path, mark)
+    lines += [_declaration(workspace, path, found) for found in given[:5]]
     if not given and not known:
         lines.append("Nothing here declares it.")
     return "\n\n".join(lines)
 
 
 def _known(mark: Mark) -> str:
-    """What the language itself says of a name."""
+    """The description of a predefined name."""
     if mark.kind == ("variable",):
         return SESSION.get(mark.name, "")
     if mark.kind == ("command",) and mark.name in TABLE_4_2:
@@ -140,8 +140,8 @@ def _known(mark: Mark) -> str:
     return ""
 
 
-def _declaration(desk: Desk, path: Path, found: Found) -> str:
-    text = desk.text(found.path)
+def _declaration(workspace: Workspace, path: Path, found: Found) -> str:
+    text = workspace.text(found.path)
     if text is None:
         return ""
     line, _ = text.page.lines.position(found.mark.start)

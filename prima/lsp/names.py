@@ -1,4 +1,4 @@
-"""Names in a text: where each is given and where it is used."""
+"""Names in a text: definitions and uses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from prima.lsp.scan import Attr, Page, Tag
 from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
 from prima.script.globals import GLOBALS, RESERVED
 from prima.script.names import expression_names, script_names
-from prima.voicexml.vocabulary import VOICEXML
 
 ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
 LETTERS = {"&lt;": "<", "&gt;": ">", "&amp;": "&", "&quot;": '"', "&apos;": "'"}
@@ -20,14 +19,14 @@ OF_DOCUMENT = ("document", "application")
 """Objects whose members are variables of the document."""
 KNOWN = RESERVED | GLOBALS
 LONGEST_CODE = 100_000
-"""Characters of code beyond which its names are not looked for."""
+"""Maximum length of code that is searched for names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A name in a text; ``scope`` is where the form or grammar begins that it is known in.
+    """A name in a text; ``scope`` is the start of the form or grammar in which it is visible.
 
-    ``file`` is a relative file of which the name is, where it is another's.
+    ``file`` is the relative path of another document that defines the name.
     """
 
     kind: tuple[str, ...]
@@ -54,7 +53,7 @@ class Mark:
 
 
 def plain(code: str) -> str:
-    """Code with its references read, each still as long as it was written."""
+    """Code with character references replaced, padded to their written length."""
     return ENTITY.sub(lambda match: LETTERS.get(match[0], " ").ljust(len(match[0])), code)
 
 
@@ -85,13 +84,13 @@ def _of_tag(page: Page, tag: Tag) -> Iterator[Mark]:
 
 
 def _words(attr: Attr, most: int = 1000) -> list[tuple[int, int]]:
-    """Where the words of a value stand."""
+    """The positions of the words of a value."""
     spans = [(attr.first + m.start(), attr.first + m.end()) for m in WORD.finditer(attr.value)]
     return spans[:most]
 
 
 def _home(kind: str, tag: Tag) -> int:
-    """Where the form or grammar begins in which a name is known; -1 for the document."""
+    """The start of the form or grammar in which a name is visible; -1 for the document."""
     if kind == "variable":
         form = tag.inside("form", "menu") if tag.key not in ("form", "menu") else None
         return form.start if form else -1
@@ -147,7 +146,7 @@ def _script(code: str, tag: Tag) -> Iterator[Mark]:
 
 
 def _given(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
-    """What a subdialog gives is a variable of the form that it calls."""
+    """A subdialog's param is a variable of the form that it calls."""
     caller = tag.parent
     if caller is None or caller.key != "subdialog":
         return
@@ -179,10 +178,3 @@ def dialect(page: Page) -> str:
     """The name of a page's vocabulary."""
     root = page.root
     return root.vocabulary.name if root is not None and root.vocabulary else ""
-
-
-def is_voice(tag: Tag) -> bool:
-    """Whether an element is of a VoiceXML document."""
-    while tag.parent is not None:
-        tag = tag.parent
-    return tag.vocabulary is VOICEXML

@@ -1,4 +1,4 @@
-"""Finding what a name means, who uses it, and giving it another name."""
+"""Definitions, references and renaming."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from prima.language.values import read_value
-from prima.lsp.desk import Desk, Found
 from prima.lsp.names import Mark, mark_at
+from prima.lsp.workspace import Found, Workspace
 
 RENAMED = {
     "form": "id",
@@ -19,11 +19,11 @@ RENAMED = {
     "gesture": "id",
     "application": "id",
 }
-"""Names that can be changed everywhere, with the simple type that a new one must be of."""
+"""Kinds of names that can be renamed, with the simple types of new names."""
 
 
-class Refused(Exception):
-    """A new name cannot be given; the message says why."""
+class RenameError(Exception):
+    """A renaming is impossible; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Spot:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A piece of a document and what shall stand there."""
+    """A piece of a document and its replacement."""
 
     path: Path
     start: int
@@ -45,105 +45,107 @@ class Edit:
     text: str
 
 
-def _link_at(desk: Desk, path: Path, offset: int) -> tuple[Path, int, int] | None:
-    return next((one for one in desk.named(path) if one[1] <= offset <= one[2]), None)
+def _link_at(workspace: Workspace, path: Path, offset: int) -> tuple[Path, int, int] | None:
+    return next((one for one in workspace.named(path) if one[1] <= offset <= one[2]), None)
 
 
-def mark_of(desk: Desk, path: Path, offset: int) -> Mark | None:
+def mark_of(workspace: Workspace, path: Path, offset: int) -> Mark | None:
     """The name at an offset."""
-    text = desk.text(path)
+    text = workspace.text(path)
     return mark_at(text.marks, offset) if text is not None else None
 
 
-def definitions(desk: Desk, path: Path, offset: int) -> list[Spot]:
-    """Where what stands at an offset is given its name; the beginning of a file that is named."""
-    mark = mark_of(desk, path, offset)
+def definitions(workspace: Workspace, path: Path, offset: int) -> list[Spot]:
+    """The definitions of the name at an offset, or the beginning of the file named there."""
+    mark = mark_of(workspace, path, offset)
     if mark is not None:
-        given = desk.given(path, mark)
+        given = workspace.given(path, mark)
         if not given and mark.kind == ("event",):
-            given = _begun(desk, path, mark)
+            given = _begun(workspace, path, mark)
         return [Spot(found.path, found.mark.start, found.mark.end) for found in given]
-    link = _link_at(desk, path, offset)
-    if link is not None and desk.text(link[0]) is not None:
+    link = _link_at(workspace, path, offset)
+    if link is not None and workspace.text(link[0]) is not None:
         return [Spot(link[0], 0, 0)]
     return []
 
 
-def _begun(desk: Desk, path: Path, mark: Mark) -> list[Found]:
-    """What raises an event, or gives the name in it: ``touch.head`` is the sensor head's."""
-    known = desk.known(path, ("event",), anywhere=False)
+def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[Found]:
+    """What raises an event, or defines the name in it: ``touch.head`` belongs to a sensor."""
+    known = workspace.known(path, ("event",), anywhere=False)
     found = [one for one in known if one.mark.name.startswith(f"{mark.name}.")]
     begin, _, last = mark.name.rpartition(".")
     kind = {"touch": "sensor", "reply": "service", "error.service": "service"}.get(begin)
     kind = "device" if begin == "error.device" else kind
     if kind and not found:
-        found = [one for one in desk.known(path, (kind,), False) if one.mark.name == last]
+        found = [one for one in workspace.known(path, (kind,), False) if one.mark.name == last]
     return found
 
 
-def references(desk: Desk, path: Path, offset: int, declaration: bool = True) -> list[Spot]:
-    """Where what stands at an offset is named; of a file, in all documents of the workspace."""
-    mark = mark_of(desk, path, offset)
+def references(
+    workspace: Workspace, path: Path, offset: int, declaration: bool = True
+) -> list[Spot]:
+    """All references to the name at an offset; of a file, in the whole workspace."""
+    mark = mark_of(workspace, path, offset)
     if mark is not None:
         return [
             Spot(found.path, found.mark.start, found.mark.end)
-            for found in desk.uses(path, mark)
+            for found in workspace.uses(path, mark)
             if declaration or not found.mark.defines
         ]
-    link = _link_at(desk, path, offset)
+    link = _link_at(workspace, path, offset)
     if link is not None:
-        return [Spot(*one) for one in desk.naming(link[0])]
-    text = desk.text(path)
+        return [Spot(*one) for one in workspace.naming(link[0])]
+    text = workspace.text(path)
     root = text.page.root if text is not None else None
     if root is not None and root.start <= offset <= root.name_end:
-        return [Spot(*one) for one in desk.naming(path)]
+        return [Spot(*one) for one in workspace.naming(path)]
     return []
 
 
-def renamable(desk: Desk, path: Path, offset: int) -> Spot | None:
-    """What of the text at an offset can be given another name."""
-    mark = mark_of(desk, path, offset)
+def renamable(workspace: Workspace, path: Path, offset: int) -> Spot | None:
+    """The piece of text at an offset that can be renamed."""
+    mark = mark_of(workspace, path, offset)
     if mark is not None:
-        given = any(found.mark.defines for found in desk.uses(path, mark))
+        given = any(found.mark.defines for found in workspace.uses(path, mark))
         if given and not RENAMED.keys().isdisjoint(mark.kind):
             return Spot(path, mark.start, mark.end)
         return None
-    link = _link_at(desk, path, offset)
-    if link is not None and desk.text(link[0]) is not None:
+    link = _link_at(workspace, path, offset)
+    if link is not None and workspace.text(link[0]) is not None:
         return Spot(path, link[1], link[2])
     return None
 
 
 def rename(
-    desk: Desk, path: Path, offset: int, new: str
+    workspace: Workspace, path: Path, offset: int, new: str
 ) -> tuple[list[Edit], tuple[Path, Path] | None]:
-    """Give what stands at an offset another name: the edits, and a file to be moved.
+    """Rename the name at an offset: the edits, and a file to move.
 
     Raises:
-        Refused: it cannot be called so.
+        RenameError: the new name is impossible.
     """
-    if renamable(desk, path, offset) is None:
+    if renamable(workspace, path, offset) is None:
         return [], None
-    mark = mark_of(desk, path, offset)
+    mark = mark_of(workspace, path, offset)
     if mark is None:
-        return _move(desk, path, offset, new)
+        return _move(workspace, path, offset, new)
     kind = next(kind for kind in mark.kind if kind in RENAMED)
     try:
         read_value(RENAMED[kind], new)
     except ValueError as error:
-        raise Refused(f'"{new}" {error}') from None
-    uses = desk.uses(path, mark)
-    if new != mark.name and _is_taken(desk, [one for one in uses if one.mark.defines], new):
-        raise Refused(f'There is a {kind} "{new}" already.')
+        raise RenameError(f'"{new}" {error}') from None
+    uses = workspace.uses(path, mark)
+    if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
+        raise RenameError(f'A {kind} "{new}" already exists.')
     edits = [Edit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 
 
-def _is_taken(desk: Desk, given: list[Found], new: str) -> bool:
-    """Whether something else has a name already where one of some definitions stands."""
+def _is_taken(workspace: Workspace, given: list[Found], new: str) -> bool:
+    """Whether a name is already taken where one of some definitions is."""
     places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
     for path in {one.path for one in given}:
-        text = desk.text(path)
+        text = workspace.text(path)
         for one in text.marks if text is not None else ():
             taken = one.defines and one.name == new
             if taken and any((path, one.scope, kind) in places for kind in one.kind):
@@ -152,27 +154,27 @@ def _is_taken(desk: Desk, given: list[Found], new: str) -> bool:
 
 
 def _move(
-    desk: Desk, path: Path, offset: int, new: str
+    workspace: Workspace, path: Path, offset: int, new: str
 ) -> tuple[list[Edit], tuple[Path, Path] | None]:
-    link = _link_at(desk, path, offset)
-    target = desk.target(path, new)
+    link = _link_at(workspace, path, offset)
+    target = workspace.target(path, new)
     if link is None or target is None:
-        raise Refused(f'"{new}" is not a file\'s name.')
+        raise RenameError(f'"{new}" is not a file\'s name.')
     if target == link[0]:
         return [], None
-    if target.exists() or target in desk.open:
-        raise Refused(f'There is a file "{new}" already.')
-    return moved(desk, link[0], target), (link[0], target)
+    if target.exists() or target in workspace.open:
+        raise RenameError(f'A file "{new}" already exists.')
+    return moved(workspace, link[0], target), (link[0], target)
 
 
-def moved(desk: Desk, old: Path, new: Path) -> list[Edit]:
-    """What documents must say once a file is called otherwise or stands elsewhere."""
+def moved(workspace: Workspace, old: Path, new: Path) -> list[Edit]:
+    """The edits of documents that name a file, once it is renamed or moved."""
     edits = []
-    for path, start, end in desk.naming(old):
+    for path, start, end in workspace.naming(old):
         if path != old:
             edits.append(Edit(path, start, end, _relative(new, path.parent)))
     if new.parent != old.parent:
-        for target, start, end in desk.named(old):
+        for target, start, end in workspace.named(old):
             there = old if target == old else target
             edits.append(Edit(old, start, end, _relative(there, new.parent)))
     return edits

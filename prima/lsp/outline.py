@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from prima.lsp.desk import Desk
 from prima.lsp.scan import Page, Tag
+from prima.lsp.workspace import Workspace
 
 NAMING = ("id", "name", "event", "src", "command", "sensor", "type", "item")
 SHOWN = {
@@ -28,12 +28,12 @@ SHOWN = {
     **dict.fromkeys(("application", "service", "device", "adds", "gesture"), "object"),
     **dict.fromkeys(("when", "answer"), "event"),
 }
-"""Elements that a list of a document's parts shows, with what sort of thing each is."""
+"""Elements in the outline, with their kinds of symbols."""
 
 
 @dataclass(slots=True)
 class Part:
-    """An element in the list of a document's parts."""
+    """An element in the outline."""
 
     name: str
     detail: str
@@ -55,7 +55,7 @@ class Link:
 
 
 def outline(page: Page) -> list[Part]:
-    """The parts of a document, inside each other."""
+    """The outline of a document."""
     top: list[Part] = []
     made: dict[int, list[Part]] = {}
     for tag in page.tags:
@@ -88,10 +88,10 @@ def _part(tag: Tag) -> Part:
     )
 
 
-def links(desk: Desk, path: Path) -> list[Link]:
-    """The files that a document names and that are there."""
+def links(workspace: Workspace, path: Path) -> list[Link]:
+    """The existing files that a document names."""
     return [
         Link(start, end, target)
-        for target, start, end in desk.named(path)
-        if target.is_file() or target in desk.open
+        for target, start, end in workspace.named(path)
+        if target.is_file() or target in workspace.open
     ]

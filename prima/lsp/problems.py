@@ -1,4 +1,4 @@
-"""What is wrong with a document while it is written: what ``prima validate`` says of it."""
+"""The problems that ``prima validate`` reports, for documents being written."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, in_order
 from prima.loading.files import in_place_of_files
-from prima.lsp.desk import Desk
 from prima.lsp.scan import Page
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
 from prima.lsp.text import Lines
+from prima.lsp.workspace import Workspace
 
 TAG = re.compile(r"</?[^\s<>/]*")
 WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
@@ -20,7 +20,7 @@ WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """A problem with the piece of text that it is about."""
+    """A problem and its piece of text."""
 
     problem: Problem
     start: int
@@ -28,7 +28,7 @@ class Spot:
 
 
 def is_ours(page: Page) -> bool:
-    """Whether a text is, or is to become, a document of PRIMA's or VoiceXML's."""
+    """Whether a text is, or will be, a document of PRIMA or VoiceXML."""
     root = page.root
     if root is None:
         return False
@@ -41,15 +41,15 @@ def is_ours(page: Page) -> bool:
     )
 
 
-def check(desk: Desk, path: Path) -> dict[Path, list[Problem]]:
-    """All problems that a document brings to light, by the file in which they are.
+def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
+    """All problems found by validating a document, by file.
 
-    The texts of open documents count in place of their files.
+    The texts of open documents replace their files.
     """
-    text = desk.text(path)
+    text = workspace.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with in_place_of_files(desk.unsaved()):
+    with in_place_of_files(workspace.unsaved()):
         try:
             problems = loading.validate([path])
         except DocumentError as error:
@@ -70,7 +70,7 @@ def _resolved(path: Path, file: str) -> Path:
 
 
 def spot(lines: Lines, problem: Problem) -> Spot:
-    """Where a problem begins and ends in a text."""
+    """The extent of a problem in a text."""
     text = lines.text
     start = lines.place(problem.place.line, problem.place.column)
     before, here = text[start - 1 : start], text[start : start + 1]
@@ -90,9 +90,9 @@ def spot(lines: Lines, problem: Problem) -> Spot:
     return Spot(problem, start, end)
 
 
-def spots(desk: Desk, path: Path, problems: list[Problem]) -> list[Spot]:
-    """Problems of a file with the pieces of its text that they are about."""
-    text = desk.text(path)
+def spots(workspace: Workspace, path: Path, problems: list[Problem]) -> list[Spot]:
+    """Problems of a file with their pieces of text."""
+    text = workspace.text(path)
     if text is None:
         return []
     return [spot(text.lines, problem) for problem in in_order(problems)]

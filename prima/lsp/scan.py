@@ -1,4 +1,4 @@
-"""Tags of a text that need not be well-formed: what stands where, while it is being written."""
+"""Finds the tags of a text that is being written and need not be well-formed."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ PIECE = re.compile(
     r"|</(?P<end>[^\s<>/]*)[^<>]*>?|<(?P<start>[^\s<>/\"'=!?]*)",
     re.DOTALL,
 )
-"""A piece of markup; one that does not end goes on to the end of the text."""
+"""A piece of markup; an unfinished one extends to the end of the text."""
 ATTRIBUTE = re.compile(
     r"(?P<name>[^\s=<>/\"']+)(?P<is>\s*=\s*(?:\"(?P<double>[^\"<]*)(?P<d>\"?)"
     r"|'(?P<single>[^'<]*)(?P<s>'?))?)?"
 )
-"""An attribute; its value ends at the quote, or before the next tag where the quote is missing."""
+"""An attribute; its value ends at the quote, or before the next tag if the quote is missing."""
 
 
 @dataclass(slots=True, eq=False)
 class Attr:
-    """An attribute: its name's place, and its value as written with the value's place.
+    """An attribute: the positions of its name and value, and the value as written.
 
-    ``first`` is -1 where there is no value.
+    ``first`` is -1 if there is no value.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Attr:
 
 @dataclass(slots=True, eq=False)
 class Tag:
-    """An element as written: ``start`` to ``end`` is its start tag, to ``until`` all of it."""
+    """An element as written: its start tag is ``start`` to ``end``, all of it to ``until``."""
 
     name: str
     start: int
@@ -54,7 +54,7 @@ class Tag:
     finished: bool = True
     """Whether the start tag has its ``>``."""
     close: tuple[int, int] | None = None
-    """Where the name stands in the end tag."""
+    """The position of the name in the end tag."""
     content: int = -1
     """Where the content ends."""
     until: int = -1
@@ -81,7 +81,7 @@ class Tag:
 
     @property
     def element(self) -> Element | None:
-        """What the tables know of it."""
+        """Its declaration."""
         return self.vocabulary.elements.get(self.key) if self.vocabulary else None
 
     def get(self, name: str) -> str:
@@ -102,7 +102,7 @@ class Tag:
 
 
 class _Open:
-    """Elements that are open, and how many there are of each name."""
+    """The open elements, and the number of each name."""
 
     def __init__(self) -> None:
         self.tags: list[Tag] = []
@@ -127,10 +127,10 @@ class Page:
         self.text = text
         self.lines = lines or Lines(text)
         self.most = most or LIMITS.elements
-        """How many tags are looked at."""
+        """Maximum number of tags."""
         self.tags: list[Tag] = []
         self.ends: list[tuple[int, int, str]] = []
-        """End tags: where each name begins and ends."""
+        """The positions of names in end tags."""
         self.asides: list[tuple[int, int]] = []
         """Comments, instructions and declarations."""
         self._scan()
@@ -184,7 +184,7 @@ class Page:
             tag.content = tag.until = len(text)
 
     def _attributes(self, tag: Tag) -> int:
-        """Read the rest of a start tag; give where to go on."""
+        """Read the rest of a start tag; return where it ends."""
         text, position = self.text, tag.end
         while True:
             while position < len(text) and text[position].isspace():
@@ -210,13 +210,13 @@ class Page:
                 tag.finished = False
                 break
             else:
-                position += 1  # a stray quote, stroke or sign
+                position += 1  # a stray character
         tag.end = tag.until = tag.content = position
         return position
 
     @staticmethod
     def _close(open_: _Open, match: re.Match[str]) -> None:
-        """Close what an end tag closes, and what is open inside it."""
+        """Close an element, and those open inside it."""
         if not open_.names[match["end"]]:
             return
         while True:
@@ -228,19 +228,19 @@ class Page:
             tag.until = match.start()
 
     def tag_at(self, offset: int) -> Tag | None:
-        """The element whose start tag holds an offset behind its ``<``."""
+        """The element whose start tag contains an offset after its ``<``."""
         tag = self.begun(offset - 1)
         if tag is None or not (offset < tag.end or (offset == tag.end and not tag.finished)):
             return None
         return tag
 
     def around(self, offset: int) -> Tag | None:
-        """The innermost element whose content holds an offset."""
+        """The innermost element whose content contains an offset."""
         tag = self.begun(offset)
         while tag is not None and (tag.empty or not tag.end <= offset <= tag.content):
             tag = tag.parent
         return tag
 
     def aside(self, offset: int) -> bool:
-        """Whether an offset stands in a comment or an instruction."""
+        """Whether an offset is in a comment or an instruction."""
         return any(start < offset < end for start, end in self.asides)

@@ -1,4 +1,4 @@
-"""The languages as an editor needs them: which element stands where, and what its names mean."""
+"""Tables of the languages for editors: allowed elements, and the meaning of names."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from prima.devices.vocabulary import ROBOT
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.lsp.scan import Page, Tag
-from prima.lsp.words import VOICEXML_ATTRIBUTES
 from prima.markup.vocabulary import (
     Attribute,
     Element,
@@ -87,7 +87,7 @@ GRAMMAR = Vocabulary(
         ),
     ),
 )
-"""SRGS in XML, as it stands in VoiceXML documents."""
+"""SRGS in XML, as used in VoiceXML documents."""
 
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, VOICEXML, GRAMMAR)
 BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
@@ -95,7 +95,7 @@ BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
 
 
 def resolve(page: Page) -> None:
-    """Give every tag its vocabulary and key, as far as they can be told."""
+    """Set the vocabulary and key of every tag, if they can be determined."""
     for tag in page.tags:
         parent = tag.parent
         tag.namespaces = _namespaces(tag, parent.namespaces if parent else {})
@@ -103,7 +103,7 @@ def resolve(page: Page) -> None:
         if parent is None or parent.vocabulary is None:
             vocabulary = BY_NAMESPACE.get(tag.namespace)
             if vocabulary is None and parent is None and not tag.prefix:
-                vocabulary = BY_ROOT.get(tag.local)  # as somebody begins to write
+                vocabulary = BY_ROOT.get(tag.local)  # no namespace written yet
             tag.vocabulary = vocabulary
             tag.key = vocabulary.root if vocabulary and _is_root(vocabulary, tag) else tag.local
         else:
@@ -124,7 +124,7 @@ def _namespaces(tag: Tag, outer: dict[str, str]) -> dict[str, str]:
 
 
 def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
-    """The vocabulary and key of an element inside another; a misplaced one's are guessed."""
+    """The vocabulary and key of an element in another, guessed for a misplaced one."""
     inner = parent.vocabulary
     assert inner is not None
     if inner is VOICEXML and parent.key == "grammar":
@@ -142,7 +142,7 @@ def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """An element that may stand somewhere: its name as written there, and what it is."""
+    """An element allowed at a place: its name as written there, and its declaration."""
 
     name: str
     element: Element
@@ -150,7 +150,7 @@ class Choice:
 
 
 def children(tag: Tag) -> list[Choice]:
-    """The elements that may stand in an element."""
+    """The elements allowed in an element."""
     element, vocabulary = tag.element, tag.vocabulary
     if element is None or vocabulary is None:
         return []
@@ -174,7 +174,7 @@ def children(tag: Tag) -> list[Choice]:
 
 
 def _in_unit(tag: Tag) -> list[Choice]:
-    """The elements that may stand in a ``p:iu`` around form items of VoiceXML."""
+    """The elements allowed in a ``p:iu`` around form items of VoiceXML."""
     prefix = _prefix(tag, VOICEXML)
     keys = [key for key in VOICEXML.elements if key in UNIT_HOLDS]
     return [Choice(prefix + key, VOICEXML.elements[key], VOICEXML) for key in keys]
@@ -187,7 +187,7 @@ def _prefix(tag: Tag, vocabulary: Vocabulary) -> str:
 
 
 def roots() -> list[Choice]:
-    """The elements with which a document may begin."""
+    """The possible root elements."""
     return [
         Choice(one.elements[one.root].tag, one.elements[one.root], one)
         for one in VOCABULARIES
@@ -196,17 +196,17 @@ def roots() -> list[Choice]:
 
 
 def attributes(element: Element) -> dict[str, tuple[Attribute, bool]]:
-    """An element's attributes as written, with whether each is an expression."""
+    """An element's attributes as written, and whether each is an expression."""
     return attributes_by_name(element)
 
 
 def about_attribute(item: Attribute) -> str:
-    """What an attribute is, in a phrase."""
+    """The description of an attribute."""
     return item.doc or VOICEXML_ATTRIBUTES.get(item.name, "")
 
 
 def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ...]:
-    """The values that an attribute may have, where they are few."""
+    """The possible values of an attribute, if they are few."""
     item, expression = attributes(element).get(name, (None, False))
     if item is None or expression:
         return ()
@@ -242,7 +242,7 @@ def is_code(tag: Tag, name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """What an attribute's value names: the kinds, and how it is written.
+    """The reference in an attribute's value: the kinds of names, and the notation.
 
     ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces) or ``uri``
     (a file, a ``#`` and a name).
@@ -290,7 +290,7 @@ DEFINES: dict[tuple[str, str, str], str] = {
     **{("voicexml", key, "event"): "event" for key in ("throw", "link", "return", "choice")},
     ("srgs", "rule", "id"): "rule",
 }
-"""Attributes that give something its name, by vocabulary and key of the element."""
+"""Attributes that define a name, by vocabulary and key of the element."""
 
 REFERS: dict[tuple[str, str, str], Use] = {
     ("dialogue", "goto", "next"): _FORM,
@@ -354,7 +354,7 @@ REFERS: dict[tuple[str, str, str], Use] = {
     ("voicexml", "grammar", "root"): Use(("rule",)),
     ("srgs", "grammar", "root"): Use(("rule",)),
 }
-"""Attributes that name something, by vocabulary and key of the element."""
+"""Attributes that refer to a name, by vocabulary and key of the element."""
 
 FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("scenario", "scenario", "world"): ("world",),
@@ -379,6 +379,3 @@ SHARED = frozenset(
     ]
 )
 """Kinds of names that documents of one scenario share."""
-
-KIND_OF = {"variable": "variable", "event": "event"}
-"""The simple type that a name of a kind has; others are ids."""

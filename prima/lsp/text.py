@@ -8,7 +8,7 @@ from itertools import accumulate
 
 LINE_END = re.compile(r"\r\n|\r|\n")
 UTF8, UTF16, UTF32 = "utf-8", "utf-16", "utf-32"
-"""What columns may count: bytes, units of two bytes (what every editor knows), characters."""
+"""Units of columns: bytes, UTF-16 units (supported by every editor), characters."""
 
 
 def _width(letter: str, encoding: str) -> int:
@@ -31,14 +31,14 @@ class Lines:
         characters any more, and by how many units so far."""
 
     def _end(self, line: int) -> int:
-        """Where a line ends, before its line end."""
+        """The end of a line, without its line break."""
         if line + 1 >= len(self.starts):
             return len(self.text)
         end = self.starts[line + 1] - 1
         return end - (self.text[end - 1 : end + 1] == "\r\n")
 
     def offset(self, line: int, column: int, encoding: str = UTF16) -> int:
-        """The offset of a line and a column; what is beyond an end is that end."""
+        """The offset of a line and a column, limited to the ends of line and text."""
         if line < 0:
             return 0
         if line >= len(self.starts):
@@ -62,7 +62,7 @@ class Lines:
         return line, column if self._ascii else column + self._more(line, column, encoding)
 
     def _more(self, line: int, column: int, encoding: str) -> int:
-        """How many units more than characters there are before a column of a line."""
+        """The number of units minus characters before a column of a line."""
         if self._wide[:2] != (line, encoding):
             text = self.text[self.starts[line] : self._end(line)]
             wide = [(at + 1, _width(one, encoding) - 1) for at, one in enumerate(text)

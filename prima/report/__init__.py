@@ -34,7 +34,7 @@ def make(transcripts: Sequence[Transcript], scenarios: Sequence[Loaded | None] =
     from prima.report.view import view_of
 
     if not 1 <= len(transcripts) <= 2:
-        raise UsageError("A report is of one transcript, or compares two; name one or two.")
+        raise UsageError("A report shows one run or compares two.")
     if len(scenarios) not in (0, 1, len(transcripts)):
         raise UsageError("Name one scenario for all transcripts, or one for each.")
     found = list(scenarios) * (len(transcripts) if len(scenarios) == 1 else 1)

@@ -1,4 +1,4 @@
-"""What a timeline shows of a run: its bars and flags, in linear time."""
+"""The bars of a timeline, computed in linear time."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import Floor, Hold, State, base
-from prima.transcript.table import Row, describe
 
 MOST_APPS = 24
-"""Applications that have a lane of their own; the others have none."""
+"""Maximum number of applications with a lane."""
 MOST_DEVICES = 16
-"""Devices that have a lane of their own."""
+"""Maximum number of devices with a lane."""
 MOST_ON_FLOOR = 8
 """Streams of the stack of the floor that are named."""
 
@@ -38,7 +38,7 @@ class Bar:
 
 @dataclass(slots=True)
 class Lanes:
-    """All that a timeline shows of one run."""
+    """The lanes of one run."""
 
     seconds: float
     every: list[str]
@@ -84,7 +84,7 @@ def make_lanes(run: Run, rows: Sequence[Row]) -> Lanes:
 
 
 class _Marks:
-    """The row of the table that a stream or an AB belongs to from a moment on."""
+    """Finds the row of a stream or an AB at a time."""
 
     def __init__(self, run: Run, rows: Iterable[Row]) -> None:
         self._rows: dict[str, list[tuple[float, int]]] = {}
@@ -105,7 +105,7 @@ class _Marks:
 
 
 def _behaviors(run: Run, rows: Iterable[Row]) -> list[Bar]:
-    """Every AB that ran; loops that follow one another without a gap are one bar."""
+    """A bar for every AB that ran; consecutive loops are one bar."""
     row_of = {(row.behavior, row.time): row.number for row in rows if row.behavior}
     last_row: dict[str, int] = {}
     made: list[Bar] = []

@@ -21,8 +21,8 @@ from prima.scheduler.policy import BASELINES
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
+from prima.transcript.row import Row
 from prima.transcript.rules import RULES
-from prima.transcript.table import Row
 
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"

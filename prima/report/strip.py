@@ -1,4 +1,4 @@
-"""A part of a run over time, in letters: a lane for each application, events above, floor below."""
+"""A part of a run as a text timeline: events, a lane for each application, floor."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from prima.errors.visible import visible
 from prima.report.lanes import Bar, make_lanes
+from prima.transcript.row import Row
 from prima.transcript.run import Run
-from prima.transcript.table import Row
 
 STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
 """Seconds from one mark of the axis to the next."""

@@ -1,4 +1,4 @@
-"""What a page tells of one run, as values: head, rows with their reasons, lanes, ways."""
+"""The content of a page for one run: facts, rows with reasons, lanes, walk."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import Walk, walk_of
+from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import LONGEST_SHOWN, Row, describe
-from prima.transcript.why import reasons
+from prima.transcript.table import LONGEST_SHOWN
+from prima.transcript.why import Reason, reasons
 
 if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.loading import Loaded
 
 MOST_REASONS = 12
-"""Reasons of each kind that a row shows, the latest."""
+"""Maximum number of reasons of each kind; the latest are shown."""
 LONGEST_NAME = 200
-"""Letters of a name that are shown."""
+"""Maximum length of a name."""
 KANA = re.compile("[\u3041-\u30ff\u31f0-\u31ff\uff66-\uff9d]")
 HAN = re.compile("[\u2e80-\u2fdf\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff]")
 HANGUL = re.compile("[\u1100-\u11ff\u3130-\u318f\uac00-\ud7af]")
@@ -31,16 +32,16 @@ HANGUL = re.compile("[\u1100-\u11ff\u3130-\u318f\uac00-\ud7af]")
 
 @dataclass(slots=True)
 class View:
-    """One run, ready to be shown."""
+    """One run, ready to be rendered."""
 
     name: str
     """The transcript's name, as the user gave it."""
     facts: list[tuple[str, str]]
     measures: list[tuple[str, str, str]]
-    """What is measured, how much of it, and what that means."""
+    """Measures: name, value and meaning."""
     rows: list[Row]
     spoken: dict[int, tuple[str, str]]
-    """What a row says: its words and their language, empty where nobody knows."""
+    """The text that a row says and its language, empty if unknown."""
     whys: list[dict[str, Json]]
     names: dict[str, list[Json]]
     """ABs and streams that the reasons name: what they do, the document's line, their first row or -1."""
@@ -52,10 +53,10 @@ class View:
 
 
 def view_of(transcript: Transcript, rows: list[Row], loaded: Loaded | None) -> View:
-    """All that a page shows of a transcript.
+    """The content of a page for a transcript.
 
     Raises:
-        UsageError: a record lacks what its phase has, or the scenario is not the transcript's.
+        UsageError: a record lacks a field of its phase, or the scenario is not the transcript's.
     """
     walk, run = walk_of(transcript, loaded), transcript.run()
     head = run.head
@@ -83,7 +84,7 @@ def view_of(transcript: Transcript, rows: list[Row], loaded: Loaded | None) -> V
 
 
 def shown(text: str) -> str:
-    """Text for people: no control characters, and not without end."""
+    """Text of limited length without control characters."""
     text = visible(text)
     return text if len(text) <= LONGEST_SHOWN else text[:LONGEST_SHOWN] + "..."
 
@@ -95,14 +96,14 @@ def _short(value: Any) -> str:
 
 ENDS = {
     "over": "all applications had ended",
-    "quiet": "nothing more was to happen",
+    "quiet": "nothing left to do",
     "until": "the scenario's time was over",
-    "limit": "it made more records than a run may",
+    "limit": "too many records",
 }
 
 
 def _facts(run: Run) -> list[tuple[str, str]]:
-    """What a transcript's head and end tell of the run."""
+    """Facts of a run from its first and last records."""
     head = run.head
     apps = []
     for one in run.started:
@@ -174,7 +175,7 @@ def _spoken(rows: Iterable[Row], run: Run) -> dict[int, tuple[str, str]]:
 
 
 def language(text: str, japanese: bool = False) -> str:
-    """A text's language as far as its script tells; ``japanese`` settles Chinese characters."""
+    """A text's language according to its script; ``japanese`` decides for Chinese characters."""
     if KANA.search(text):
         return "ja"
     if HANGUL.search(text):
@@ -188,11 +189,8 @@ def language(text: str, japanese: bool = False) -> str:
 
 
 def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
-    """Why each row came where it did, and what the ABs are that are named there."""
-    first: dict[str, int] = {}
-    for row in rows:
-        if row.behavior:
-            first.setdefault(base(row.behavior), row.number)
+    """The reasons for each row, and descriptions of the ABs that they name."""
+    first = _first_rows(rows)
     places = {(row.time, row.kind): row.number for row in reversed(rows)}
     events = {
         serial: places[event.time, event.event]
@@ -210,26 +208,36 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
             why["outside"] = True
         if asked is not None and asked.cause in events:
             why["cause"] = events[asked.cause]
-        told: list[Json] = []
-        for reason in reasons(run, row, MOST_REASONS):
-            others = (base(name) for name in (*reason.lost, reason.by))
-            rivals = [one for one in others if one and one != base(row.behavior)]
-            for one in rivals:
-                if one not in names:
-                    names[one] = _named(one, run, first)
-            told.append([reason.time, shown(reason.text), _short(reason.rule), rivals])
-        if told:
+        if told := [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]:
             why["told"] = told
+        for name in (name for *_, rivals in told for name in rivals if name not in names):
+            names[name] = _named(name, run, first)
         whys.append(why)
     return whys, names
 
 
+def _first_rows(rows: Sequence[Row]) -> dict[str, int]:
+    """The number of each AB's first row."""
+    first: dict[str, int] = {}
+    for row in rows:
+        if row.behavior:
+            first.setdefault(base(row.behavior), row.number)
+    return first
+
+
+def _reason(reason: Reason, row: Row) -> list[Any]:
+    """A reason: time, text, rule, and the other ABs that it names."""
+    others = (base(name) for name in (*reason.lost, reason.by))
+    rivals = [one for one in others if one and one != base(row.behavior)]
+    return [reason.time, shown(reason.text), _short(reason.rule), rivals]
+
+
 def _named(name: str, run: Run, first: dict[str, int]) -> list[Json]:
-    """What an AB is that a reason names, or the first AB of a stream."""
+    """The description of an AB that a reason names, or of a stream."""
     stream = run.streams.get(name)
     request = stream.asked if stream is not None else run.asked(name)
     if request is None:
-        return ["the transcript does not tell what it is", "", -1]
+        return ["not in the transcript", "", -1]
     text = describe(request.command, request.text, request.args)
     words = "a unit" if request.command == "iu" else shown(text)
     words = f"the stream that began with {words}" if stream is not None else words

@@ -1,4 +1,4 @@
-"""Where the robot and the user were, and the map they were on.
+"""The paths of robot and user, and their map.
 
 A transcript holds only what the robot reported: its pose at each end of a motion. With the
 scenario at hand the run is made again, and the simulation tells the rest; but only where the
@@ -37,7 +37,7 @@ Pose = tuple[float, float, float, float]
 
 @dataclass(slots=True)
 class Walk:
-    """The ways of robot and user, and the map as plain data if it is known."""
+    """The paths of robot and user, and the map as data if known."""
 
     robot: list[Pose] = field(default_factory=list)
     person: list[Pose] = field(default_factory=list)
@@ -86,26 +86,26 @@ def walk_of(transcript: Transcript, loaded: Loaded | None) -> Walk:
 
 
 def check_files(transcript: Transcript, loaded: Loaded) -> None:
-    """See that a scenario's files are those of a transcript's head.
+    """Check that a transcript was made with a scenario's files.
 
     Raises:
-        UsageError: they are not.
+        UsageError: it was not.
     """
     told = transcript.run().head.get("files")
     if not isinstance(told, dict) or not told:
-        message = "the transcript does not tell which files it was made with; leave out --scenario."
+        message = "the transcript does not name its files; leave out --scenario."
         raise UsageError(f"{transcript.name}: {message}")
     for name, digest in loaded.files.items():
         if digest != told.get(name) and digest not in told.values():
             known = name in told
-            message = "has changed since" if known else "is no file of"
+            message = "has changed since" if known else "is not a file of"
             remedy = "Run it again, or leave out --scenario."
             raise UsageError(f"{name} {message} {transcript.name} was made. {remedy}" if known
                              else f"{name} {message} the run of {transcript.name}. {remedy}")  # fmt: skip
 
 
 def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
-    """Make the run again and watch it; None where something else comes out."""
+    """Run the scenario again and record the paths; None if the records differ."""
     from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished
@@ -132,14 +132,14 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
             place += 1
         watch.look()
         if place >= len(expected):
-            break  # a transcript that was cut off ends here
+            break  # an incomplete transcript ends here
     if place < len(expected):
         return None
     return Walk(watch.robot, watch.person, source="run")
 
 
 class Watch:
-    """Keeps where robot and user are, whenever that has changed."""
+    """Records the positions of robot and user when they change."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -149,7 +149,7 @@ class Watch:
         """The last poses seen, kept or not: where a rest ends."""
 
     def look(self) -> None:
-        """Take in where they are now."""
+        """Record the present positions."""
         world = self._world
         time = world.time / 1000
         x, y = world.position

@@ -1,4 +1,4 @@
-"""The conversation with the author: his lines are carried out, and questions answered."""
+"""The conversation with the author: carries out their lines and answers questions."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.language.values import read_value
 from prima.loading.writing import write_whole
-from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior
+from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior, Stream
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
 from prima.talk.typed import Line, help_text, read_line
+from prima.transcript.row import Row, describe
 from prima.transcript.run import run_of
-from prima.transcript.table import Row, describe
-from prima.transcript.why import told
+from prima.transcript.why import explained
 
 SHOWN = 6
-"""Answers to a question that are shown."""
+"""Number of answers to a question that are shown."""
 
 
 class Screen(Protocol):
-    """Where the author reads."""
+    """The author's screen."""
 
     interactive: bool
-    """Whether a person sits before it."""
+    """Whether a person is using it."""
 
     def rows(self, rows: list[Row]) -> None:
         """Show rows as they happen."""
 
     def show(self, text: str) -> None:
-        """Show what was asked for."""
+        """Show the result of a command."""
 
     def tell(self, text: str) -> None:
-        """Tell what has gone wrong, or has been done."""
+        """Show a message."""
 
 
 class Conversation:
@@ -44,9 +44,9 @@ class Conversation:
 
     Args:
         game: the session.
-        screen: where he reads.
-        real: whether time goes on by itself, in :meth:`pass_time`.
-        sources: files that are never written over.
+        screen: their screen.
+        real: whether time passes by itself, in :meth:`pass_time`.
+        sources: files that are never overwritten.
     """
 
     def __init__(
@@ -56,11 +56,11 @@ class Conversation:
         self.screen = screen
         self.real = real
         self.done = False
-        """Whether the author has had enough, or the run cannot go on."""
+        """Whether the author has quit, or the run cannot go on."""
         self.wrong = 0
-        """How many lines were not understood."""
+        """The number of wrong lines."""
         self.options: list[str] = []
-        """Some of what the question that listens takes."""
+        """Some answers to the question that listens."""
         self._sources = {os.path.realpath(path) for path in sources}
         self._failures = 0
         self._told = ""
@@ -80,11 +80,11 @@ class Conversation:
     # Time -----------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Let time go on until the robot waits for the user for the first time."""
+        """Let time pass until the robot first waits for the user."""
         self._show(self.game.go())
 
     def pass_time(self, now: int) -> int | None:
-        """Let time go on until ``now`` (ms); gives when something is due next, if ever."""
+        """Let time pass until ``now`` (ms); return when something is due next, if ever."""
         self._show(self.game.run(now))
         return self.game.due()
 
@@ -102,16 +102,16 @@ class Conversation:
         self._tell_state()
 
     def _tell_state(self) -> None:
-        """Tell once why time has stopped, where nothing asks for an answer."""
+        """Show once why time has stopped, unless a question asks for an answer."""
         state = self.game.stopped
         if state:
             self.done = True
             why = "a run lasts no longer than a day"
-            why = "the run made more records than a run may" if state == "limit" else why
+            why = "the run made more records than allowed" if state == "limit" else why
             self.screen.tell(f"prima: {why}; the session is over.")
             return
         if self.game.over:
-            state = "Every application has ended; /load puts one in again."
+            state = "Every application has ended; /load starts one again."
         elif self.game.due() is None:
             state = "Nothing more happens by itself."
         if state and state != self._told and self.screen.interactive:
@@ -120,7 +120,7 @@ class Conversation:
 
     @property
     def prompt(self) -> str:
-        """What stands before the author's next line."""
+        """The prompt for the next line."""
         asks = self.game.asks
         who = f" {asks.app.name} listens" if asks is not None else ""
         return f"{seconds(self.game.clock)}{who}> "
@@ -135,12 +135,12 @@ class Conversation:
     # Lines ----------------------------------------------------------------------------
 
     def line(self, text: str) -> None:
-        """Carry out a line; what is wrong with it is told."""
+        """Carry out a line, or show what is wrong with it."""
         try:
             line = read_line(text)
             if self.real and line.control in ("go", "step", "wait"):
                 if text.strip():
-                    raise UsageError("Time goes on by itself here; with --step it waits for you.")
+                    raise UsageError("Time passes by itself here; with --step it waits for you.")
             elif line.control == "wait":
                 self._wait(line.linger)
             elif line.control:
@@ -152,7 +152,7 @@ class Conversation:
             self.screen.tell(str(error))
 
     def refuse(self, message: str) -> None:
-        """Tell of a line that could not even be read."""
+        """Show a message about a line that could not be read."""
         self.wrong += 1
         self.screen.tell(message)
 
@@ -221,7 +221,7 @@ class Conversation:
         if rest and not (rest.isascii() and rest.isdigit() and int(rest[:9]) < len(rows)):
             raise UsageError(f'There is no row "{rest}"; the rows are 0 to {len(rows) - 1}.')
         row = rows[int(rest)] if rest else rows[-1]
-        self.screen.show("\n".join(told(run_of(self.game.records), row)))
+        self.screen.show("\n".join(explained(run_of(self.game.records), row)))
 
     def _who(self, rest: str) -> None:
         _nothing("who", rest)
@@ -236,10 +236,10 @@ class Conversation:
         self.screen.tell(f"Saved {rest}.")
 
     def check_target(self, path: str) -> None:
-        """See whether a session may be saved to a file.
+        """Check that a session may be saved to a file.
 
         Raises:
-            UsageError: it is one of the run's own documents, or something else is there.
+            UsageError: it is a document of the run, or an existing file of another kind.
         """
         if os.path.realpath(path) in self._sources:
             raise UsageError(f"{path}: this is one of the run's own documents; write elsewhere.")
@@ -252,13 +252,13 @@ class Conversation:
                 raise UsageError(f"{path}: this is a folder; name a file, as {file}.")
             if Path(path).exists() and MARK.encode() not in _beginning(Path(path)):
                 raise UsageError(
-                    f"{path}: this file is there already and is no saved session; write elsewhere."
+                    f"{path}: this file exists and is not a saved session; write elsewhere."
                 )
         except (OSError, ValueError) as error:
             raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
 
     def save(self, path: str) -> None:
-        """Write the session so far as a scenario; a file is replaced as a whole or not at all.
+        """Write the session so far as a scenario; the file is replaced atomically.
 
         Raises:
             UsageError: it cannot be written there.
@@ -268,11 +268,11 @@ class Conversation:
 
 
 def _why_not(error: OSError | ValueError) -> str:
-    return (isinstance(error, OSError) and error.strerror) or "that is not a file's name"
+    return (isinstance(error, OSError) and error.strerror) or "not a file name"
 
 
 def _beginning(path: Path) -> bytes:
-    """The first bytes of a file; nothing of what is no file."""
+    """The first bytes of a regular file."""
     if not path.is_file():
         return b""
     with path.open("rb") as stream:
@@ -280,8 +280,8 @@ def _beginning(path: Path) -> bytes:
 
 
 def _unheard(text: str, asking: str) -> str:
-    """That nobody has listened, and when somebody will."""
-    later = f" {asking} is still asking: it listens when it has spoken." if asking else ""
+    """A message that no application took a text, and when one will listen."""
+    later = f" {asking} is still asking; it listens when it has finished." if asking else ""
     return f'Nobody listens: "{visible(text)}" is lost.{later}'
 
 
@@ -291,28 +291,31 @@ def _nothing(name: str, rest: str) -> None:
 
 
 def _situation(game: Game) -> list[str]:
-    """What is there, runs, waits and listens."""
+    """Applications, ABs, streams and the question that listens."""
     session = game.rehearsal.session
     memory = session.mediator.memory
     lines = [f"{seconds(game.clock)}: {len(memory.behaviors)} in working memory"]
     for name, app in session.apps.items():
-        there = name in memory.apps and not app.over
-        lines.append(f"  {app.kind.upper()} {name}" + ("" if there else " (not there)"))
-    for state in (RUNNING, WAITING, LINKED):
-        for ab in memory.behaviors.values():
-            if ab.state is state:
-                lines.append(f"  {state}: {_behavior(ab)}")
-    for stream in memory.streams.values():
-        if stream.open:
-            held = " has the floor" if stream is memory.holder else ""
-            held = " is suspended" if stream.suspended else held
-            lines.append(f"  stream {stream.name}{held}: {', '.join(stream.members) or 'held'}")
+        loaded = name in memory.apps and not app.over
+        lines.append(f"  {app.kind.upper()} {name}" + ("" if loaded else " (not loaded)"))
+    lines += [
+        f"  {state}: {_behavior(ab)}"
+        for state in (RUNNING, WAITING, LINKED)
+        for ab in memory.behaviors.values()
+        if ab.state is state
+    ]
+    lines += [_stream(one, memory.holder) for one in memory.streams.values() if one.open]
     if game.asks is not None:
         options = game.options()
         more = ", ..." if len(options) > SHOWN else ""
         takes = f" for: {', '.join(options[:SHOWN])}{more}" if options else ""
         lines.append(f"  {game.asks.app.name} listens{takes}")
     return lines
+
+
+def _stream(stream: Stream, holder: Stream | None) -> str:
+    held = " is suspended" if stream.suspended else " has the floor" if stream is holder else ""
+    return f"  stream {stream.name}{held}: {', '.join(stream.members) or 'held'}"
 
 
 def _behavior(ab: Behavior) -> str:

@@ -1,4 +1,4 @@
-"""A run whose user is played: time goes on as far as it is let, and can go back."""
+"""A run whose user is played by the author; time can be stopped and turned back."""
 
 from __future__ import annotations
 
@@ -23,27 +23,28 @@ from prima.talk.phrases import phrases
 from prima.talk.scene import Scene, comment, seconds, when
 from prima.talk.typed import Line, Names
 from prima.transcript.lines import finished
-from prima.transcript.table import Growing, Row
+from prima.transcript.row import Row
+from prima.transcript.rows import GrowingTable
 
 THINKING_MS = 1000
-"""How long the user thinks before he answers a question, where time waits for him."""
+"""How long the user thinks before answering, if time waits for them."""
 PATIENCE_MS = 60_000
-"""How long time goes on without a row before the author is asked again."""
+"""How long time passes without a row before the author is asked again."""
 AT_ONCE_MS = 600_000
-"""How long it goes on at once."""
+"""How long time passes at most before the author is asked again."""
 MOST_LINES = 10_000
-"""Lines that a session may have."""
+"""Maximum number of lines of a session."""
 FILE = "typed"
-"""The name of what is typed, where it is read as a scenario."""
+"""The file name under which typed lines are read as a scenario."""
 MOVES = ("walk", "follow", "stay", "leave")
-"""What only somebody who is there can do."""
+"""Actions for which the user must be present."""
 
 Sink = Callable[[list[Record]], object]
 
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """What the user has done: when (ms), as elements, and with the row that was last."""
+    """An action of the user: its time (ms), elements, and the row before it."""
 
     at: int
     xml: str
@@ -53,7 +54,7 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Where a session can go back to: a time (ms), and how much had been done."""
+    """A state to go back to: a time (ms), and the number of lines by then."""
 
     clock: int
     lines: int
@@ -61,18 +62,18 @@ class Point:
 
 
 class Game:
-    """One session. Times are ms; ``clock`` is the author's, who is never behind the run.
+    """One session. Times are in ms; ``clock`` is the author's, never behind the run's.
 
     Args:
-        loaded: the scenario that is played, with all that it names.
-        folder: where it lies.
+        loaded: the scenario, with the files that it names.
+        folder: its folder.
         policy: the mediator's policy; by default the scenario's.
-        scripted: whether the scenario's own user does what it says as well.
-        web: what fetches from hosts.
-        sink: is given the records of each instant, times in ms; then nothing can be taken back.
+        scripted: whether the scenario's user actions are carried out too.
+        web: fetches from hosts.
+        sink: called with the records of each instant, times in ms; then /undo is impossible.
 
     Raises:
-        UsageError: there is no such policy.
+        UsageError: the policy is unknown.
     """
 
     def __init__(
@@ -91,7 +92,7 @@ class Game:
             raise UsageError(f"{problem[0]} {problem[1].text}")
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
         scenario = self._read([])
-        scenario.services = cast.scenario.services  # with what they answer fetches with
+        scenario.services = cast.scenario.services  # with their answers
         self.cast: Cast = replace(cast, scenario=scenario)
         self.names = _names(self.cast)
         self._web = web
@@ -101,20 +102,20 @@ class Game:
         self._begin()
 
     def _begin(self) -> None:
-        """Start the run from its beginning, with all that has been done so far."""
+        """Start the run from its beginning, with the lines so far."""
         self.rehearsal = Rehearsal(self.cast, self._chosen, None, self._web)
-        self.table = Growing()
+        self.table = GrowingTable()
         self.records: list[Record] = []
         """All records so far, times in seconds."""
         self.clock = 0
         self.ended = False
         self.passing = ""
-        """The question that the user lets pass."""
+        """The question that the user does not answer."""
         self._busy: Callable[[], bool] | None = None
         for line in self.lines:
             self.rehearsal.devices.person.play(line.at, line.doings)
 
-    # What is going on ---------------------------------------------------------------
+    # State ------------------------------------------------------------------------
 
     @property
     def over(self) -> bool:
@@ -130,11 +131,11 @@ class Game:
 
     @property
     def failures(self) -> list[str]:
-        """Applications that have ended by an error, as ``NAME: what``."""
+        """Applications that ended by an error, as ``NAME: ERROR``."""
         return self.rehearsal.session.failures
 
     def unheard(self) -> str:
-        """What the user has said that nobody took; it is told once."""
+        """What the user said that no application took; returned once."""
         session = self.rehearsal.session
         text, session.unheard = session.unheard, ""
         return text
@@ -153,13 +154,13 @@ class Game:
 
     @property
     def busy(self) -> bool:
-        """Whether the user is still at what was typed last."""
+        """Whether the last line is still being carried out."""
         if self._busy is not None and self._busy():
             self._busy = None
         return self._busy is not None
 
     def options(self) -> list[str]:
-        """Some of what the question that listens takes; empty where that is not known."""
+        """Some answers to the question that listens; none if they are unknown."""
         question = self.asks
         if question is None or question.run is None:
             return []
@@ -170,11 +171,11 @@ class Game:
     # Time -----------------------------------------------------------------------------
 
     def due(self) -> int | None:
-        """When the run goes on by itself (ms), if it does."""
+        """The time of the next event (ms), if any."""
         return None if self.rehearsal.outcome or self.rehearsal.over else self.rehearsal.due()
 
     def advance(self, until: int) -> list[Row] | None:
-        """Carry out the next instant up to a time, and give its rows; None if there is none."""
+        """Carry out the next instant up to a time; return its rows, or None if there is none."""
         until = min(until, LONGEST_MS)
         records = self.rehearsal.advance(until)
         if records is None:
@@ -190,14 +191,14 @@ class Game:
         return self.table.add(done)
 
     def run(self, until: int) -> Iterator[list[Row]]:
-        """Let time go on until then; rows come as they happen."""
+        """Let time pass until then; yield rows as they come."""
         until = min(until, LONGEST_MS)
         while (rows := self.advance(until)) is not None:
             yield rows
         self.clock = max(self.clock, until)
 
     def go(self) -> Iterator[list[Row]]:
-        """Let time go on until something needs the user, or a minute passes without a row."""
+        """Let time pass until the run needs the user, or for a minute without a row."""
         latest = self.clock
         most = self.clock + AT_ONCE_MS
         while not self.waits():
@@ -223,22 +224,22 @@ class Game:
         return asks is not None and not self.passing and not self._is_answered(asks)
 
     def _is_answered(self, asks: Behavior) -> bool:
-        """Whether the scenario's own user does something before a question has timed out."""
+        """Whether the scenario's user acts before a question times out."""
         due = self.rehearsal.devices.person.due()
         until = self._answer_until(asks)
         return due is not None and (until is None or due <= until)
 
     def _answer_until(self, asks: Behavior) -> int | None:
-        """When the time for an answer to a question is over (ms), if it is."""
+        """When a question times out (ms), if it does."""
         question = self.rehearsal.devices.robot.ear.questions.get(asks.id)
         return question.until if question is not None else None
 
     def let_pass(self) -> None:
-        """The user says nothing to the question that listens."""
+        """Leave the question that listens unanswered."""
         self.passing = self.asks.id if self.asks else ""
 
     def finish(self) -> list[Row]:
-        """End the run here; gives its last rows."""
+        """End the run here; return its last rows."""
         rows = [row for some in self.run(self.clock) for row in some]
         self.ended = True
         return rows + self._take(self.rehearsal.finish(self.clock))
@@ -246,17 +247,19 @@ class Game:
     # Doing ----------------------------------------------------------------------------
 
     def do(self, line: Line, think: bool = False) -> int:
-        """Let the user do something now; gives when he begins.
+        """Let the user act now; return when they begin (ms).
 
         Args:
-            line: what was typed.
-            think: whether time waits for him, so that he thinks before he answers.
+            line: the line typed.
+            think: whether the user thinks before answering, since time waits for them.
 
         Raises:
-            UsageError: it names what is not there, or nobody is there to do it.
+            UsageError: it names something unknown, or nobody is there to do it.
         """
         if len(self.lines) >= MOST_LINES:
-            raise UsageError(f"A session may have {MOST_LINES} lines: save it, and begin anew.")
+            raise UsageError(
+                f"A session may have {MOST_LINES} lines: save it, and start a new one."
+            )
         doings = self._doings(line)
         self._check_there(line, doings)
         thinking = self._thinking() if think and doings[0].name == "say" else 0
@@ -271,7 +274,7 @@ class Game:
         return at
 
     def _thinking(self) -> int:
-        """How long the user thinks before he answers the question for which time has stopped."""
+        """How long the user thinks before answering the question for which time has stopped."""
         if self.asks is None or self.clock > self.rehearsal.now:
             return 0
         until = self._answer_until(self.asks)
@@ -279,7 +282,7 @@ class Game:
         return min(THINKING_MS, max(left // 2, 0))
 
     def end_line(self) -> Iterator[list[Row]]:
-        """Let time go on until the user has done what was typed last."""
+        """Let time pass until the last line has been carried out."""
         while self.busy and (rows := self.advance(LONGEST_MS)) is not None:
             yield rows
 
@@ -291,50 +294,59 @@ class Game:
         return f"after row {row.number}, {row.time:.2f} s: {what[:200]}"
 
     def _check_there(self, line: Line, doings: list[Doing]) -> None:
+        """Check that the user, and the application to load or unload, are there.
+
+        Raises:
+            UsageError: they are not.
+        """
         if self.over and not line.loads:
             raise UsageError(
-                "Every application has ended. Put one in again"
+                "Every application has ended. Load one again"
                 f" (/load {one_of(self.names.applications)}), or type /quit."
             )
         if self.rehearsal.devices.world.person is None:
             for doing in doings:
                 if doing.name in MOVES:
                     raise UsageError(f'Nobody is there to do "/{doing.name}".')
+        self._check_loaded(doings[0])
+
+    def _check_loaded(self, doing: Doing) -> None:
         session = self.rehearsal.session
-        for doing in doings[:1]:
-            app = session.apps.get(doing.values.get("application", ""))
-            there = app is not None and app.name in session.mediator.memory.apps and not app.over
-            if app is not None and doing.name == "load" and there:
-                raise UsageError(f'"{app.name}" is there already. Take it out with /unload.')
-            if app is not None and doing.name == "unload" and not there:
-                raise UsageError(f'"{app.name}" is not there. Put it in with /load.')
+        app = session.apps.get(doing.values.get("application", ""))
+        if app is None:
+            return
+        loaded = app.name in session.mediator.memory.apps and not app.over
+        if doing.name == "load" and loaded:
+            raise UsageError(f'"{app.name}" is already loaded. Remove it with /unload.')
+        if doing.name == "unload" and not loaded:
+            raise UsageError(f'"{app.name}" is not loaded. Load it with /load.')
 
     def _doings(self, line: Line) -> list[Doing]:
-        """What a line says, read and checked as a scenario's ``when``."""
+        """The actions of a line, read and checked as a scenario's ``when``."""
         scenario = self._read([when(0, line.xml)])
         made = replace(self.cast, scenario=scenario)
         last = scenario.node.all("when")[-1].place.line
         found = [*check_cast(made), *check_hearing(made)]
         problems = [one for one in found if one.place.file == FILE and one.place.line == last]
         if problems:
-            raise UsageError(self._told(problems[0]))
+            raise UsageError(self._message(problems[0]))
         return [one for one in scenario.whens if one.trigger == "at"][-1].doings
 
-    def _told(self, problem: Problem) -> str:
-        """A problem in what was typed."""
+    def _message(self, problem: Problem) -> str:
+        """A problem of a line, as a message."""
         return f"{problem.message} {problem.remedy}".rstrip()
 
     def _read(self, whens: list[str]) -> Scenario:
-        """The scene as a scenario, with what is done."""
+        """The scene as a scenario, with these actions."""
         try:
             return read_scenario(FILE, self.scene.text(whens).encode())
         except DocumentError as error:
-            raise UsageError(self._told(error.problems[0])) from None
+            raise UsageError(self._message(error.problems[0])) from None
 
     # Going back ------------------------------------------------------------------------
 
     def keep(self) -> None:
-        """Keep this moment, to go back to it."""
+        """Save this state, to go back to it."""
         self.points.append(Point(self.clock, len(self.lines), self.passing))
         del self.points[:-MOST_LINES]
 
@@ -342,26 +354,26 @@ class Game:
         """Go back to where the last line was typed.
 
         Raises:
-            UsageError: nothing was typed, or nothing can be taken back.
+            UsageError: there is no line, or it cannot be undone.
         """
         self._check_back()
         if not self.points:
-            raise UsageError("There is nothing to take back.")
+            raise UsageError("There is nothing to undo.")
         point = self.points.pop()
         self.lines = self.lines[: point.lines]
         self._return(point.clock)
         self.passing = point.passing
 
     def back(self, clock: int) -> None:
-        """Go back to a time; what was done later is taken back.
+        """Go back to a time; later lines are undone.
 
         Raises:
-            UsageError: it is still to come, or nothing can be taken back.
+            UsageError: the time is in the future, or lines cannot be undone.
         """
         self._check_back()
         if clock > self.clock:
             raise UsageError(
-                f"It is {seconds(self.clock)} only: /wait {seconds(clock - self.clock)} goes on."
+                f"It is only {seconds(self.clock)}: type /wait {seconds(clock - self.clock)}."
             )
         self.lines = [line for line in self.lines if line.at <= clock]
         self.points = [point for point in self.points if point.clock < clock]
@@ -369,9 +381,9 @@ class Game:
 
     def _check_back(self) -> None:
         if self._sink is not None:
-            raise UsageError("What has been written as JSON cannot be taken back.")
+            raise UsageError("Records written as JSON cannot be undone.")
         if self._web is not None:
-            raise UsageError("What hosts were asked cannot be taken back.")
+            raise UsageError("Requests to hosts cannot be undone.")
 
     def _return(self, clock: int) -> None:
         self._begin()
@@ -381,7 +393,7 @@ class Game:
     # Saving ---------------------------------------------------------------------------
 
     def saved(self, target: str) -> str:
-        """The session so far as a scenario that is written to a file, and repeats it."""
+        """The session so far as a scenario that repeats it, for a file."""
         whens = [
             f"<!-- {comment(line.after)} -->\n  {when(line.at, line.xml)}" for line in self.lines
         ]

@@ -1,4 +1,4 @@
-"""Some of what a question takes, to be offered to somebody who types."""
+"""Some answers to a question, for completion."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from prima.grammar.model import (
 )
 
 MOST = 30
-"""Phrases that are offered."""
+"""Maximum number of phrases."""
 DEEP = 12
-"""Parts inside each other that are looked into."""
+"""Maximum depth of nested parts."""
 STEPS = 2000
-"""Expansions that are looked at."""
+"""Maximum number of expansions."""
 TYPES = {"boolean": ["yes", "no"]}
-"""What the built-in types take, where that can be said in a few words."""
+"""Answers of built-in types that have few."""
 
 
 def phrases(answers: Answers) -> list[str]:
-    """Some of what a field takes, without what speech does not carry, the shortest first."""
+    """Some answers that a field takes, shortest first."""
     found = dict.fromkeys(islice(answers.options, MOST))
     for grammar in answers.grammars:
         found |= dict.fromkeys(islice(_Phrases().of(grammar.expansion), MOST))
@@ -43,7 +43,7 @@ class _Phrases:
         self._left = STEPS
 
     def of(self, part: Part, depth: int = 0) -> Iterator[str]:
-        """Phrases of an expansion: each part once where it may be repeated."""
+        """Phrases of an expansion, with each repeatable part once."""
         self._left -= 1
         if depth > DEEP or self._left < 0:
             return

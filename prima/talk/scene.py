@@ -1,4 +1,4 @@
-"""A scenario as text: the one that is played, and the one that a session is saved as."""
+"""A scenario as text: the one played, and the one that a session is saved as."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from prima.markup.tree import Node
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 MARK = "Played with prima talk."
-"""What a saved session begins with, so that it alone is written over."""
+"""The comment in a saved session, by which it is recognized and may be overwritten."""
 USERS = frozenset(("say", "hang-up", "touch", "walk", "look", "follow", "stay", "leave"))
-"""Elements of a ``when`` that are the user's doing."""
+"""Elements of a ``when`` that are actions of the user."""
 KEPT = ("robot", "person", "connection", "application", "service", "transfer", "answer", "when")
-"""What of a scenario is played, in the order in which it is written."""
+"""Elements of a scenario that are played, in the order in which they are written."""
 PATHS = {("application", "src"), ("reply", "src"), ("scenario", "world"), ("scenario", "robot")}
 
 
 class Scene:
-    """The scenario that is played: another one's, without what its user does, unless wanted.
+    """The scenario that is played: a given one, by default without its user's actions.
 
     Args:
         root: that scenario's document.
-        folder: where it lies.
+        folder: its folder.
         policy: the mediator's policy.
-        scripted: whether its user does what it says as well.
+        scripted: whether its user's actions are kept.
     """
 
     def __init__(self, root: Node, folder: str, policy: str, scripted: bool) -> None:
@@ -38,7 +38,7 @@ class Scene:
         self.policy = policy
         self.scripted = scripted
         self.left_out = 0
-        """How many doings of the scenario's user are left to the author."""
+        """The number of the scenario's user actions that are left out."""
         if not scripted:
             for node in root.nodes:
                 self.left_out += node.tag == "answer"
@@ -54,10 +54,10 @@ class Scene:
         """The scenario's document.
 
         Args:
-            whens: what the author's user does, as elements, each with its comment if any.
-            until: when the run ends.
-            target: the file that it is written to, for its paths; by default they stay.
-            remark: a comment at its beginning.
+            whens: the author's actions, as elements with comments.
+            until: the end of the run.
+            target: the output file, to which paths are made relative; by default they stay.
+            remark: a comment at the beginning.
         """
         given = dict(self.root.attributes)
         stem = Path(target).stem if target else ""
@@ -84,7 +84,7 @@ class Scene:
         return made
 
     def _path(self, path: str, target: str) -> str:
-        """A path of the scenario's as seen from another file."""
+        """A path in the scenario, relative to another file."""
         if os.path.isabs(path):
             return path
         start = os.path.dirname(target) or "."
@@ -92,15 +92,11 @@ class Scene:
         return posixpath.normpath(Path(relative).as_posix())
 
     def _element(self, node: Node, target: str | None) -> str:
-        """An element as text; empty where nothing of it is played."""
+        """An element as text; empty if none of it is played."""
         if not self.scripted and (node.tag in USERS or node.tag == "answer"):
             return ""
         content = "".join(
-            escape(item, quote=False)
-            if isinstance(item, str) and item.strip()
-            else self._element(item, target)
-            if not isinstance(item, str)
-            else ""
+            self._element(item, target) if isinstance(item, Node) else _text(item)
             for item in node.content
         )
         kept = {one.tag for one in node.nodes} - USERS - {"wait"}
@@ -110,13 +106,18 @@ class Scene:
         return f"{start}>{content}</{node.tag}>" if content else f"{start}/>"
 
 
+def _text(text: str) -> str:
+    """Text of an element; white space between elements is dropped."""
+    return escape(text, quote=False) if text.strip() else ""
+
+
 def _quoted(value: str) -> str:
-    """A value as it is written in an attribute: white space in it is kept."""
+    """A value as written in an attribute, with its white space preserved."""
     return re.sub(r"[\t\n\r]", lambda found: f"&#{ord(found[0])};", escape(value))
 
 
 def comment(text: str) -> str:
-    """Text that may stand in a comment."""
+    """Text that is allowed in a comment."""
     return re.sub(r"-(?=-|$)", "- ", text)
 
 

@@ -1,4 +1,4 @@
-"""What an author types, as elements of a scenario's ``when``: there is no second language."""
+"""Reads typed lines as elements of a scenario's ``when``."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from prima.errors import UsageError, did_you_mean
 from prima.language.values import read_value
 
 LONGEST_LINE = 2000
-"""Letters that a line may have."""
+"""Maximum length of a line (characters)."""
 UNFIT = re.compile("[^\t -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What no document may hold."""
+"""Characters that XML does not allow."""
 PIECE = re.compile(r"(?:^|\s+)(?=/[^\W\d])")
-"""Before a command, wherever it stands in a line."""
+"""The place before a command in a line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What may be named in commands, in the run that goes on."""
+    """Names that commands may use in the current run."""
 
     sensors: frozenset[str] = frozenset()
     points: frozenset[str] = frozenset()
@@ -33,22 +33,22 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command: how it is written, what it does, and the element that it stands for."""
+    """A command: its usage, help and element."""
 
     name: str
     usage: str
     help: str
     element: Callable[[str], str] | None = None
-    """Gives the element of a ``when`` for what follows the name; None for what is none."""
+    """Makes the element of a ``when`` from the arguments; None for controls."""
     names: Callable[[Names], Iterable[str]] = lambda names: ()
-    """What may follow."""
+    """Possible arguments."""
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line: doings as XML, and for how long (ms) time goes on after them, if that is said.
+    """A line: actions as XML, and the time (ms) to wait after them, if given.
 
-    ``control`` is the command of a line that is none of the user's doing, ``rest`` what follows.
+    ``control`` is the command of a line without actions, ``rest`` its arguments.
     """
 
     xml: str = ""
@@ -58,19 +58,19 @@ class Line:
 
     @property
     def loads(self) -> bool:
-        """Whether it puts an application in again."""
+        """Whether it loads an application."""
         return "<load " in self.xml
 
 
 def element(tag: str, text: str = "", **values: str) -> str:
-    """An element with attributes; those without a value are left out."""
+    """An element with attributes, without empty ones."""
     given = "".join(f' {key}="{escape(value)}"' for key, value in values.items() if value)
     content = escape(text, quote=False)
     return f"<{tag}{given}>{content}</{tag}>" if text else f"<{tag}{given}/>"
 
 
 def _plain(tag: str) -> Callable[[str], str]:
-    """A command with nothing behind its name."""
+    """A command without arguments."""
 
     def make(rest: str) -> str:
         if rest:
@@ -81,7 +81,7 @@ def _plain(tag: str) -> Callable[[str], str]:
 
 
 def _word(tag: str, attribute: str) -> Callable[[str], str]:
-    """A command with one word behind its name."""
+    """A command with one word as argument."""
 
     def make(rest: str) -> str:
         if not rest or " " in rest:
@@ -92,7 +92,7 @@ def _word(tag: str, attribute: str) -> Callable[[str], str]:
 
 
 def _text(tag: str) -> Callable[[str], str]:
-    """A command with a text behind its name."""
+    """A command with a text as argument."""
 
     def make(rest: str) -> str:
         if not rest:
@@ -156,7 +156,7 @@ def _sensor(rest: str) -> str:
 
 
 def _words(text: str) -> list[str]:
-    """Words, where quotation marks keep several together."""
+    """Words; quotation marks group several."""
     try:
         return shlex.split(text)
     except ValueError:
@@ -164,7 +164,7 @@ def _words(text: str) -> list[str]:
 
 
 def _read(kind: str, text: str) -> int:
-    """A time in ms, or another value that is only looked at."""
+    """A time in ms, or another value, which is only checked."""
     try:
         value = read_value(kind, text)
     except ValueError as error:
@@ -175,7 +175,7 @@ def _read(kind: str, text: str) -> int:
 COMMANDS = {
     one.name: one
     for one in (
-        Command("say", "/say TEXT", "says something; a line without a command does so too",
+        Command("say", "/say TEXT", "says something, as does a line without a command",
             _text("say")),
         Command("touch", "/touch SENSOR", "touches the robot", _word("touch", "sensor"),
             lambda names: names.sensors),
@@ -183,9 +183,9 @@ COMMANDS = {
             _walk, lambda names: names.points),
         Command("look", "/look at PLACE, /look at robot", "looks at something", _look,
             lambda names: [f"at {one}" for one in (*names.points, "robot")]),
-        Command("follow", "/follow, /follow METRES", "goes along behind the robot", _follow),
-        Command("stay", "/stay", "stays where he is", _plain("stay")),
-        Command("leave", "/leave", "goes away and is seen no more", _plain("leave")),
+        Command("follow", "/follow, /follow METRES", "follows the robot", _follow),
+        Command("stay", "/stay", "stays where they are", _plain("stay")),
+        Command("leave", "/leave", "goes away, out of sight", _plain("leave")),
         Command("hang-up", "/hang-up", "hangs up", _plain("hang-up")),
         Command("message", "/message from NAME: TEXT", "a message arrives", _message),
         Command("event", "/event NAME KEY=VALUE ...", "an event of the surroundings", _event,
@@ -193,25 +193,25 @@ COMMANDS = {
         Command("sensor", "/sensor NAME=VALUE", "a sensor's value changes", _sensor),
         Command("fail", "/fail DEVICE, /fail DEVICE hangs", "a device fails, or hangs", _fail,
             lambda names: names.devices),
-        Command("repair", "/repair DEVICE", "it works again", _word("repair", "device"),
+        Command("repair", "/repair DEVICE", "the device works again", _word("repair", "device"),
             lambda names: names.devices),
         Command("emergency", "/emergency", "the emergency stop is pressed", _plain("emergency")),
         Command("release", "/release, /release false",
-            "it is released; with false, what was stopped is given up", _release),
-        Command("unload", "/unload APPLICATION", "an application is taken out",
+            "it is released; with false, stopped behaviors are given up", _release),
+        Command("unload", "/unload APPLICATION", "an application is removed",
             _word("unload", "application"), lambda names: names.applications),
-        Command("load", "/load APPLICATION", "one that has ended is put in again",
+        Command("load", "/load APPLICATION", "an application that has ended starts again",
             _word("load", "application"), lambda names: names.applications),
         Command("note", "/note TEXT", "a remark for the reader", _text("note")),
-        Command("wait", "/wait TIME", "time goes on so long, as in /wait 3s"),
-        Command("go", "/go", "time goes on until something needs you; an empty line does so too"),
-        Command("step", "/step", "time goes on until the next row"),
-        Command("back", "/back TIME", "goes back to a time of the run, as in /back 5s"),
-        Command("undo", "/undo", "takes the last line back"),
-        Command("why", "/why, /why ROW", "says why the last row came, or another"),
-        Command("who", "/who", "says what runs, what waits and what is asked"),
+        Command("wait", "/wait TIME", "time passes, as in /wait 3s"),
+        Command("go", "/go", "time passes until the run needs you, as after an empty line"),
+        Command("step", "/step", "time passes until the next row"),
+        Command("back", "/back TIME", "goes back to a time, as in /back 5s"),
+        Command("undo", "/undo", "undoes the last line"),
+        Command("why", "/why, /why ROW", "explains the last row, or another"),
+        Command("who", "/who", "shows what runs, what waits and what is asked"),
         Command("save", "/save FILE", "writes the session as a scenario"),
-        Command("help", "/help, /help COMMAND", "says this"),
+        Command("help", "/help, /help COMMAND", "shows this help"),
         Command("quit", "/quit", "ends the session"),
     )
 }  # fmt: skip
@@ -222,54 +222,67 @@ def read_line(text: str) -> Line:
     """Read a line.
 
     Raises:
-        UsageError: it is no line; the message says what to write.
+        UsageError: it is wrong; the message says what to write.
     """
     if len(text) > LONGEST_LINE:
-        raise UsageError(f"A line may have {LONGEST_LINE} letters; this one has more.")
+        raise UsageError(f"The line is longer than {LONGEST_LINE} characters.")
     if found := UNFIT.search(text):
-        raise UsageError(f"The line holds a character that is none: U+{ord(found[0]):04X}.")
+        raise UsageError(f"The line contains an invalid character: U+{ord(found[0]):04X}.")
     words = text.split(maxsplit=1)
     name = _name(words[0])[0] if words else "wait"
     if COMMANDS[name].element is None and name != "wait":
         return Line(control=name, rest="".join(words[1:]).strip())
     pieces = [" ".join(piece.split()) for piece in PIECE.split(text)]
-    pieces = [piece for piece in pieces if piece]
     made: list[str] = []
     linger = 0
-    for piece in pieces:
-        name, rest = _name(piece)
+    for name, rest in (_name(piece) for piece in pieces if piece):
         if name == "wait":
-            if not rest:
-                raise UsageError('Write "/wait TIME", as in "/wait 3s".')
-            linger += _read("duration", rest)
+            linger += _wait(rest)
             continue
-        make = COMMANDS[name].element
-        if make is None:
-            raise UsageError(f'"/{name}" stands alone on its line.')
-        if linger and made:
-            made.append(element("wait", **{"for": f"{linger}ms"}))
-        elif linger:
-            raise UsageError('A line begins with what is done: "/touch head /wait 3s /say Stop."')
+        if linger:
+            made.append(_pause(linger, first=not made))
         linger = 0
-        made.append(make(rest))
+        made.append(_element(name, rest))
     if linger and not made:
         return Line(linger=linger, control="wait")
     return Line("".join(made), linger) if made else Line(control="go")
 
 
+def _wait(rest: str) -> int:
+    """The time of a /wait (ms)."""
+    if not rest:
+        raise UsageError('Write "/wait TIME", as in "/wait 3s".')
+    return _read("duration", rest)
+
+
+def _pause(linger: int, first: bool) -> str:
+    """A pause between two actions."""
+    if first:
+        raise UsageError('A line begins with an action: "/touch head /wait 3s /say Stop."')
+    return element("wait", **{"for": f"{linger}ms"})
+
+
+def _element(name: str, rest: str) -> str:
+    """The element of a command."""
+    make = COMMANDS[name].element
+    if make is None:
+        raise UsageError(f'"/{name}" must be alone on its line.')
+    return make(rest)
+
+
 def _name(piece: str) -> tuple[str, str]:
-    """A piece's command, and what follows it."""
+    """The command of a piece of a line, and its arguments."""
     if not piece.startswith("/"):
         return "say", piece
     word, _, rest = piece[1:].partition(" ")
     if word not in COMMANDS:
         hint = did_you_mean(f"/{word}", [f"/{name}" for name in COMMANDS]) or "Type /help."
-        raise UsageError(f'There is no command "/{word[:60]}". {hint}')
+        raise UsageError(f'Unknown command "/{word[:60]}". {hint}')
     return word, rest.strip()
 
 
 def complete(text: str, names: Names, options: Iterable[str]) -> list[str]:
-    """Lines that a line may become: commands, what may follow one, answers to a question."""
+    """Completions of a line: commands, their arguments, answers to a question."""
     start = max(match.end() for match in re.finditer(r"(?:^|\s+(?=/))", text))
     before, piece = text[:start], text[start:]
     if not piece.startswith("/"):
@@ -284,12 +297,12 @@ def complete(text: str, names: Names, options: Iterable[str]) -> list[str]:
 
 
 def help_text(name: str = "") -> str:
-    """What the commands do, or one.
+    """The help for all commands, or for one.
 
     Raises:
-        UsageError: there is no such command.
+        UsageError: the command is unknown.
     """
-    name = name.removeprefix("/").partition(" ")[0]  # whatever else stands behind it
+    name = name.removeprefix("/").partition(" ")[0]  # ignore the rest
     if name and name not in COMMANDS:
         _name(f"/{name}")
     chosen = [COMMANDS[name]] if name else list(COMMANDS.values())

@@ -23,28 +23,28 @@ ANSWERS = {
     "Tea or juice?": "Tea.",
     "Shall I wave, or nod?": "Wave.",
 }
-"""What the user of a new scenario says to the questions of the other templates."""
+"""The user's answers in a new scenario to the questions of the other templates."""
 AWAY = 0.9
-"""How far the user stands from the robot at the beginning (m)."""
+"""The user's distance from the robot at the start (m)."""
 
 
 def write(kind: str, name: str) -> list[Path]:
-    """Write a new document, and what a scenario lacks; gives the files written.
+    """Write a new document, and the documents that a scenario lacks; return the files.
 
     Args:
         kind: the name of a template.
-        name: its file, with or without ``.xml`` (``.vxml``); its id is made of it.
+        name: its file, with or without ``.xml`` (``.vxml``); its id is derived from this.
 
     Raises:
-        UsageError: the file is there already, or cannot be written.
+        UsageError: the file already exists, or cannot be written.
     """
     ending = ".vxml" if kind == "vxml" else ".xml"
     stem = name.removesuffix(".vxml").removesuffix(".xml")
     if Path(name).name in ("", ".", "..") or name.endswith("/"):
-        raise UsageError(f'"{name}" is not a file\'s name.')
+        raise UsageError(f'"{name}" is not a file name.')
     path = Path(stem + ending)
     if path.exists():
-        raise UsageError(f"{path}: is there already; name another file.")
+        raise UsageError(f"{path}: already exists; name another file.")
     if not path.parent.is_dir():
         raise UsageError(f"{path}: there is no folder {path.parent}; make it first.")
     if kind == "scenario":
@@ -53,13 +53,13 @@ def write(kind: str, name: str) -> list[Path]:
 
 
 def identifier(name: str, kind: str) -> str:
-    """An id made of a file's name, or of the kind where nothing of the name can stand in one."""
+    """An id derived from a file's name, or the kind if no character of the name is allowed."""
     made = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_") or kind
     return f"{kind}-{made}" if made[:1].isdigit() else made
 
 
 def attempt(kind: str, path: Path) -> str:
-    """How to try a new document out."""
+    """The command that tries a new document."""
     name = shlex.quote(str(path))
     return {
         "fa": "prima new scenario NAME",
@@ -70,25 +70,25 @@ def attempt(kind: str, path: Path) -> str:
 
 
 def _fill(kind: str, path: Path, **values: str) -> Path:
-    """Write a template with its values to a file that is not there."""
+    """Write a template with its values to a new file."""
     text = (TEMPLATES / f"{kind}.xml").read_text(encoding="utf-8")
     title = escape(path.stem)
     given = {"id": identifier(path.stem, kind), "title": title, **values}
-    given["file"] = path.name if "--" not in path.name else "FILE"  # no comment may hold --
+    given["file"] = path.name if "--" not in path.name else "FILE"  # -- is not allowed in comments
     for key, value in given.items():
         text = text.replace(f"{{{key}}}", value)
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except FileExistsError:
-        raise UsageError(f"{path}: is there already; name another file.") from None
+        raise UsageError(f"{path}: already exists; name another file.") from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
     return path
 
 
 def _scenario(path: Path) -> list[Path]:
-    """A scenario of what its folder has, and of what is written beside it."""
+    """Write a scenario that uses its folder's documents, and the documents that are missing."""
     folder, written = path.parent, []
     found = _documents(folder)
     for kind, other in (("world", "room.xml"), ("robot", "robot.xml"), ("ea", "guide.xml")):
@@ -125,9 +125,9 @@ def _scenario(path: Path) -> list[Path]:
 
 
 def _documents(folder: Path) -> dict[str, list[Path]]:
-    """The documents of a folder that have no error, by what they are, in their names' order.
+    """The documents of a folder without errors, by kind, sorted by name.
 
-    Of applications with one id only the first can be run, so that others are left out.
+    Of applications with the same id only the first can run; the others are left out.
     """
     found: dict[str, list[Path]] = {"fa": [], "ea": [], "world": [], "robot": []}
     taken: set[str] = set()
@@ -140,7 +140,7 @@ def _documents(folder: Path) -> dict[str, list[Path]]:
 
 
 def _kind(path: Path) -> tuple[str, str]:
-    """What a document is, and its id; nothing where it has errors: it could not be run."""
+    """The kind and id of a document; empty if it has errors and so could not run."""
     try:
         data = read_file(path)
         root = parse(str(path), data)

@@ -1,6 +1,6 @@
-"""What of documents a test has gone through: forms, items, handlers, links and conditions.
+"""How much of its documents a test has reached: forms, items, handlers, links, conditions.
 
-A *point* is something that a run can come to: an element, one way that a condition can go.
+A *point* is something that a run can reach: an element, or one outcome of a condition.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ HOLDERS = FORMS | {"iu"}
 HANDLERS = frozenset({"on", "catch", "error", "help", "noinput", "nomatch"})
 OTHERS = frozenset({"filled", "link", "choice"})
 TELLING = ("id", "name", "event", "next")
-"""Attributes that tell an element from others of its name."""
+"""Attributes that distinguish an element from others with its name."""
 WIDEST = 60
-"""Characters of the missing lines that a table shows in a row, at least."""
+"""Characters of an attribute that a point shows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Something that a run can come to: where it stands, what it is, and what it stands in."""
+    """Something that a run can reach: its line, kind, description, and the point around it."""
 
     line: int
     kind: str
@@ -34,11 +34,11 @@ class Point:
     inside: int | None
     """The number of the point around it, if any."""
     last: int
-    """The last line of what it holds."""
+    """The last line of its content."""
 
 
 @dataclass(slots=True)
-class Covered:
+class DocumentCoverage:
     """A document's points, and the numbers of those that were reached."""
 
     points: list[Point]
@@ -46,39 +46,39 @@ class Covered:
 
     @property
     def percent(self) -> float:
-        """How much was reached; a document without points is covered."""
+        """The percentage that was reached; a document without points is covered."""
         return 100 * len(self.reached) / len(self.points) if self.points else 100.0
 
     @property
     def missing(self) -> list[Point]:
-        """What was not reached."""
+        """The points that were not reached."""
         return [one for number, one in enumerate(self.points) if number not in self.reached]
 
     def outermost(self) -> list[Point]:
-        """What was not reached, without what stands in it."""
+        """The points that were not reached, without those inside them."""
         return [one for one in self.missing if one.inside is None or one.inside in self.reached]
 
 
-Coverage = dict[str, Covered]
+Coverage = dict[str, DocumentCoverage]
 """By the paths of the documents."""
 
 
 def covered(marks: Marks) -> Coverage:
-    """What has been gone through in one run."""
+    """The coverage of one run."""
     found: Coverage = {}
     for file, root in marks.roots.items():
         held: list[tuple[Point, bool]] = list(_points(root, marks.marks[file]))
         name = os.path.normpath(file)
         reached = {number for number, (_, is_reached) in enumerate(held) if is_reached}
-        found[name] = Covered([point for point, _ in held], reached)
+        found[name] = DocumentCoverage([point for point, _ in held], reached)
     return found
 
 
 def merge(all_of_it: Coverage, more: Coverage) -> None:
-    """Add what another run has gone through."""
+    """Add the coverage of another run."""
     for name, one in more.items():
-        held = all_of_it.setdefault(name, Covered(one.points))
-        if held.points == one.points:  # else the file has changed meanwhile
+        held = all_of_it.setdefault(name, DocumentCoverage(one.points))
+        if held.points == one.points:  # otherwise the file has changed
             held.reached |= one.reached
 
 
@@ -93,7 +93,7 @@ def total(coverage: Coverage) -> float:
 
 
 def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[Point, bool]]:
-    """All points of a document in its order, with whether they were reached."""
+    """All points of a document in order, and whether each was reached."""
     count = 0
     stack: list[tuple[Node, str, int | None]] = [(root, "", None)]
     while stack:
@@ -107,7 +107,7 @@ def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[Point, bool]]:
 
 
 def _of(node: Node, parent: str, marks: set[Mark]) -> Iterator[tuple[str, str, int, bool]]:
-    """The points of an element: kind, words, line, and whether it was reached."""
+    """The points of an element: kind, description, line, and whether it was reached."""
     index, line, shown = node.index, node.place.line, _shown(node)
     item = node.tag in ITEMS and parent in HOLDERS
     if item or node.tag in FORMS | HANDLERS | OTHERS:
@@ -122,7 +122,7 @@ def _of(node: Node, parent: str, marks: set[Mark]) -> Iterator[tuple[str, str, i
 
 
 def _branches(node: Node, marks: set[Mark]) -> Iterator[tuple[str, str, int, bool]]:
-    """Each way that an if can go, the one through none of its branches included."""
+    """Each branch of an if, and the case that none is taken."""
     parts = [node, *node.all("elseif")]
     for part in parts:
         yield "true", _shown(part), part.place.line, (part.index, "true") in marks
@@ -133,17 +133,17 @@ def _branches(node: Node, marks: set[Mark]) -> Iterator[tuple[str, str, int, boo
 
 
 def _shown(node: Node) -> str:
-    """An element as the reader knows it."""
+    """A start tag, abbreviated."""
     names = ("cond",) if node.tag in ("if", "elseif") else TELLING
     told = next((f' {name}="{node.get(name)}"' for name in names if node.get(name)), "")
     return f"<{node.tag}{told[:WIDEST]}>"
 
 
-# Telling ---------------------------------------------------------------------------
+# Output ----------------------------------------------------------------------------
 
 
-def missing_words(one: Covered) -> str:
-    """The lines that were not reached, as ``12-20, 31 false``."""
+def missing_words(one: DocumentCoverage) -> str:
+    """The lines that were not reached, such as ``12-20, 31 false``."""
     found: dict[str, None] = {}
     for point in one.outermost():
         if point.kind == "in":
@@ -155,7 +155,7 @@ def missing_words(one: Covered) -> str:
 
 
 def format_coverage(coverage: Coverage) -> str:
-    """The table: a row for each document, and one for all."""
+    """Coverage as a table: a row for each document, and one for all."""
     wide = max([8, *(len(name) for name in coverage)])
     lines = [f"{'Document':<{wide}}  Points  Reached  Cover  Missing lines"]
     for name, one in sorted(coverage.items()):
@@ -170,12 +170,12 @@ def format_coverage(coverage: Coverage) -> str:
 
 
 def _percent(number: float) -> str:
-    """A percentage, rounded down: 100% is everything."""
+    """A percentage, rounded down so that 100% means everything."""
     return f"{int(number)}%"
 
 
 def coverage_data(coverage: Coverage) -> dict[str, Any]:
-    """Coverage as plain data."""
+    """Coverage as data for JSON."""
     return {
         "percent": round(total(coverage), 2),
         "documents": [

@@ -18,15 +18,15 @@ from prima.testing.golden import golden_of
 SCENARIO = re.compile(rb"<(?:[\w.-]+:)?scenario\s[^<]*urn:prima:scenario:")
 """The beginning of a scenario's root element."""
 GLANCE = 65_536
-"""Bytes of a file that are looked at."""
-PASSED_BY = frozenset({"node_modules", "__pycache__", "venv", "build", "dist"})
-"""Folders in which nobody keeps scenarios; nor in those whose names begin with a dot."""
+"""Bytes of a file that are searched."""
+SKIPPED = frozenset({"node_modules", "__pycache__", "venv", "build", "dist"})
+"""Folders that are not searched; nor are those whose names begin with a dot."""
 
 
 def is_scenario(path: str | Path) -> bool:
-    """Whether a file is a scenario, as far as its beginning tells; no error if it is unreadable."""
+    """Whether a file begins as a scenario; false if it is unreadable."""
     if not os.path.isfile(path):
-        return False  # what is no file may never come to an end
+        return False  # reading a device might never end
     try:
         with open(path, "rb") as stream:
             data = stream.read(GLANCE)
@@ -36,33 +36,33 @@ def is_scenario(path: str | Path) -> bool:
 
 
 def find(paths: Iterable[str]) -> list[str]:
-    """The scenarios that are named, and those in folders that are; each once, in order.
+    """The scenarios named, and those in folders named; each once, in order.
 
     Raises:
-        UsageError: a path is not there, a folder holds no scenario, a file is none.
+        UsageError: a path does not exist, or a folder contains no scenario.
     """
     found: dict[str, None] = {}
     for path in paths:
         if not os.path.exists(path):
-            raise UsageError(f"{path}: cannot be read: there is no such file or folder.")
+            raise UsageError(f"{path}: no such file or folder.")
         if not os.path.isdir(path):
             found[path] = None
             continue
-        ignored = Ignored.of(path)
+        ignored = IgnoreList.of(path)
         inside = list(_inside(path, ignored))
         if not inside:
-            but = f" {ignored.file} leaves some out." if ignored.used else ""
+            but = f" {ignored.file} excludes some." if ignored.used else ""
             raise UsageError(
-                f"{path}: holds no scenarios: XML files whose root element is <scenario>.{but}"
+                f"{path}: contains no scenarios (XML files whose root element is <scenario>).{but}"
             )
         found.update(dict.fromkeys(inside))
     return list({os.path.realpath(path): path for path in reversed(found)}.values())[::-1]
 
 
-class Ignored:
-    """What a project leaves out of its tests: patterns of paths, in its pyproject.toml.
+class IgnoreList:
+    """Patterns of paths that a project excludes from its tests, in its pyproject.toml.
 
-    ``file`` is that file, and ``used`` tells whether anything has been left out.
+    ``file`` is that file; ``used`` is true once anything has been excluded.
     """
 
     def __init__(self, file: str = "", patterns: Iterable[str] = ()) -> None:
@@ -72,8 +72,8 @@ class Ignored:
         self._patterns = [pattern.rstrip("/") for pattern in patterns]
 
     @classmethod
-    def of(cls, folder: str) -> Ignored:
-        """That of the nearest pyproject.toml, in a folder or above it.
+    def of(cls, folder: str) -> IgnoreList:
+        """The list of the nearest pyproject.toml, in a folder or above it.
 
         Raises:
             UsageError: the file cannot be read, or its [tool.prima] is wrong.
@@ -86,7 +86,7 @@ class Ignored:
         return cls()
 
     def __call__(self, path: str) -> bool:
-        """Whether a file or folder is left out."""
+        """Whether a file or folder is excluded."""
         if not self._patterns:
             return False
         inside = os.path.relpath(os.path.realpath(path), self._root).replace(os.sep, "/")
@@ -99,7 +99,7 @@ def _patterns(file: Path) -> list[str]:
     """``ignore`` of [tool.prima].
 
     Raises:
-        UsageError: it cannot be read, or is no list of texts.
+        UsageError: it cannot be read, or is not a list of strings.
     """
     shown = os.path.relpath(file)
     try:
@@ -107,24 +107,24 @@ def _patterns(file: Path) -> list[str]:
     except (ValueError, AttributeError) as error:
         raise UsageError(f"{shown}: cannot be read: {error}.") from None
     if not isinstance(settings, dict):
-        raise UsageError(f"{shown}: prima is a table: write [tool.prima].")
+        raise UsageError(f"{shown}: tool.prima must be a table: write [tool.prima].")
     for name in settings:
         if name != "ignore":
-            hint = did_you_mean(name, ["ignore"]) or "It may have ignore."
+            hint = did_you_mean(name, ["ignore"]) or "Its only setting is ignore."
             raise UsageError(f'{shown}: [tool.prima] has no "{name}". {hint}')
     patterns = settings.get("ignore", [])
     if not isinstance(patterns, list) or not all(isinstance(one, str) for one in patterns):
-        raise UsageError(f'{shown}: ignore is a list of paths: write ignore = ["drafts"].')
+        raise UsageError(f'{shown}: ignore must be a list of paths: write ignore = ["drafts"].')
     return patterns
 
 
-def _inside(folder: str, ignored: Ignored) -> Iterator[str]:
+def _inside(folder: str, ignored: IgnoreList) -> Iterator[str]:
     for place, folders, files in os.walk(folder):
         folders[:] = sorted(
             name
             for name in folders
             if not name.startswith(".")
-            and name not in PASSED_BY
+            and name not in SKIPPED
             and not ignored(os.path.join(place, name))
         )
         for name in sorted(files):
@@ -134,9 +134,9 @@ def _inside(folder: str, ignored: Ignored) -> Iterator[str]:
 
 
 def expects(path: Path) -> bool:
-    """Whether a scenario expects more than that it runs: elements, or a table beside it.
+    """Whether a scenario has expectations: elements, or a table beside it.
 
-    One that cannot be read is a test that fails.
+    An unreadable one counts as a test, which fails.
     """
     if golden_of(path).is_file():
         return True

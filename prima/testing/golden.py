@@ -1,4 +1,4 @@
-"""Expected transcripts: the table beside a scenario, compared with that of a run."""
+"""Expected tables: the file beside a scenario, compared with a run's table."""
 
 from __future__ import annotations
 
@@ -9,40 +9,41 @@ from prima.errors import DocumentError, UsageError
 from prima.loading.files import read_file
 from prima.loading.writing import write_whole
 from prima.transcript.diff import Difference, compare, format_difference
-from prima.transcript.table import Row, format_rows, read_table, width
+from prima.transcript.row import Row
+from prima.transcript.table import format_rows, read_table, width
 
 LONGEST_DIFFERENCE = 200
-"""Lines of a difference that are shown."""
+"""Maximum number of lines of a difference."""
 
 
 def golden_of(scenario: Path) -> Path:
-    """Where a scenario's expected table is: beside it, with the name's end ``.txt``."""
+    """The file of a scenario's expected table: beside it, with the suffix ``.txt``."""
     return scenario.with_suffix(".txt")
 
 
 def read_golden(path: Path) -> str | None:
-    """The expected table, or None where there is none.
+    """The expected table, or None if there is none.
 
     Raises:
-        UsageError: it cannot be read, or is no text.
+        UsageError: it cannot be read, or is not text.
     """
     if not path.exists():
         return None
     try:
         return read_file(path).decode("utf-8-sig").replace("\r\n", "\n")
     except (DocumentError, UnicodeDecodeError):
-        raise UsageError(f"{path}: this is no transcript's table: it is not UTF-8.") from None
+        raise UsageError(f"{path}: not a transcript's table: it is not UTF-8.") from None
 
 
 def difference(golden: str, run: list[Row], by: str) -> str:
-    """How a run's table differs from the expected one; empty where it does not.
+    """The difference of a run's table from the expected one; empty if there is none.
 
-    How wide the expected table is does not matter: the run's is made as wide.
+    The run's table is laid out as wide as the expected one.
 
     Args:
         golden: the expected table.
         run: the run's rows.
-        by: ``text``, or ``behavior``: times may then be off by less than half a second.
+        by: ``text``, or ``behavior``, which ignores differences in time below 0.5 s.
     """
     table = format_rows(run, columns=width(golden.partition("\n")[0]))
     if golden == table:
@@ -50,14 +51,14 @@ def difference(golden: str, run: list[Row], by: str) -> str:
     try:
         rows = compare(read_table(golden), read_table(table))
     except (ValueError, IndexError):
-        return _lines(golden, table)  # what is expected is no table
+        return _lines(golden, table)  # the expected file is not a table
     if rows.differs:
         return _changed(rows)
     return "" if by == "behavior" else _lines(golden, table)
 
 
 def _changed(rows: Difference) -> str:
-    """The rows that changed, with what stands around them."""
+    """The rows that changed, with those around them."""
     lines = format_difference(rows).rstrip("\n").split("\n")
     *shown, last = lines
     kept = [
@@ -73,17 +74,17 @@ def _lines(golden: str, table: str) -> str:
     made = unified_diff(
         golden.splitlines(), table.splitlines(), "expected", "this run", lineterm="", n=1
     )
-    return _bounded(list(made)) or "They differ in their line ends alone."
+    return _bounded(list(made)) or "Only line endings differ."
 
 
 def _bounded(lines: list[str]) -> str:
     more = len(lines) - LONGEST_DIFFERENCE
-    kept = [*lines[:LONGEST_DIFFERENCE], *([f"... and {more} lines more"] if more > 0 else [])]
+    kept = [*lines[:LONGEST_DIFFERENCE], *([f"... and {more} more lines"] if more > 0 else [])]
     return "\n".join(kept)
 
 
 def write_golden(path: Path, table: str) -> None:
-    """Write a table to be expected from now on.
+    """Write an expected table.
 
     Raises:
         UsageError: it cannot be written.

@@ -1,4 +1,4 @@
-"""Results of tests for other tools: JUnit XML, and coverage in Cobertura's format."""
+"""Test results as JUnit XML, and coverage as Cobertura XML."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pathlib import PurePath
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from prima.errors.visible import visible
-from prima.testing.coverage import Coverage, Covered
+from prima.testing.coverage import Coverage, DocumentCoverage
 from prima.testing.running import Result
-from prima.testing.telling import counts, format_result
+from prima.testing.summary import counts, format_result
 
 
 def junit(results: Iterable[Result]) -> bytes:
-    """Results as JUnit XML: a suite for each folder, a case for each scenario."""
+    """Results as JUnit XML: a suite per folder, a case per scenario."""
     held = sorted(results, key=lambda one: (_folder(one), one.path))
     root = Element("testsuites", name="prima")
     _totals(root, held)
@@ -55,7 +55,7 @@ def _case(suite: Element, result: Result) -> None:
     lines = [one.place.line for one in result.failures if one.place.file == result.path]
     if lines:
         case.set("line", str(lines[0]))
-    first = result.failures[0].message if result.failures else "The table is another one."
+    first = result.failures[0].message if result.failures else "The table differs."
     told = SubElement(
         case,
         "failure" if result.status == "failed" else "error",
@@ -66,7 +66,7 @@ def _case(suite: Element, result: Result) -> None:
 
 
 def cobertura(coverage: Coverage) -> bytes:
-    """Coverage as Cobertura's XML: a class for each document, a line for each that has points.
+    """Coverage as Cobertura XML: a class per document, a line for each line with points.
 
     A line is hit if all its points were reached.
     """
@@ -91,8 +91,8 @@ def cobertura(coverage: Coverage) -> bytes:
     return _written(root)
 
 
-def _hits(covered: Covered) -> dict[int, bool]:
-    """The lines that have points, with whether all of them were reached."""
+def _hits(covered: DocumentCoverage) -> dict[int, bool]:
+    """The lines with points, and whether all points of each were reached."""
     missed = {point.line for point in covered.missing}
     return {line: line not in missed for line in sorted({one.line for one in covered.points})}
 

@@ -1,4 +1,4 @@
-"""Running scenarios as tests: one result each, which may come from another process."""
+"""Runs scenarios as tests, in one process or several."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from prima import api
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, RunError, UsageError
 from prima.loading import Loaded, load_scenario
 from prima.pool import Died, spread
-from prima.testing.checking import Failure, check, make_run
+from prima.testing.checking import Failure, check
 from prima.testing.coverage import Coverage, covered
+from prima.testing.facts import make_run
 from prima.testing.golden import difference, golden_of, read_golden
 from prima.testing.tracing import marks_of, states_of
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 
 Status = Literal["passed", "failed", "error", "invalid"]
-STATUSES: tuple[Status, ...] = ("passed", "failed", "error", "invalid")
-"""As expected; not as expected; the run ended by an error; documents are wrong."""
+"""As expected; not as expected; the run ended by an error; the documents have errors."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """How scenarios are tested: the policy (None for their own), how tables are compared."""
+    """How to test scenarios: the policy (None for their own), and how to compare tables."""
 
     policy: str | None = None
     compare: str = "text"
@@ -36,7 +36,7 @@ class Choice:
 
 @dataclass(slots=True)
 class Result:
-    """What became of one scenario."""
+    """The result of one scenario."""
 
     path: str
     name: str = ""
@@ -44,24 +44,24 @@ class Result:
     expectations: int = 0
     failures: list[Failure] = field(default_factory=list)
     golden: Literal["", "same", "differs", "skipped"] = ""
-    """How the run compares with the expected table, if there is one."""
+    """The comparison with the expected table, if there is one."""
     difference: str = ""
     table: str = ""
-    """The run's table, where the expected one is not there or differs."""
+    """The run's table, if the expected one is missing or differs."""
     seconds: float = 0.0
-    """How long it took."""
+    """Its duration in real time."""
     simulated: float = 0.0
-    """How long the run was, by its own clock (s)."""
+    """The run's duration in virtual time (s)."""
     coverage: Coverage = field(default_factory=dict)
 
     @property
     def file(self) -> Path:
-        """Where the expected table stands, or would."""
+        """The file of the expected table, whether it exists or not."""
         return golden_of(Path(self.path))
 
     @property
     def checked(self) -> bool:
-        """Whether anything is expected at all, but that it runs."""
+        """Whether there is any expectation."""
         return bool(self.expectations) or self.golden in ("same", "differs")
 
 
@@ -69,7 +69,7 @@ def run_one(path: str, choice: Choice) -> Result:
     """Test one scenario.
 
     Raises:
-        UsageError: the file or its expected table cannot be read; there is no such policy.
+        UsageError: the file or its expected table cannot be read; the policy is unknown.
     """
     began = perf_counter()
     made = Result(path)
@@ -115,7 +115,7 @@ def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
 
 
 def _compare(rows: list[Row], by: str, own: bool, made: Result) -> None:
-    """Compare with the expected table, which is that of the scenario's own policy."""
+    """Compare with the expected table, which is for the scenario's own policy."""
     golden = read_golden(made.file)
     if golden is None:
         return
@@ -131,7 +131,7 @@ def _compare(rows: list[Row], by: str, own: bool, made: Result) -> None:
 
 
 def _unexpected(failures: Iterable[str], loaded: Loaded) -> list[Failure]:
-    """Errors that ended applications, but those that the scenario itself expects."""
+    """Errors that ended applications, except those that the scenario expects."""
     scenario = loaded.cast.scenario
     expected = {
         one.words["ends"]
@@ -140,13 +140,13 @@ def _unexpected(failures: Iterable[str], loaded: Loaded) -> list[Failure]:
     }
     pairs = zip(loaded.cast.documents, scenario.applications, strict=False)
     places = {document.id: node.attribute_place("src") for document, (_, _, node) in pairs}
-    told = []
+    unexpected = []
     for failure in failures:
         name, _, what = failure.rstrip(": ").partition(": ")
         if name not in expected:
             place = places.get(name, scenario.node.place)
-            told.append(Failure(place, f"The application {name} ended by an error: {what}"))
-    return told
+            unexpected.append(Failure(place, f"The application {name} ended by an error: {what}"))
+    return unexpected
 
 
 def run_all(paths: list[str], choice: Choice, jobs: int = 1) -> Iterator[Result]:
@@ -154,27 +154,27 @@ def run_all(paths: list[str], choice: Choice, jobs: int = 1) -> Iterator[Result]
 
     Args:
         paths: the scenarios.
-        choice: how they are tested.
-        jobs: in how many processes.
+        choice: how to test them.
+        jobs: the number of processes.
 
     Raises:
         UsageError: as :func:`run_one`.
-        RunError: a process was ended from outside.
+        RunError: a process was killed.
     """
     if jobs == 1:
         yield from (run_one(path, choice) for path in paths)
         return
-    with closing(spread(partial(_told, choice), paths, jobs)) as made:
+    with closing(spread(partial(_run_or_error, choice), paths, jobs)) as made:
         for _path, found in made:
             if isinstance(found, Died):
-                raise RunError("a process that tested was ended from outside; the tests are ended.")
+                raise RunError("a test process was killed; the remaining tests are not run.")
             if isinstance(found, PrimaError):
                 raise found
             yield found
 
 
-def _told(choice: Choice, path: str) -> Result | UsageError | RunError:
-    """As :func:`run_one`, in a process of its own."""
+def _run_or_error(choice: Choice, path: str) -> Result | UsageError | RunError:
+    """As :func:`run_one`; an error is returned, so that it can leave the process."""
     try:
         return run_one(path, choice)
     except (UsageError, RunError) as error:
@@ -182,7 +182,7 @@ def _told(choice: Choice, path: str) -> Result | UsageError | RunError:
 
 
 def result_data(result: Result) -> dict[str, Any]:
-    """A result as plain data."""
+    """A result as data for JSON."""
     return {
         "scenario": result.path,
         "name": result.name,

@@ -1,4 +1,4 @@
-"""Which state each application of a run was in, and what of its documents it went through."""
+"""The states of a run's applications, and the elements that they reached."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ if TYPE_CHECKING:
     from prima.markup.tree import Node
 
 Mark = tuple[int, str]
-"""An element, by its number in its document, and what became of it: in, true, false or heard."""
+"""An element, by its number in its document, and what happened: in, true, false or heard."""
 
 
 @dataclass(slots=True)
 class Change:
-    """An application comes into a state at a time (ms); without a name it is in none."""
+    """An application enters a state at a time (ms); an empty name means none."""
 
     time: int
     state: str
     passing: bool = False
-    """Whether another change in the same instant takes its place."""
+    """Whether another change in the same instant replaces it."""
 
 
 @dataclass(slots=True)
 class States:
-    """Which form each application was in."""
+    """The states of each application over time."""
 
     changes: dict[str, list[Change]] = field(default_factory=dict)
 
     def note(self, app: str, time: int, state: str, passing: bool = False) -> None:
-        """An application is in a state from now on."""
+        """Record that an application enters a state."""
         held = self.changes.setdefault(app, [])
         if held and held[-1].passing and held[-1].time == time:
             held.pop()
@@ -41,10 +41,10 @@ class States:
 
 @dataclass(slots=True)
 class Marks:
-    """What was gone through, by the path of the document."""
+    """Elements reached, by the path of the document."""
 
     roots: dict[str, Node] = field(default_factory=dict)
-    """The root elements of the documents that were there."""
+    """The root elements of the documents."""
     marks: dict[str, set[Mark]] = field(default_factory=dict)
 
 
@@ -58,10 +58,10 @@ def states_of(visits: Iterable[Visit]) -> States:
 
 
 def marks_of(visits: Iterable[Visit]) -> Marks:
-    """What was gone through of documents that are files; answers of services are left out."""
+    """The elements reached in documents that are files, not in services' answers."""
     marks = Marks()
     paths: dict[int, str] = {}
-    """The paths of documents, by the identity of what all elements of one share."""
+    """The paths of documents, by the identity of their sources."""
     for visit in visits:
         if visit.node is None or visit.what in ("enter", "leave"):
             continue

@@ -1,4 +1,4 @@
-"""One colour for each application, the same in every picture: report, graphs and maps."""
+"""Colours of applications, the same in reports, graphs and maps."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ PALETTE = (
     ("#fbeeb5", "#735800", "#4a3d0c", "#dcbb4e"),
     ("#e4e3de", "#57564f", "#3a3d43", "#aab0ba"),
 )
-"""Fill and line on light, fill and line on dark; the last is for what is no application's."""
+"""Fill and line on light, fill and line on dark; the last is for no application."""
 NOBODY = len(PALETTE) - 1
 SALT = 1
-"""With this the demo's applications that run together differ."""
+"""Chosen so that the demo's applications that run together differ."""
 
 
 def colours(apps: Iterable[str]) -> dict[str, int]:

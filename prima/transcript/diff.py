@@ -1,4 +1,4 @@
-"""How two transcripts differ, by behaviour and not by line."""
+"""Compares two transcripts by behaviour, not by line."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from typing import Literal
 
 from prima.errors.visible import escaped, visible
 from prima.transcript.measures import Summary
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 
 DELAY = 0.5
-"""Seconds by which a behaviour must come later, beyond what came before it, to count."""
+"""Seconds by which a behaviour must be delayed more than its predecessors to count."""
 
 Kind = Literal["same", "moved", "added", "lost", "split", "joined", "changed", "delayed"]
 MARKS: dict[Kind, str] = {

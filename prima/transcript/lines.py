@@ -1,4 +1,4 @@
-"""Transcripts as JSON lines: writing without a model, reading with one."""
+"""Transcripts as JSON lines: writing, and reading with checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from prima.messages import Json, Record
 from prima.transcript.record import FIELDS, lacking, model
 
 MAX_LINE = 1_000_000
-"""Characters that a line of a transcript may have."""
+"""Maximum length of a line of a transcript."""
 
 
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
@@ -65,7 +65,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
     same, and what is wrong with that line is put into it.
 
     Raises:
-        UsageError: the text is no transcript, with the line's number.
+        UsageError: the text is not a transcript; the line is named.
     """
     from pydantic import ValidationError
 
@@ -75,7 +75,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         if not text.strip():
             continue
         if len(text) > MAX_LINE:
-            raise UsageError(f"{name}:{number}: this line is too long for a transcript's.")
+            raise UsageError(f"{name}:{number}: the line is too long for a transcript.")
         try:
             try:
                 odd = "NaN" in text or "Infinity" in text
@@ -93,7 +93,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         count += 1
         yield record
     if count == 0:
-        raise UsageError(f"{name}: this is no transcript: it has no records.")
+        raise UsageError(f"{name}: not a transcript: it has no records.")
 
 
 @cache
@@ -141,13 +141,13 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
     if isinstance(error, invalid):
         first = error.errors()[0]  # type: ignore[attr-defined]
         if not first["loc"]:
-            return 'this is no transcript\'s record: one stands in braces, as {"time":0, ...}.'
+            return 'not a transcript\'s record: write an object such as {"time":0, ...}.'
         where = ".".join(str(part) for part in first["loc"])
-        return f"this is no transcript's record: {where}: {first['msg']}."
+        return f"not a transcript's record: {where}: {first['msg']}."
     if "needs" in str(error):
-        return f"this is no transcript's record: {error}."
+        return f"not a transcript's record: {error}."
     if text.lstrip().startswith("{") and not text.endswith("\n"):
-        return "the record is cut off; the transcript was not written to its end."
+        return "the record is cut off; the transcript is incomplete."
     if text.lstrip().startswith("<"):
         return "this is not a line of JSON but of XML. Transcripts are written by prima run -o."
     return "this is not a line of JSON. Transcripts are written by prima run -o."

@@ -1,10 +1,11 @@
-"""Figures of a transcript, computed from its records alone."""
+"""Measures of a transcript, computed from its records."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.transcript.criteria import Criteria, Observer
+from prima.transcript.criteria import Criteria
+from prima.transcript.observer import Observer
 from prima.transcript.record import Entry
 from prima.transcript.run import Run
 
@@ -30,7 +31,7 @@ class Summary:
 
 
 class Measure:
-    """Counts while a run goes on; ``records`` need not be kept."""
+    """Measures during a run, without keeping records."""
 
     def __init__(self) -> None:
         self.records = 0
@@ -40,7 +41,7 @@ class Measure:
         self._observer = Observer(delays=False)
 
     def add(self, entry: Entry) -> None:
-        """Take a record in."""
+        """Add a record."""
         self.records += 1
         self._last = entry.time
         self._collisions += entry.phase == "collision"
@@ -48,12 +49,12 @@ class Measure:
         self._observer.add(entry)
 
     def summary(self) -> Summary:
-        """What has been counted so far."""
+        """The result so far."""
         return _summary(self._last, self._observer.result(), self._collisions, self._starved)
 
 
 def summarize(run: Run) -> Summary:
-    """Measure a run: how long it took, what broke, how soon events were answered."""
+    """Measure a run: duration, broken streams, reaction times."""
     last = run.entries[-1].time if run.entries else 0.0
     return _summary(last, run.criteria, len(run.of("collision")), len(run.of("starve")))
 

@@ -1,4 +1,4 @@
-"""The rules that records name, each in a few words (docs/mediation.md has them whole)."""
+"""Short versions of the rules that records name (see docs/mediation.md)."""
 
 from __future__ import annotations
 
@@ -38,4 +38,4 @@ RULES = {
     "X5": "a motion free in its path and one faithful to its own run together",
     "X6": "another Command takes the place of one that the robot lacks",
 }
-"""A rule's number, as in a record's ``rule``, with what it says."""
+"""The rules by their numbers, as in a record's ``rule``."""

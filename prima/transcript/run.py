@@ -1,4 +1,4 @@
-"""The one fold of a run's records: what its behaviors, streams, floor, holds and reactions were.
+"""The fold of a run's records into behaviors, streams, floor, holds and reactions.
 
 :func:`run_of` goes through the records once, in time and memory linear in them. Table, reasons,
 report, graphs and exports are views of the :class:`Run` that comes out. Times are seconds.
@@ -12,7 +12,7 @@ from itertools import chain
 
 from prima.errors import UsageError
 from prima.messages import Record
-from prima.transcript.criteria import Observer
+from prima.transcript.observer import Observer
 from prima.transcript.record import Entry, lacking
 from prima.transcript.spans import (
     OPEN,
@@ -32,9 +32,9 @@ from prima.transcript.spans import (
 )  # fmt: skip
 
 ASKED = frozenset({"request", "interrupt", "hold", "resume", "starve"})
-"""Phases of records that say something of when an AB came."""
+"""Phases of records that explain the time of an AB."""
 OVER = frozenset({"end", "cancel", "fail", "interrupt"})
-"""Phases of records with which an AB, or a loop of one, stops."""
+"""Phases of records that end an AB, or a loop of one."""
 NEEDED = {
     "suspend": ("tree", "app"),
     "resume": ("tree", "app"),
@@ -42,11 +42,11 @@ NEEDED = {
     "cancel": ("behavior",),
     "send": ("app", "data"),
 }
-"""Fields that views need beside those without which a record cannot be read."""
+"""Fields that views need besides the required ones."""
 
 
 class Fold:
-    """Takes the records of one run in their order."""
+    """Folds the records of one run, in order."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -66,7 +66,7 @@ class Fold:
         self.phases: dict[str, list[Entry]] = defaultdict(list)
         self._observer = Observer()
         self._came: dict[int, float] = {}
-        """When events came."""
+        """The times of events."""
         self._answered: set[tuple[str, int]] = set()
         self._of: dict[str, Stream] = {}
         """The streams of behaviors."""
@@ -94,7 +94,7 @@ class Fold:
         }
 
     def add(self, entry: Entry) -> None:
-        """Take in one record; times that go backwards count as the time before."""
+        """Add one record; a time that goes backwards counts as the previous one."""
         self.now = max(self.now, entry.time)
         self.entries.append(entry)
         self.phases[entry.phase].append(entry)
@@ -111,7 +111,7 @@ class Fold:
             self.behaviors[name].last = entry.time
 
     def run(self) -> Run:
-        """The run as far as it has come; the fold is over."""
+        """The run so far; ends the fold."""
         for spell in self.spells:
             if spell.behavior.spell is spell:
                 self._close(spell.behavior, "unfinished", "", open_=True)
@@ -211,20 +211,20 @@ class Fold:
         self._close(behavior, outcome, entry.by)
 
     def _halted(self, entry: Entry, name: str) -> None:
-        """The device tells what was heard of what was broken off."""
+        """The device reports what was heard of an interrupted text."""
         behavior = self.behaviors.get(name)
         if behavior is not None and behavior.broken is not None:
             behavior.broken.heard = entry.data.get("heard") or ""
             behavior.broken = None
 
     def _collision(self, entry: Entry, name: str) -> None:
-        """Without a mediator another behavior takes a device away."""
+        """Without a mediator, another behavior takes over a device."""
         behavior = self.behaviors.get(name)
         if behavior is not None and behavior.spell and entry.device in behavior.spell.uses:
             self._release(behavior.spell.uses.pop(entry.device), self.now, "lost", entry.by)
 
     def _close(self, behavior: Behavior, outcome: str, by: str, open_: bool = False) -> None:
-        """A spell is over; one that waits for its next loop was over with its last."""
+        """End a spell; one that waits for its next loop ended with its last."""
         spell, behavior.spell = behavior.spell, None
         if spell is None:
             return
@@ -242,7 +242,7 @@ class Fold:
         self.uses.append(use)
 
     def _fall_silent(self, spell: Spell, end: float, outcome: str = "") -> None:
-        """A spell has said what it says."""
+        """End the saying of a spell."""
         saying, spell.saying = spell.saying, None
         if saying is not None:
             saying.outcome = outcome
@@ -275,7 +275,7 @@ class Fold:
             self._came[entry.serial] = self.now
 
     def _react(self, entry: Entry) -> None:
-        """An application's first Command because of an event starts."""
+        """Record an application's first Command because of an event."""
         cause = entry.cause
         if cause is not None and cause in self.events and (entry.app, cause) not in self._answered:
             self._answered.add((entry.app, cause))
@@ -285,7 +285,7 @@ class Fold:
     # Streams --------------------------------------------------------------------------------
 
     def _change(self, tree: str, new: State | None) -> None:
-        """A stream's state ends, and another begins."""
+        """End a stream's state, and begin another."""
         if old := self._state.pop(tree, None):
             old.close(self.now, len(self.entries))
         if new is not None:
@@ -319,7 +319,7 @@ class Fold:
             life.windows.append(self.now)
 
     def _begin(self, stream: Stream, name: str) -> None:
-        """Something of a stream runs."""
+        """Record that an AB of a stream runs."""
         if not stream.running:
             stream.since = self.now
         stream.running.add(name)
@@ -339,7 +339,7 @@ class Fold:
             stream.away = None
 
     def _break(self, stream: Stream) -> None:
-        """It goes on now; another application came in since it last did something."""
+        """Record that another application broke the stream before it goes on."""
         paused = self.now if stream.paused is None else stream.paused
         begin = min(paused, self._observer.broken_since)
         came = [
@@ -351,7 +351,7 @@ class Fold:
         stream.put(Piece(begin, self.now, "broken", ", ".join(came[:3])))
 
     def _finish(self, stream: Stream) -> None:
-        """The transcript is over."""
+        """End a stream with the transcript."""
         if stream.running:
             stream.put(Piece(stream.since, self.now, "runs"))
         self._return(stream)
@@ -364,7 +364,7 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
     """Fold records; ``name`` is the transcript's, for messages.
 
     Raises:
-        UsageError: a record lacks what its phase has.
+        UsageError: a record lacks a field of its phase.
     """
     fold = Fold()
     for number, record in enumerate(records, 1):
@@ -376,12 +376,12 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
         except (KeyError, TypeError, ValueError, AttributeError):
             lacks = True
         if lacks:
-            raise UsageError(f"{name}: record {number} lacks what its phase has.") from None
+            raise UsageError(f"{name}: record {number} lacks a field of its phase.") from None
     return fold.run()
 
 
 def until(run: Run, time: float) -> Run:
-    """The run as it was when all that happened at a time had happened."""
+    """The run up to and including a time."""
     fold = Fold()
     for entry in run.entries:
         if entry.time > time:

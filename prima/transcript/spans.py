@@ -1,4 +1,4 @@
-"""What a run consists of: behaviors and their spells, streams, states, holds, floor. In seconds."""
+"""The parts of a run: behaviors and their spells, streams, states, holds, floor. In seconds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from prima.transcript.criteria import Criteria
 from prima.transcript.record import Entry
 
 OPEN = 1 << 62
-"""Says of a span that it has not ended with the transcript."""
+"""Marks a span that has not ended by the end of the transcript."""
 
 
 def base(name: str) -> str:
@@ -19,12 +19,12 @@ def base(name: str) -> str:
 
 @dataclass(slots=True)
 class Span:
-    """Something that lasts; one that is open ends with the transcript."""
+    """Something with a duration; an open one ends with the transcript."""
 
     begin: float
     end: float = -1.0
     closed: int = OPEN
-    """The number of the record with which it ended: in this order spans are over."""
+    """The number of the record with which it ended, which orders spans by end."""
 
     def close(self, now: float, number: int) -> None:
         """End it."""
@@ -38,7 +38,7 @@ class Span:
 
 @dataclass(slots=True)
 class Behavior:
-    """An Atomic Behavior: what was asked, and how it is."""
+    """An Atomic Behavior: its request and state."""
 
     name: str
     asked: Entry
@@ -47,11 +47,11 @@ class Behavior:
     state: str = "waiting"
     began: float | None = None
     last: float = 0.0
-    """When the transcript mentions it last."""
+    """The time of its last record."""
     spell: Spell | None = None
     """The spell that has not ended, or waits for its next loop."""
     broken: Saying | None = None
-    """What it was saying when it was interrupted."""
+    """Its saying that was interrupted."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -62,11 +62,11 @@ class Spell(Span):
     start: Entry
     """The record of its first start."""
     cuts: list[float] = field(default_factory=list)
-    """Where one loop ends and the next begins."""
+    """The times at which one loop ends and the next begins."""
     outcome: str = ""
     by: str = ""
     parts: list[Spell] = field(default_factory=list)
-    """What a unit consists of."""
+    """The spells in a unit."""
     paused: bool = False
     """Whether its last loop has ended, and the next has not begun."""
     uses: dict[str, Use] = field(default_factory=dict)

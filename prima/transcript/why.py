@@ -1,31 +1,32 @@
-"""Why a row of the table came where it did."""
+"""The reasons for the time of a row of the table."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from prima.transcript.record import Entry
+from prima.transcript.row import Row
 from prima.transcript.run import Run
 from prima.transcript.spans import base
-from prima.transcript.table import Row
 
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """One thing that had to do with when a row came: its time (s), and what it was."""
+    """One reason for the time of a row: when it arose (s), and a sentence."""
 
     time: float
     text: str
     rule: str = ""
     lost: tuple[str, ...] = ()
-    """ABs that were not selected: the first eight."""
+    """The first eight ABs that were not selected."""
     by: str = ""
     """The AB or stream that held it back, or that it gave way to."""
 
 
 def reasons(run: Run, row: Row, most: int = 0) -> list[Reason]:
-    """What led to a row, in order; with ``most``, of each kind only so many, the latest."""
+    """The reasons for a row, in order; with ``most``, only the latest ones of each kind."""
     name = base(row.behavior)
     if not name:
         return []
@@ -39,48 +40,76 @@ def reasons(run: Run, row: Row, most: int = 0) -> list[Reason]:
     return [reason for reason in made if reason is not None]
 
 
-def told(run: Run, row: Row) -> list[str]:
-    """A row with what led to it, in lines."""
+def explained(run: Run, row: Row) -> list[str]:
+    """A row and its reasons, as lines."""
     lines = [f"Row {row.number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
     if row.source:
         lines.append(f"Requested at {row.source}.")
     if row.actor != "R":
-        lines.append("It came from outside; no rule decided when.")
+        lines.append("It came from outside; no rule decided its time.")
     return lines + [f"{reason.time:.3f} s: {reason.text}" for reason in reasons(run, row)]
 
 
 def _reason(entry: Entry, row: Row) -> Reason | None:
-    """What an entry has to do with when a row came, if it has; or with the unit around it."""
-    phase, time = entry.phase, entry.time
-    if phase == "decision":
+    """The reason that an entry is for the time of a row, or of the unit around it."""
+    if entry.phase == "decision":
         return _selected(entry, row) if entry.winner in (row.behavior, row.unit) else None
-    about = base(entry.behavior)
-    it = f"the unit {about} is " if about == row.unit else ""
-    by, rule = entry.by, entry.rule
-    match phase:
-        case "request" if entry.inserted and not it:
-            rule = entry.inserted
-            return Reason(time, f"put in before {entry.before} (rule {rule}).", rule)
-        case "interrupt":
-            way = f"the unit {about} gives way" if it else "it gives way"
-            return Reason(time, f"{way} to {by} (rule X2).", "X2", by=by)
-        case "request":
-            flag = ", reactive" if entry.reactive else ""
-            asked = f"{it}requested" if it else f"requested as {base(row.behavior)}"
-            return Reason(time, f"{asked} ({entry.priority} priority{flag}).")
-        case "hold":
-            return Reason(time, f"{it}held back by {by} (rule {rule}).", rule, by=by)
-        case "starve" if not entry.loop:
-            waited = entry.data.get("waited", 0)
-            return Reason(
-                time, f"{it}kept waiting by {by} for {waited:g} s (rule {rule}).", rule, by=by
-            )
-        case "resume":
-            stream = f"the stream of {about}" if it else f"its stream {entry.tree}"
-            return Reason(time, f"{stream} resumes (rule C2).", "C2")
-        case "start" if not it:
-            return Reason(time, f"started inside the unit {entry.unit} (rule {entry.rule}).", rule)
-    return None
+    make = REASONS.get(entry.phase)
+    return make(entry, row, base(entry.behavior) == row.unit) if make else None
+
+
+def _requested(entry: Entry, row: Row, unit: bool) -> Reason:
+    if entry.inserted and not unit:
+        text = f"put in before {entry.before} (rule {entry.inserted})."
+        return Reason(entry.time, text, entry.inserted)
+    flag = ", reactive" if entry.reactive else ""
+    asked = f"{_it(entry, unit)}requested" if unit else f"requested as {base(row.behavior)}"
+    return Reason(entry.time, f"{asked} ({entry.priority} priority{flag}).")
+
+
+def _interrupted(entry: Entry, _: Row, unit: bool) -> Reason:
+    way = f"the unit {base(entry.behavior)} gives way" if unit else "it gives way"
+    return Reason(entry.time, f"{way} to {entry.by} (rule X2).", "X2", by=entry.by)
+
+
+def _held(entry: Entry, _: Row, unit: bool) -> Reason:
+    text = f"{_it(entry, unit)}held back by {entry.by} (rule {entry.rule})."
+    return Reason(entry.time, text, entry.rule, by=entry.by)
+
+
+def _starved(entry: Entry, _: Row, unit: bool) -> Reason | None:
+    if entry.loop:
+        return None
+    waited = f"{entry.data.get('waited', 0):g} s"
+    text = f"{_it(entry, unit)}kept waiting by {entry.by} for {waited} (rule {entry.rule})."
+    return Reason(entry.time, text, entry.rule, by=entry.by)
+
+
+def _resumed(entry: Entry, _: Row, unit: bool) -> Reason:
+    stream = f"the stream of {base(entry.behavior)}" if unit else f"its stream {entry.tree}"
+    return Reason(entry.time, f"{stream} resumes (rule C2).", "C2")
+
+
+def _started(entry: Entry, _: Row, unit: bool) -> Reason | None:
+    if unit:
+        return None
+    text = f"started inside the unit {entry.unit} (rule {entry.rule})."
+    return Reason(entry.time, text, entry.rule)
+
+
+def _it(entry: Entry, unit: bool) -> str:
+    return f"the unit {base(entry.behavior)} is " if unit else ""
+
+
+REASONS: dict[str, Callable[[Entry, Row, bool], Reason | None]] = {
+    "request": _requested,
+    "interrupt": _interrupted,
+    "hold": _held,
+    "starve": _starved,
+    "resume": _resumed,
+    "start": _started,
+}
+"""What a record of each phase says about a row, or about the unit around it."""
 
 
 def _selected(entry: Entry, row: Row) -> Reason:

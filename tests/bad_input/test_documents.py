@@ -232,7 +232,7 @@ def test_problems_of_all_files_and_none_is_lost(prima: Prima, tmp_path: Path) ->
     (tmp_path / "empty").mkdir()
     said = prima("validate", bad, "no.xml", good, tmp_path)
     said.check(2, f"{bad}:1:1", "no.xml: cannot be read: No such file")
-    prima("validate", "empty").check(2, "empty: holds no documents")
+    prima("validate", "empty").check(2, "empty: contains no documents")
     data = json.loads(prima("validate", "--format", "json", bad).check(1).out)
     assert data[0]["code"] == "wrong-namespace" and data[0]["remedy"].startswith("Begin with")
 

@@ -68,7 +68,7 @@ def test_an_expectation_of_another_namespace_is_told(tmp_path: Path) -> None:
 def test_what_is_no_file_is_no_scenario_of_a_folder(command: str, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "p.xml")
     done = prima(command, ".", cwd=tmp_path)
-    assert done.returncode == 2 and "holds no scenarios" in done.stderr
+    assert done.returncode == 2 and "contains no scenarios" in done.stderr
 
 
 @pytest.mark.parametrize(

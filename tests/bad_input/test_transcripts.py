@@ -29,17 +29,17 @@ NOT_TRANSCRIPTS: list[Any] = [
     ("binary", bytes(range(256)), "it is not UTF-8"),
     ("utf-16", record("run").encode("utf-16"), "it is not UTF-8"),
     ("xml", b"<a/>\n", "t.jsonl:1: this is not a line of JSON"),
-    ("foreign", b'{"a":1}\n', "t.jsonl:1: this is no transcript's record: time"),
-    ("list", b"[1]\n", "t.jsonl:1: this is no transcript's record"),
-    ("phase", record("zzz").encode(), "t.jsonl:1: this is no transcript's record: phase"),
+    ("foreign", b'{"a":1}\n', "t.jsonl:1: not a transcript's record: time"),
+    ("list", b"[1]\n", "t.jsonl:1: not a transcript's record"),
+    ("phase", record("zzz").encode(), "t.jsonl:1: not a transcript's record: phase"),
     ("second-line", (record("over") + "x\n").encode(), "t.jsonl:2: this is not a line"),
     ("deep", b"[" * 100_000 + b"\n", "t.jsonl:1: this is not a line of JSON"),
     ("number", b'{"time":' + b"9" * 5000 + b"}\n", "t.jsonl:1: this is not a line of JSON"),
-    ("negative", record("over", time=-1).encode(), "t.jsonl:1: this is no transcript's record"),
+    ("negative", record("over", time=-1).encode(), "t.jsonl:1: not a transcript's record"),
     ("nan", b'{"time":NaN,"phase":"over","actor":"user"}\n', "t.jsonl:1: this is no"),
-    ("field", record("run", colour="red").encode(), "t.jsonl:1: this is no transcript's record"),
+    ("field", record("run", colour="red").encode(), "t.jsonl:1: not a transcript's record"),
     ("infinite", b'{"time":1e999,"phase":"over","actor":"mediator"}\n', "t.jsonl:1: "),
-    ("long-line", b'{"a":"' + b"x" * 2_000_000 + b'"}\n', "t.jsonl:1: this line is too long"),
+    ("long-line", b'{"a":"' + b"x" * 2_000_000 + b'"}\n', "t.jsonl:1: the line is too long"),
     *(
         (f"{phase}-without-its-fields", record(phase, goal=True).encode(), "t.jsonl:1: ")
         for phase in ("start", "end", "event", "note", "log", "emergency", "load")
@@ -103,7 +103,7 @@ def test_a_record_that_lacks_something_is_no_defect_of_prima(
         write(tmp_path, "bad.jsonl", "".join([lines[0], lacking, *lines[1:]]))
         done = prima(*READERS[reader])
         assert done.check(done.code).code in (0, 1, 2), lacking
-        assert done.code < 2 or " lacks what its phase has." in done.err, lacking
+        assert done.code < 2 or " lacks a field of its phase." in done.err, lacking
 
 
 def inbound(phase: str, **fields: object) -> Callable[[str], str]:

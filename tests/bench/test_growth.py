@@ -20,12 +20,12 @@ from prima.errors.guesses import MANY_WORDS
 from prima.interpreter.reader import read_document
 from prima.lsp import naming
 from prima.lsp.complete import complete
-from prima.lsp.desk import Desk
 from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.outline import outline
 from prima.lsp.problems import check, spots
 from prima.lsp.text import Lines
+from prima.lsp.workspace import Workspace
 from prima.markup.tree import Source
 from prima.script import names
 from prima.script.compile import compiled
@@ -80,19 +80,19 @@ def test_validation_grows_with_the_size_of_a_document(name: str, tmp_path: Path)
 @pytest.mark.parametrize("name", ["forms that ask", "subdialogs", "handlers", "let", "areas"])
 def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_path: Path) -> None:
     def ask(path: Path) -> None:
-        desk, text = Desk(), path.read_text(encoding="utf-8")
-        desk.folders = [path.parent]
-        desk.put(path.as_uri(), text)
-        page = desk.open[path].page
+        workspace, text = Workspace(), path.read_text(encoding="utf-8")
+        workspace.folders = [path.parent]
+        workspace.put(path.as_uri(), text)
+        page = workspace.open[path].page
         for problem in spots(
-            desk, path, [one for some in check(desk, path).values() for one in some]
+            workspace, path, [one for some in check(workspace, path).values() for one in some]
         ):
             fixes(page.lines, problem.problem)
         for offset in (text.find('"', len(text) // 2) + 1, text.find("<", len(text) // 2) + 2):
-            hover(desk, path, offset)
-            complete(desk, path, offset)
-            naming.references(desk, path, offset)
-            naming.rename(desk, path, offset, "other")
+            hover(workspace, path, offset)
+            complete(workspace, path, offset)
+            naming.references(workspace, path, offset)
+            naming.rename(workspace, path, offset, "other")
         outline(page)
 
     assert grown(FAMILIES[name], tmp_path, ask) < MOST

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 
 FA, EA = "follow", "navigate"
 TIMER, LIBRARY, PICTURE, MUSEUM = "video-timer", "library", "picture", "museum"

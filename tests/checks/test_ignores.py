@@ -11,7 +11,7 @@ from prima import api
 from prima.checks.ignores import comments
 from prima.errors import Problem
 from prima.lsp import problems as editor
-from prima.lsp.desk import Desk
+from prima.lsp.workspace import Workspace
 from tests import ROOT
 from tests.helpers.command import prima
 
@@ -215,12 +215,12 @@ def test_what_a_scenario_brings_to_light_is_ignored_in_its_application(tmp_path:
 
 def test_an_editor_ignores_the_same(tmp_path: Path) -> None:
     path = write(tmp_path, IGNORE.format(WHY) + SILENT.format("x"))
-    assert editor.check(Desk(), path) == {path: []}
+    assert editor.check(Workspace(), path) == {path: []}
     write(tmp_path, SILENT.format("x"))
-    (problem,) = editor.check(Desk(), path)[path]
+    (problem,) = editor.check(Workspace(), path)[path]
     assert isinstance(problem, Problem)
     settings(tmp_path, ENTRY)
-    assert editor.check(Desk(), path) == {path: []}
+    assert editor.check(Workspace(), path) == {path: []}
 
 
 def test_strict_counts_warnings_as_problems(tmp_path: Path) -> None:

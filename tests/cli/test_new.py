@@ -54,7 +54,7 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "guide.xml").write_text("mine")
     for kind in ("ea", "scenario"):
         done = prima("new", kind, "guide", cwd=tmp_path)
-        assert done.returncode == 2 and "is there already" in done.stderr
+        assert done.returncode == 2 and "already exists" in done.stderr
     assert (tmp_path / "guide.xml").read_text() == "mine"
     done = prima("new", "scenario", "visit", cwd=tmp_path)  # which would write a guide.xml
     assert done.returncode == 2 and (tmp_path / "guide.xml").read_text() == "mine"

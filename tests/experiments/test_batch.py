@@ -13,15 +13,9 @@ import pytest
 from bench import batch as bench
 from prima import cli
 from prima.errors import UsageError
-from prima.experiments.batch import (
-    Job,
-    Options,
-    Plan,
-    format_row,
-    run_batch,
-    run_job,
-    stem_of,
-)
+from prima.experiments.batch import run_batch, run_job
+from prima.experiments.plan import Job, Options, Plan, stem_of
+from prima.experiments.rows import format_row
 from tests.helpers.batches import HELLO, POLICIES, WRONG, files, prima, scenario, write
 
 ALL = ("a", "b", "gone.xml", *POLICIES)
@@ -115,7 +109,10 @@ def test_two_scenarios_of_one_name_are_refused(stage: Path) -> None:
     shutil.copy("a/one.xml", "a/one.scn")
     done = prima("a/one.xml", "a/one.scn", "-o", "runs")
     assert done.returncode == 2
-    assert "a/one.scn: its transcript would be that of a/one.xml, runs/a/one.jsonl." in done.stderr
+    assert (
+        "a/one.scn: its transcript has the same name as that of a/one.xml, runs/a/one.jsonl."
+        in done.stderr
+    )
     assert not Path("runs").exists()
 
 
@@ -130,7 +127,7 @@ def test_what_somebody_else_has_written_stays(stage: Path, name: str) -> None:
     write(name, "my notes\n")
     done = prima("a/one.xml", "b/one.xml", "-o", "runs")
     assert done.returncode == 2
-    assert f"{name}: this was not written by a batch; move it away." in done.stderr
+    assert f"{name}: not written by a batch; move it away." in done.stderr
     assert Path(name).read_text() == "my notes\n"
     assert "b/one.jsonl" in files("runs")
 
@@ -163,17 +160,17 @@ USAGES = [
     (["a", "--policy", "fif"], 'Did you mean "fifo"?'),
     (["a", "--resume"], "--resume needs the folder of the transcripts: -o FOLDER."),
     (["a", "--why"], "prima show TRANSCRIPT --why"),
-    (["a", "--say", "yes"], "--say goes with --fa and --ea"),
+    (["a", "--say", "yes"], "--say works only with --fa and --ea"),
     (["a", "--ea", "a/hello.xml"], "Name a scenario, or applications with --fa and --ea."),
-    (["--ea", "a/hello.xml", *POLICIES], "are one run: for several, write scenarios."),
-    (["--ea", "a/hello.xml", "--workers", "2"], "are one run: for several, write scenarios."),
-    (["empty"], "empty: holds no scenarios"),
+    (["--ea", "a/hello.xml", *POLICIES], "name one run; for several, write scenarios."),
+    (["--ea", "a/hello.xml", "--workers", "2"], "name one run; for several, write scenarios."),
+    (["empty"], "empty: contains no scenarios"),
     (["--from", "empty"], "empty: cannot be read: Is a directory."),
     (["--from", "no"], "no: cannot be read: No such file or directory."),
-    (["--from", "a/one.xml"], "a/one.xml: this is no list of scenarios: one path stands in each"),
-    (["--from", "nothing"], "nothing: names no scenarios: write their paths, one in each line."),
-    (["--from", "/dev/zero"], "/dev/zero: this is no list of scenarios"),
-    (["a", "-o", "nothing"], "nothing: this is a file; the transcripts of several runs go into"),
+    (["--from", "a/one.xml"], "a/one.xml: not a list of scenarios: write one path per line"),
+    (["--from", "nothing"], "nothing: names no scenarios: write their paths, one per line."),
+    (["--from", "/dev/zero"], "/dev/zero: not a list of scenarios"),
+    (["a", "-o", "nothing"], "nothing: this is a file; several transcripts need a folder"),
     (["a", "-o", "nothing/runs"], "nothing/runs: cannot be written: Not a directory."),
     (["a", "-o", "runs.jsonl"], "runs.jsonl: several transcripts go into a folder: -o runs/."),
     (["a", "-o", ""], "-o: name the folder that the transcripts go into."),

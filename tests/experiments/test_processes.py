@@ -14,13 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from prima.experiments.batch import (
-    Job,
-    Options,
-    Plan,
-    Row,
-    run_batch,
-)
+from prima.experiments.batch import run_batch
+from prima.experiments.plan import Job, Options, Plan, Row
 from prima.pool import Died
 from tests import ROOT
 from tests.helpers.batches import (
@@ -78,7 +73,7 @@ def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.Mon
     rows = list(run_batch(Plan(["a", "b/one.xml"]), Options()))
     assert [row.exit for row in rows] == [3, 3, 3, 0]
     assert [row.messages for row in rows[:3]] == [
-        ["its process was ended by the signal SIGKILL; was there no memory left?"],
+        ["its process was killed by the signal SIGKILL; was there no memory left?"],
         ["its process ended with code 3."],
         ["its process ended with code 11."],
     ]
@@ -144,4 +139,4 @@ def test_a_worker_that_is_killed_is_told_and_the_others_go_on(stage: Path) -> No
     out, errors = made.communicate(timeout=SECONDS)
     assert made.returncode == 3
     assert out.splitlines()[-1] == "runs: 4; fine: 2; exit code 3: 2"
-    assert errors.count("its process was ended by the signal SIGKILL") == 2
+    assert errors.count("its process was killed by the signal SIGKILL") == 2

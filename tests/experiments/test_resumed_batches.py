@@ -8,12 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from prima.experiments.batch import (
-    Inputs,
-    Job,
-    Options,
-    run_job,
-)
+from prima.experiments.batch import run_job
+from prima.experiments.ledger import Inputs
+from prima.experiments.plan import Job, Options
 from tests.helpers.batches import HELLO, POLICIES, files, prima, scenario, write
 
 BATCH = ("a/one.xml", "b", "a/three.xml", *POLICIES)

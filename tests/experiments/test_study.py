@@ -14,8 +14,9 @@ from prima import api, cli
 from prima.errors import UsageError
 from prima.experiments.study import POLICIES, Result, format_csv, format_table, situations, study
 from prima.messages import Command, Emergency, Ended, Occurred
-from prima.transcript.criteria import Criteria, observe
+from prima.transcript.criteria import Criteria
 from prima.transcript.measures import Measure
+from prima.transcript.observer import observe
 from prima.transcript.record import Entry
 from prima.transcript.table import read_table
 from tests.helpers.robot import Bench, document
@@ -357,7 +358,7 @@ def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
         f' robot="{robot}"><robot at="charger"/><application src="{app}"/></scenario>'
     )
     (tmp_path / "s.txt").write_text("nothing\n")
-    with pytest.raises(UsageError, match="no table"):
+    with pytest.raises(UsageError, match="not a table"):
         list(study([tmp_path / "s.xml"]))
 
 

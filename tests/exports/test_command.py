@@ -41,18 +41,24 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["t.jsonl"], "say in what format: --to csv, eaf, mcap, textgrid or vtt"),
+        (["t.jsonl"], "Name a format: --to csv, eaf, mcap, textgrid or vtt"),
         (["t.jsonl", "--to", "textgird"], 'Did you mean "textgrid"?'),
         (["t.jsonl", "--to", "pdf"], "Name csv, eaf, mcap, textgrid or vtt."),
         (["none.jsonl", "--to", "csv"], "none.jsonl: cannot be read"),
         (["t.jsonl", "--to", "csv", "-o", "t.jsonl"], "this is the transcript itself"),
         (["t.jsonl", "--to", "csv", "-o", "no/t.csv"], "no/t.csv: cannot be written"),
-        (["t.jsonl", "--to", "eaf", "--lang", "e_n"], "is no language tag"),
-        (["t.jsonl", "--to", "csv", "--lang", "en"], "Languages go with eaf; csv"),
-        (["t.jsonl", "-o", "t.TextGrid", "--lang", "a=en"], "Languages go with eaf; textgrid"),
+        (["t.jsonl", "--to", "eaf", "--lang", "e_n"], "is not a language tag"),
+        (
+            ["t.jsonl", "--to", "csv", "--lang", "en"],
+            "--lang works only with --to eaf, not with csv",
+        ),
+        (
+            ["t.jsonl", "-o", "t.TextGrid", "--lang", "a=en"],
+            "--lang works only with --to eaf, not with textgrid",
+        ),
         (["t.jsonl", "--to", "eaf", "--lang", "en", "--lang", "ja"], "two languages of all: en"),
         (["t.jsonl", "--to", "eaf", "--lang", "folow=ja"], 'Did you mean "follow"?'),
-        (["."], "say in what format"),
+        (["."], "Name a format"),
         ([".", "--to", "vtt"], "cannot be read: Is a directory"),
     ],
 )

@@ -213,13 +213,13 @@ def test_an_application_named_like_a_tier_keeps_its_own() -> None:
 
 def test_too_many_tiers_are_told() -> None:
     records = [start(0.0, f"a{number}#1") for number in range(MOST_TIERS + 1)]
-    with pytest.raises(UsageError, match=r"t\.jsonl: it makes more than"):
+    with pytest.raises(UsageError, match=r"t\.jsonl: more than"):
         made(records)
     at_once = made([event(1.0, "bell") for _ in range(MOST_TIERS + 1)])
-    with pytest.raises(UsageError, match="since too much overlaps"):
+    with pytest.raises(UsageError, match="because too many intervals overlap"):
         at_once.parts()
 
 
 def test_a_record_that_lacks_something_is_told() -> None:
-    with pytest.raises(UsageError, match="record 1 lacks what its phase has"):
+    with pytest.raises(UsageError, match="record 1 lacks a field of its phase"):
         made([{"time": 0.0, "phase": "suspend", "actor": "mediator"}])

@@ -43,11 +43,11 @@ WRONG = [
     (["app.xml", "--row", "3"], "--row needs a transcript"),
     (["t.jsonl", "--what", "states"], "has no states"),
     (["t.jsonl", "--row", "9999"], "There is no row 9999; the rows are 0 to"),
-    (["t.jsonl", "--what", "streams", "--row", "1"], "--row goes with --what tree"),
-    (["app.xml", "-o", "app.xml", "--to", "dot"], "this is what the picture is made of"),
+    (["t.jsonl", "--what", "streams", "--row", "1"], "--row works only with --what tree"),
+    (["app.xml", "-o", "app.xml", "--to", "dot"], "the picture is made from this file"),
     (["app.xml", "-o", "no/where.svg"], "cannot be written"),
     (["cut.jsonl"], "cut.jsonl:4"),
-    (["json.json"], "no transcript"),
+    (["json.json"], "not a transcript"),
 ]
 
 
@@ -85,7 +85,7 @@ def test_a_transcript_with_strange_records_is_refused_or_drawn(tmp_path: Path) -
                 try:
                     picture(path, to, what)
                 except UsageError as error:
-                    assert re.search("lacks what its phase has| needs ", str(error))
+                    assert re.search("lacks a field of its phase| needs ", str(error))
 
 
 def test_too_many_states_are_refused_as_svg_and_taken_as_dot(tmp_path: Path) -> None:

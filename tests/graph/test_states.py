@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from prima.graph import cards, states, text
-from prima.graph.words import condition, ordinal
+from prima.graph.labels import condition, ordinal
 from tests import ROOT
 from tests.helpers.graphs import app, drawn, named, vxml, ways
 

@@ -61,7 +61,7 @@ def test_voicexml_menus_links_submits_and_ends(tmp_path: Path) -> None:
     assert ways(graph, "last") == {"ends the application": ["the call is passed on", "at its end"]}
     assert ways(graph, "sub") == {
         "last call": ["subdialog d"],
-        "goes to what is not there: gone.vxml": ["then"],
+        "goes to a missing target: gone.vxml": ["then"],
     }
     assert ways(graph, "in any state") == {
         "ends the application": ['cancel (said "forget it"), hangs up']
@@ -95,4 +95,4 @@ def test_the_documents_of_an_application_are_drawn_together(tmp_path: Path) -> N
     assert ways(graph, "next.vxml#form 1") == {"a": ["then"]}
     assert ways(graph, "in any state of root.vxml and its leaf documents") == {"b": ['said "b"']}
     assert named(graph, "b").reached and not named(graph, "root.vxml#r").reached
-    assert ways(graph, "c") == {"goes to what is not there: ../out.vxml": ["then"]}
+    assert ways(graph, "c") == {"goes to a missing target: ../out.vxml": ["then"]}

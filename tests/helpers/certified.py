@@ -9,7 +9,7 @@ from prima.certificate import Certificate, Delay, Starving
 from prima.devices.voice import duration
 from prima.interpreter.selection import takes
 from prima.messages import Record
-from prima.transcript.criteria import observe
+from prima.transcript.observer import observe
 
 SLACK = 0.002
 """How far (s) times may be off: records have them rounded."""

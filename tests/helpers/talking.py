@@ -6,7 +6,7 @@ from pathlib import Path
 
 from prima import api
 from prima.talk import Conversation, Game
-from prima.transcript.table import Row
+from prima.transcript.row import Row
 from tests import ROOT
 
 DOCUMENTS = ROOT / "documents"

@@ -104,7 +104,7 @@ def broken_text(tmp_path: Path, text: str) -> str:
     ("text", "why"),
     [
         ("", "no records"),
-        ("{}\n", "no transcript's record"),
+        ("{}\n", "not a transcript's record"),
         (json.dumps({**HEAD, "data": {}}) + "\n", "not the journal of a live run"),
         (
             written([{"time": 1, "phase": "over", "actor": "mediator", "outcome": "over"}]),

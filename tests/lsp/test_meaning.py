@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from lsprotocol import types as lsp
 
-from prima.lsp.desk import Desk
+from prima.lsp.descriptions import RULES, VOICEXML_ATTRIBUTES
 from prima.lsp.fixes import fixes
 from prima.lsp.problems import check, spots
 from prima.lsp.tables import VOCABULARIES
-from prima.lsp.words import RULES, VOICEXML_ATTRIBUTES
+from prima.lsp.workspace import Workspace
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
 
 
@@ -120,12 +120,12 @@ def test_quick_fixes(editor: Editor, case: str) -> None:
 
 def test_nothing_is_done_about_a_name_that_is_cut() -> None:
     text = BEGIN + f'<form id="a"><block cond="{"q" * 1_000}"><exit/></block></form></prima>'
-    desk = Desk()
-    desk.put("file:///x.xml", text)
-    path = next(iter(desk.open))
-    (found,) = spots(desk, path, check(desk, path)[path])
+    workspace = Workspace()
+    workspace.put("file:///x.xml", text)
+    path = next(iter(workspace.open))
+    (found,) = spots(workspace, path, check(workspace, path)[path])
     assert found.problem.code == "undeclared-variable" and "[...]" in found.problem.remedy
-    assert fixes(desk.open[path].page.lines, found.problem) == []
+    assert fixes(workspace.open[path].page.lines, found.problem) == []
 
 
 # Words and the command line --------------------------------------------------------------

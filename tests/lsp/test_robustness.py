@@ -17,15 +17,16 @@ from lsprotocol import types as lsp
 
 from prima.lsp import naming, server
 from prima.lsp.complete import complete
-from prima.lsp.desk import Desk, path_of
 from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import marks
 from prima.lsp.outline import links, outline
 from prima.lsp.problems import check, spots
+from prima.lsp.protocol import Server
 from prima.lsp.scan import Page
 from prima.lsp.tables import resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
+from prima.lsp.workspace import Workspace, path_of
 from tests import ROOT
 from tests.helpers.editor import BEGIN, SECONDS, WRONG, Editor
 
@@ -87,24 +88,24 @@ def test_a_document_without_a_file_is_looked_through(editor: Editor) -> None:
 
 
 def test_a_defect_ends_one_request_alone(caplog: pytest.LogCaptureFixture) -> None:
-    def broken(_server: server.Server, _params: Any) -> int:
+    def broken(_server: Server, _params: Any) -> int:
         return 1 // 0
 
     assert server._safely(broken)(server.make_server(), None) is None
     assert "ZeroDivisionError" in caplog.text
 
 
-def everything(desk: Desk, path: Path, offset: int) -> None:
+def everything(workspace: Workspace, path: Path, offset: int) -> None:
     """Ask everything about a place."""
-    page = desk.open[path].page
-    complete(desk, path, offset)
-    hover(desk, path, offset)
-    naming.definitions(desk, path, offset)
-    naming.references(desk, path, offset)
-    naming.renamable(desk, path, offset)
+    page = workspace.open[path].page
+    complete(workspace, path, offset)
+    hover(workspace, path, offset)
+    naming.definitions(workspace, path, offset)
+    naming.references(workspace, path, offset)
+    naming.renamable(workspace, path, offset)
     outline(page)
-    links(desk, path)
-    for one in spots(desk, path, check(desk, path)[path]):
+    links(workspace, path)
+    for one in spots(workspace, path, check(workspace, path)[path]):
         assert 0 <= one.start <= one.end <= len(page.text)
         for _, changes in fixes(page.lines, one.problem):
             assert all(0 <= c.start <= c.end <= len(page.text) for c in changes)
@@ -131,10 +132,10 @@ def test_every_question_about_a_mangled_document_has_an_answer(data: st.DataObje
     text = text[:start] + written + text[end:]
     if data.draw(st.booleans()):
         text = text[: start + len(written)]
-    desk = Desk()
-    path = desk.put("file:///nowhere/at/all/x.xml", text)
+    workspace = Workspace()
+    path = workspace.put("file:///nowhere/at/all/x.xml", text)
     assert path is not None
-    everything(desk, path, min(start + len(written), len(text)))
+    everything(workspace, path, min(start + len(written), len(text)))
 
 
 @settings(max_examples=300, deadline=None)
@@ -166,10 +167,10 @@ def test_tags_of_any_text_are_inside_it_and_in_order(text: str) -> None:
 
 def test_a_long_text_without_end_takes_no_long_time() -> None:
     for text in ("<a " * 20_000, "<" * 50_000, '<a b="' * 20_000, "<!--" * 20_000, "</a>" * 20_000):
-        desk = Desk()
-        path = desk.put("file:///nowhere/x.xml", BEGIN + text)
+        workspace = Workspace()
+        path = workspace.put("file:///nowhere/x.xml", BEGIN + text)
         assert path is not None
-        everything(desk, path, len(BEGIN) + 10)
+        everything(workspace, path, len(BEGIN) + 10)
 
 
 def test_it_ends_when_the_editor_is_gone() -> None:

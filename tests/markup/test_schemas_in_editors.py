@@ -219,7 +219,7 @@ def test_the_command_copies_the_schemas(tmp_path: Path) -> None:
     )
     again = prima("schemas", "schemas", cwd=tmp_path)
     assert again.returncode == 2
-    assert again.stderr == "prima: schemas: is there already; name a new folder.\n"
+    assert again.stderr == "prima: schemas: already exists; name a new folder.\n"
     far = prima("schemas", "x.xml/schemas", cwd=tmp_path)
     assert far.returncode in (0, 2) and "Traceback" not in far.stderr
     (tmp_path / "file").write_text("", encoding="utf-8")

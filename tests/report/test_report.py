@@ -25,9 +25,9 @@ from prima.report.page import json_text, text
 from prima.report.view import language
 from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines
+from prima.transcript.row import Row
 from prima.transcript.rules import RULES
 from prima.transcript.run import run_of
-from prima.transcript.table import Row
 from tests import ROOT
 from tests.helpers.command import prima
 from tests.helpers.generated_report import long_run
@@ -212,7 +212,7 @@ def test_a_record_that_lacks_something_is_told() -> None:
     for record in records:
         if record["phase"] == "request":
             del record["tree"]
-    with pytest.raises(UsageError, match="lacks what its phase has"):
+    with pytest.raises(UsageError, match="lacks a field of its phase"):
         make([api.Transcript(records, "bad.jsonl")])
 
 
@@ -255,9 +255,9 @@ def test_a_transcript_that_was_cut_off_is_shown_as_far_as_it_goes(keep: int) -> 
 
 
 def test_too_much_is_refused_with_a_remedy() -> None:
-    with pytest.raises(UsageError, match="name one or two"):
+    with pytest.raises(UsageError, match="A report shows one run or compares two"):
         make([run()] * 3)
-    with pytest.raises(UsageError, match="name one or two"):
+    with pytest.raises(UsageError, match="A report shows one run or compares two"):
         make([])
     with pytest.raises(UsageError, match="one for each"):
         make([run()], [api.load_scenario(SCENARIO)] * 2)
@@ -347,7 +347,7 @@ def test_a_run_that_comes_out_otherwise_has_only_its_reports() -> None:
 
 def test_another_scenario_is_refused() -> None:
     other = api.load_scenario(SCENARIOS / "leaving-the-museum.xml")
-    with pytest.raises(UsageError, match="is no file of the run"):
+    with pytest.raises(UsageError, match="is not a file of the run"):
         make([run()], [other])
     records = json.loads(json.dumps(run().records))
     records[0]["data"]["files"]["../fa/follow.xml"] = "0" * 64
@@ -428,12 +428,15 @@ def test_a_cut_transcript_is_reported_and_told(folder: Path) -> None:
         ([], "Name a scenario, or a transcript"),
         (["a.jsonl", "--policy", "fifo", "-o", "r.html"], "this is a transcript"),
         ([SCENARIO, "--policy", "fif", "-o", "r.html"], "fifo"),
-        ([SCENARIO, "--scenario", SCENARIO, "-o", "r.html"], "brings its own map"),
+        ([SCENARIO, "--scenario", SCENARIO, "-o", "r.html"], "has its own map"),
         ([SCENARIO, SCENARIO, "--policy", "fifo", "--policy", "none"], "These are 4 runs"),
         (["none.jsonl"], "No such file"),
         (["a.jsonl", "-o", "a.jsonl"], "write elsewhere"),
         (["a.jsonl", "-o", "nowhere/r.html"], "cannot be written"),
-        (["a.jsonl", "b.jsonl", "a.jsonl", "-o", "r.html"], "name one or two"),
+        (
+            ["a.jsonl", "b.jsonl", "a.jsonl", "-o", "r.html"],
+            "a report shows one run or compares two",
+        ),
         (["a.jsonl", "--scenario", "a.jsonl", "-o", "r.html"], "a.jsonl:1:1"),
         (["a.jsonl", "--scenari", "x"], "--scenario"),
     ],

@@ -46,7 +46,7 @@ def test_json_is_a_transcript_that_the_saved_session_repeats(tmp_path: Path) -> 
         "--save", "v.xml",
     )  # fmt: skip
     assert done.returncode == 1
-    assert b"cannot be taken back" in done.stderr
+    assert b"cannot be undone" in done.stderr
     (tmp_path / "t.jsonl").write_bytes(done.stdout)
     played = api.read(tmp_path / "t.jsonl")
     again = api.rehearse(tmp_path / "v.xml")
@@ -89,7 +89,7 @@ def test_what_is_piped_may_be_anything(tmp_path: Path) -> None:
     assert done.returncode == 1
     errors = done.stderr.decode()
     assert "not UTF-8" in errors
-    assert "2000 letters" in errors
+    assert "2000 characters" in errors
     assert "U+0000" in errors
     assert b"working memory" in done.stdout
 
@@ -131,7 +131,7 @@ def test_what_nobody_listens_to_is_told(tmp_path: Path) -> None:
     asks.pass_time(100)
     asks.line("Now")
     asks.pass_time(2000)
-    assert "ea is still asking: it listens when it has spoken." in paper.told[-1]
+    assert "ea is still asking; it listens when it has finished." in paper.told[-1]
     answered, paper = start(room(tmp_path, ASKS))
     answered.line("Yes.")
     assert not any("Nobody listens" in told for told in paper.told)
@@ -165,4 +165,4 @@ def test_applications_are_talked_to_in_another_world_and_on_another_robot(tmp_pa
         refused = prima(tmp_path, b"", "--ea", "ea.xml", *more)
         assert refused.returncode in (1, 2) and told in refused.stderr.decode(), refused.stderr
     refused = prima(tmp_path, b"", str(path), "--world", str(world))
-    assert refused.returncode == 2 and b"A scenario names its own world" in refused.stderr
+    assert refused.returncode == 2 and b"a scenario names its own" in refused.stderr

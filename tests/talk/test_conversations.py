@@ -8,7 +8,7 @@ import pytest
 
 from prima import api
 from prima.messages import Record
-from prima.transcript.table import Growing
+from prima.transcript.rows import GrowingTable
 from tests.helpers.talking import ASKS, DOCUMENTS, TOUCHED, room, start, type_in
 
 
@@ -74,7 +74,7 @@ def test_undo_takes_the_last_line_back_and_nothing_else() -> None:
     assert len(talk.game.lines) == 1
     type_in(talk, "/undo", "/undo")
     assert talk.game.lines == []
-    assert paper.told[-1] == "There is nothing to take back."
+    assert paper.told[-1] == "There is nothing to undo."
 
 
 def test_a_step_is_a_row(tmp_path: Path) -> None:
@@ -129,9 +129,9 @@ def test_an_application_that_fails_is_told_and_the_session_goes_on(tmp_path: Pat
     talk.line("/load ea")
     assert paper.made[before].what == "starts ea"
     talk.line("/load ea")
-    assert paper.told[-1] == '"ea" is there already. Take it out with /unload.'
+    assert paper.told[-1] == '"ea" is already loaded. Remove it with /unload.'
     type_in(talk, "/unload ea", "/unload ea")
-    assert paper.told[-1] in ('"ea" is not there. Put it in with /load.',) or talk.game.over
+    assert paper.told[-1] in ('"ea" is not loaded. Load it with /load.',) or talk.game.over
 
 
 def test_the_scenarios_user_is_left_out_unless_he_is_wanted() -> None:
@@ -153,7 +153,7 @@ def test_the_surroundings_of_a_scenario_are_kept() -> None:
 )
 def test_rows_that_come_one_by_one_are_those_of_the_table(scenario: Path) -> None:
     made = api.rehearse(scenario)
-    growing = Growing()
+    growing = GrowingTable()
     instants: dict[float, list[Record]] = {}
     for record in made.records:
         instants.setdefault(record["time"], []).append(record)
@@ -167,7 +167,7 @@ def test_what_the_camera_saw_has_its_row_when_somebody_minds() -> None:
     seen: Record = {
         "time": 1.0, "phase": "event", "actor": "robot", "event": "human.found", "serial": 3,
     }  # fmt: skip
-    growing = Growing()
+    growing = GrowingTable()
     assert growing.add([seen]) == []
     minded: Record = {
         "time": 2.0, "phase": "request", "actor": "robot", "behavior": "a#1", "cause": 3,

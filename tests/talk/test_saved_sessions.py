@@ -124,7 +124,7 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
     other = tmp_path / "thesis.xml"
     other.write_text("precious", encoding="utf-8")
     talk.line(f"/save {other}")
-    assert "is no saved session" in paper.told[-1]
+    assert "is not a saved session" in paper.told[-1]
     assert other.read_text(encoding="utf-8") == "precious"
     talk.line(f"/save {tmp_path}/new.xml")
     talk.line(f"/save {tmp_path}/new.xml")

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from prima.testing.coverage import Coverage, merge, total
 from prima.testing.junit import cobertura
 from prima.testing.running import Choice, run_all, run_one
-from prima.testing.telling import format_result
+from prima.testing.summary import format_result
 from tests.helpers.testing import write
 
 EVERYTHING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="desk" xml:lang="en">

@@ -13,9 +13,11 @@ from prima import api
 from prima.sim.happenings import When
 from prima.sim.person import PHASES, Person
 from prima.sim.scenario import read_scenario
-from prima.testing.checking import check, make_run, triggers
+from prima.testing.checking import check
+from prima.testing.facts import make_run
+from prima.testing.matching import triggers
 from prima.testing.running import Choice, Result, run_one
-from prima.testing.telling import format_result
+from prima.testing.summary import format_result
 from prima.testing.tracing import States, states_of
 from prima.transcript.run import run_of
 from tests import ROOT
@@ -69,9 +71,9 @@ FALSE = {
     '<expect state="ride" at="end"/>': "desk has ended then: exit",
     '<expect state="ride" at="1s" within="0s"/>': 'desk is in "ask" then',
     '<expect ends="desk" reason="unloaded"/>': "It ends with exit",
-    '<expect says="Floor 3" on="touch.back"/>': "is never there: the event touch.back",
-    '<expect says="Floor 3" on="touch" count="2"/>': "comes only once: the event touch",
-    '<never says="Floor 3" on="touch.back"/>': "is never there",
+    '<expect says="Floor 3" on="touch.back"/>': "never happens: the event touch.back",
+    '<expect says="Floor 3" on="touch" count="2"/>': "happens only once: the event touch",
+    '<never says="Floor 3" on="touch.back"/>': "never happens",
     '<never says="Floor 3"/>': "It does at",
     '<never state="ride"/>': "desk is in it from",
     '<never finishes="gesture" on="reply"/>': "It does at",

@@ -21,7 +21,7 @@ from prima.errors import DocumentError, RunError, UsageError
 from prima.testing.finding import find, is_scenario
 from prima.testing.junit import junit
 from prima.testing.running import Choice, run_all
-from prima.testing.telling import format_result
+from prima.testing.summary import format_result
 from tests import ROOT
 from tests.helpers.command import prima
 from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
@@ -41,7 +41,7 @@ def test_scenarios_are_found_in_folders(tmp_path: Path) -> None:
     assert find([str(path), str(tmp_path)]) == [str(path)]
     with pytest.raises(UsageError, match="no such file"):
         find([str(tmp_path / "none")])
-    with pytest.raises(UsageError, match="holds no scenarios"):
+    with pytest.raises(UsageError, match="contains no scenarios"):
         find([str(ROOT / "docs")])
     assert not is_scenario(tmp_path)
 
@@ -68,7 +68,7 @@ def test_a_process_that_is_ended_ends_the_tests(tmp_path: Path) -> None:
         first.kill()
 
     threading.Timer(2, end_one).start()
-    with pytest.raises(RunError, match="ended from outside"):
+    with pytest.raises(RunError, match="was killed"):
         list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2))
 
 
@@ -175,7 +175,9 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
     assert find(["."]) == ["own.xml"]
     assert find([str(workshop)]) == [str(workshop / "own.xml")]
     assert find(["drafts", "more/wrong-b.xml"]) == ["drafts/a.xml", "more/wrong-b.xml"]
-    with pytest.raises(UsageError, match=r"more: holds no scenarios.*pyproject\.toml leaves some"):
+    with pytest.raises(
+        UsageError, match=r"more: contains no scenarios.*pyproject\.toml excludes some"
+    ):
         find(["more"])
 
 
@@ -184,7 +186,7 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
     [
         ('ingore = ["a"]', r'has no "ingore"\. Did you mean "ignore"\?'),
         ('ignore = "drafts"', r'write ignore = \["drafts"\]'),
-        ("ignore = [1]", r"is a list of paths"),
+        ("ignore = [1]", r"must be a list of paths"),
         ("ignore = [", r"pyproject\.toml: cannot be read"),
     ],
 )

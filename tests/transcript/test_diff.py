@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 
 from prima import api
 from prima.errors import UsageError
-from prima.transcript.criteria import MOST_STREAMS, Observer
 from prima.transcript.diff import compare, difference_json
 from prima.transcript.lines import quick_reader, read_lines
+from prima.transcript.observer import MOST_STREAMS, Observer
 from prima.transcript.record import Entry, model
-from prima.transcript.table import Row, _bracket, make_rows
+from prima.transcript.row import Row
+from prima.transcript.rows import _bracket, make_rows
 
 DEMO = Path("documents/scenarios/follow-during-navigation.xml")
 

@@ -13,7 +13,8 @@ from prima.devices import voice
 from prima.messages import Record
 from prima.transcript.diff import compare, format_difference, summary_line
 from prima.transcript.lines import finished, line
-from prima.transcript.table import Row, format_rows, read_table, width
+from prima.transcript.row import Row
+from prima.transcript.table import format_rows, read_table, width
 from tests import ROOT
 
 DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"

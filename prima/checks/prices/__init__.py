@@ -1,4 +1,4 @@
-"""What parts of an application cost others: how long a reaction may have to wait for them.
+"""Prices: how long a reaction may have to wait for parts of another application.
 
 Nothing that runs is cut (rule U1), and nothing breaks a unit (U4, U5); so a reaction that needs
 the same device waits for the end. The times are those of the simulator's voice and gestures.
@@ -21,7 +21,7 @@ __all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "
 
 
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
-    """All that is known of an application of either language, its further documents included."""
+    """The outline of an application in either language, with its further documents."""
     if isinstance(document, Document):
         from prima.checks.prices import dialogue
 
@@ -37,12 +37,12 @@ UNIT_WAITS = UNIT_PRICE.says(
 
 
 def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
-    """All parts of an application that nothing breaks, in document order."""
+    """All indivisible parts of an application, in document order."""
     return outline(document, profile).parts
 
 
 def notes(document: Document, profile: Profile) -> list[Problem]:
-    """What units cost, as notes for ``prima validate --notes``."""
+    """The cost of units, as notes for ``prima validate --notes``."""
     return [
         UNIT_WAITS.at(price.place, seconds=price.seconds)
         for price in prices(document, profile)

@@ -1,4 +1,4 @@
-"""How long an application goes on without waiting for an event, and where it may never end."""
+"""Bounds: how long an application runs without waiting for an event, and endless loops."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from prima.checks.prices.model import Gap, Loop, Outline, Price, Reaction, State
 from prima.errors import Place
 
 MANY_STATES = 8
-"""Of states that follow one another, so many are named."""
+"""Maximum number of states named in a loop."""
 MOST_COMPARED = 1_000_000
-"""Reactions times states beyond which no reaction is followed alone."""
+"""Limit of reactions times states above which reactions are not followed separately."""
 
 
 @dataclass(slots=True)
 class Busy:
-    """What an application may do in one go: its length (ms), and why it may be longer."""
+    """Activity without a wait: its duration (ms), and why it may be longer."""
 
     lasts: int = 0
     endless: list[Gap] = field(default_factory=list)
@@ -26,14 +26,14 @@ class Busy:
 
 
 def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
-    """All states that some lead to without a wait, themselves included.
+    """All states reachable without a wait, including the start states.
 
-    What a subdialog leads to comes back to whoever may have called it.
+    A subdialog returns to all its possible callers.
     """
     before, callers = _backwards(outline)
     found: set[str] = set()
     leading: set[str] = set()
-    """States that lead to one that has been found: who calls them is come back to."""
+    """States that lead to one that has been found; they may return to their callers."""
     onward, backward = [*starts], list[str]()
     while onward or backward:
         if onward:
@@ -50,7 +50,7 @@ def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
 
 
 def _backwards(outline: Outline) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
-    """By states, those that lead to them in one step, and those that call them."""
+    """The predecessors and the callers of each state."""
     before: dict[str, list[str]] = {}
     callers: dict[str, list[str]] = {}
     for name, state in outline.states.items():
@@ -70,7 +70,7 @@ def _after(outline: Outline, reaction: Reaction) -> list[State]:
 
 
 def busy_after(outline: Outline, reaction: Reaction) -> Busy:
-    """How long an application is busy because of an event at most."""
+    """The longest activity caused by an event."""
     return _busy(outline, _after(outline, reaction))
 
 
@@ -85,7 +85,7 @@ def busy_after_each(outline: Outline, reactions: Sequence[Reaction]) -> list[Bus
 
 
 def busy_at_all(outline: Outline) -> Busy:
-    """How long an application is busy in one go at most, whatever begins it."""
+    """The longest activity without a wait, whatever starts it."""
     does = [reaction.does for reaction in outline.reactions]
     return _busy(outline, [*outline.states.values(), *does, *outline.wakes])
 
@@ -110,34 +110,35 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
 
 
 def loops(outline: Outline) -> list[Loop]:
-    """Cycles of states without a wait, and questions that are asked again without an end."""
+    """Cycles of states without a wait, and questions repeated endlessly."""
     if outline.loops is None:
         outline.loops = _loops(outline)
     return outline.loops
 
 
 def _loops(outline: Outline) -> list[Loop]:
-    found = []
-    for states in _cycles(outline):
-        names = frozenset(state.name for state in states)
-        parts = [part for state in _with_called(outline, states) for part in state.parts]
-        first = min(states, key=lambda state: state.node.index)
-        told = [one for state in states for one in state.repeats]
-        if len(states) == 1 and first.name not in first.goes and told:
-            found.append(_loop(told[0].place, told[0].reason, parts, names))
-            continue
-        ways = [node for state in states for to, node in state.goes.items() if to in names]
-        place = min(ways, key=lambda node: node.index).place if ways else first.node.place
-        more = ", ..." if len(states) > MANY_STATES else ""
-        listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
-        follows = "follow one another" if len(states) > 1 else "follows itself"
-        what = f"{listed} {follows} without a wait for an event"
-        found.append(_loop(place, what, parts, names))
+    found = (_loop_of(outline, states) for states in _cycles(outline))
     return [loop for loop in found if loop.devices]
 
 
+def _loop_of(outline: Outline, states: list[State]) -> Loop:
+    """The loop of states that lead to each other, or of one that asks again and again."""
+    names = frozenset(state.name for state in states)
+    parts = [part for state in _with_called(outline, states) for part in state.parts]
+    first = min(states, key=lambda state: state.node.index)
+    repeats = [one for state in states for one in state.repeats]
+    if len(states) == 1 and first.name not in first.goes and repeats:
+        return _loop(repeats[0].place, repeats[0].reason, parts, names)
+    ways = [node for state in states for to, node in state.goes.items() if to in names]
+    place = min(ways, key=lambda node: node.index).place if ways else first.node.place
+    more = ", ..." if len(states) > MANY_STATES else ""
+    listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
+    follows = "follow one another" if len(states) > 1 else "follows itself"
+    return _loop(place, f"{listed} {follows} without a wait for an event", parts, names)
+
+
 def _with_called(outline: Outline, states: list[State]) -> list[State]:
-    """Some states, and those that their subdialogs lead to: they are done in every round."""
+    """Some states, and those that their subdialogs lead to, which run in every round."""
     called: set[str] = set()
     left = [callee for state in states for callee in state.calls]
     while left:
@@ -156,7 +157,7 @@ def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) ->
 
 
 def _cycles(outline: Outline) -> list[list[State]]:
-    """The states that lead back to themselves, by what leads round together."""
+    """The cycles of states."""
     order = {name: at for at, name in enumerate(outline.states)}
     rings = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
     return [
@@ -167,37 +168,57 @@ def _cycles(outline: Outline) -> list[list[State]]:
 
 
 def _rings(outline: Outline) -> Iterator[list[str]]:
-    """The states in sets of those that lead to each other (Tarjan's strongly connected components)."""
-    number: dict[str, int] = {}
-    lowest: dict[str, int] = {}
-    kept: list[str] = []
-    done: set[str] = set()
+    """Sets of states that lead to each other (Tarjan's strongly connected components)."""
+    search = _RingSearch(outline)
     for start in outline.states:
-        way = [(start, iter(_ways(outline, start)))] if start not in number else []
-        while way:
-            name, left = way[-1]
-            if name not in number:
-                number[name] = lowest[name] = len(number)
-                kept.append(name)
-            to = next((one for one in left if one not in done), None)
+        yield from search.rings(start)
+
+
+class _RingSearch:
+    """Tarjan's algorithm, without recursion."""
+
+    def __init__(self, outline: Outline) -> None:
+        self._outline = outline
+        self._number: dict[str, int] = {}
+        self._lowest: dict[str, int] = {}
+        self._kept: list[str] = []
+        self._done: set[str] = set()
+
+    def rings(self, start: str) -> Iterator[list[str]]:
+        """The rings reached from a state that have not been returned before."""
+        path = [] if start in self._number else [self._enter(start)]
+        while path:
+            name, left = path[-1]
+            to = next((one for one in left if one not in self._done), None)
             if to is None:
-                way.pop()
-                if way:
-                    above = way[-1][0]
-                    lowest[above] = min(lowest[above], lowest[name])
-                if lowest[name] == number[name]:
-                    ring = [kept.pop()]
-                    while ring[-1] != name:
-                        ring.append(kept.pop())
-                    done.update(ring)
-                    yield ring
-            elif to in number:
-                lowest[name] = min(lowest[name], number[to])
+                path.pop()
+                if path:
+                    self._lower(path[-1][0], self._lowest[name])
+                yield from self._ring(name)
+            elif to in self._number:
+                self._lower(name, self._number[to])
             else:
-                way.append((to, iter(_ways(outline, to))))
+                path.append(self._enter(to))
+
+    def _enter(self, name: str) -> tuple[str, Iterator[str]]:
+        self._number[name] = self._lowest[name] = len(self._number)
+        self._kept.append(name)
+        return name, iter(_ways(self._outline, name))
+
+    def _lower(self, name: str, number: int) -> None:
+        self._lowest[name] = min(self._lowest[name], number)
+
+    def _ring(self, name: str) -> Iterator[list[str]]:
+        """The ring that a state closes, if it is the first of one."""
+        if self._lowest[name] == self._number[name]:
+            ring = [self._kept.pop()]
+            while ring[-1] != name:
+                ring.append(self._kept.pop())
+            self._done.update(ring)
+            yield ring
 
 
 def _ways(outline: Outline, name: str) -> list[str]:
-    """The states that one leads to in one step."""
+    """The successors of a state."""
     state = outline.states[name]
     return [to for to in (*state.goes, *state.calls) if to in outline.states]

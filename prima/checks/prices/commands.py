@@ -1,4 +1,4 @@
-"""How long Commands take at most on a robot, as the simulator carries them out."""
+"""Maximum durations of Commands on a robot, according to the simulator."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from prima.language.commands import TABLE_4_2, Argument, CommandType, check_argu
 from prima.markup.tree import Node
 
 SETTLING_MS = 1500
-"""What a turn takes beyond its angle at full speed: it slows down, and is seen to have ended."""
+"""Time of a turn beyond its angle at full speed: for slowing down and detecting the end (ms)."""
 SEARCH = 360.0 + 180.0
 """How far (degrees) the robot turns at most to face the user, who stands still."""
 
@@ -80,7 +80,7 @@ def unit_price(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[
 
 
 def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int:
-    """How long the steps of a unit take; those that share a device go one after the other."""
+    """The duration of a unit's steps; those that share a device run in sequence."""
     ends: list[int] = []
     for index, (price, after) in enumerate(zip(prices, afters, strict=True)):
         before = [ends[one] for one in after]
@@ -90,7 +90,7 @@ def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int
 
 
 def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
-    """How long a Command moves at most (ms): by its arguments, or by their bounds."""
+    """The longest movement of a Command (ms), by its arguments or their bounds."""
     moves = MOTIONS.get(row.name)
     return profile.durations.get(row.name, 1) if moves is None else moves(row, args, profile)
 
@@ -135,7 +135,7 @@ def _most(argument: Argument, value: Value) -> float:
     try:
         return abs(float(check_argument("", argument, str(value))))
     except ValueError:
-        return largest  # it is refused when it is asked for
+        return largest  # it is refused when requested
 
 
 MOTIONS: Mapping[str, Callable[[CommandType, Mapping[str, Value], Profile], int]] = {

@@ -1,4 +1,4 @@
-"""What a document in PRIMA's own language holds: its handlers, contents, units and own events."""
+"""Parts of a document in PRIMA's language: handlers, contents, units and own events."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def inside(unit: Unit) -> list[Item | Handler]:
 
 
 def again(item: Item) -> bool:
-    """Whether content may be gone through more than once."""
+    """Whether content may run more than once."""
     acts = [act for content in own_contents(item) for act in all_acts(content)]
     return any(not isinstance(act, Run) for act in acts)
 

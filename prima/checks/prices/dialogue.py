@@ -1,4 +1,4 @@
-"""What the parts of an application in PRIMA's own language cost, and how they follow one another."""
+"""Prices of an application in PRIMA's language, and the order of its parts."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
 
 UNKNOWN_LETTERS = 20
-"""How much an expression in a text is taken to say."""
+"""The assumed text of an expression."""
 ASKED_AGAIN = "the question is asked again until the user answers"
 OFTEN = "an expression says how often it is done"
 SAYS = "an expression gives its text"
@@ -67,7 +67,7 @@ SERVICES = "error.service"
 
 
 def outline(document: Document, profile: Profile) -> Outline:
-    """All that is known of an application in PRIMA's own language."""
+    """The outline of an application in PRIMA's language."""
     return _Reader(document, profile).outline()
 
 
@@ -129,7 +129,7 @@ class _Reader:
         return command_price(command.node, command.type, args, speech, self.profile)
 
     def speech(self, text: Text, lang: str) -> tuple[int, str]:
-        """How long a text takes (ms) at most, and why that may be more."""
+        """The longest duration of a text (ms), and why it may be longer."""
         known = [self._texts(one) for one in text if not isinstance(one, Pause)]
         said = "".join(
             "x" * UNKNOWN_LETTERS if one is None else max(one, key=self._weight(lang), default="")
@@ -162,7 +162,7 @@ class _Reader:
         )
 
     def _unsaid(self, field: Field, form: Form) -> bool:
-        """Whether a question may be asked without a word: a handler may not ask again aloud."""
+        """Whether a question may be asked silently, as a handler may not repeat it aloud."""
         always = any(prompt.count == 1 and prompt.cond is None for prompt in field.prompts)
         handlers = [*field.handlers, *form.handlers, *self.document.handlers]
         return not always or any(self._inner(one) for one in handlers)

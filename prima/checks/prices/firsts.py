@@ -1,4 +1,4 @@
-"""What an application does first about an event, and whether content always leaves its state."""
+"""The first Commands of an application after an event."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def _all_handlers(document: Document, form: Form | None) -> list[Handler]:
 
 
 def is_left(content: Sequence[Act], back: bool = True) -> bool:
-    """Whether content leaves its state in each case; ``back`` if a return counts as that."""
+    """Whether content always leaves its state; with ``back``, a return counts."""
     for act in content:
         if isinstance(act, Exit) or (isinstance(act, Goto) and not act.item):
             return True
@@ -215,7 +215,7 @@ def is_left(content: Sequence[Act], back: bool = True) -> bool:
 
 
 def asks_at_most(field: Field, form: Form, document: Document) -> int:
-    """How often a question is asked at most until the user answers; 0 for without an end."""
+    """How often a question is asked until the user answers; 0 for endlessly."""
     scope = [*field.handlers, *form.handlers, *document.handlers]
     total = 0
     for event in ("noinput", "nomatch"):

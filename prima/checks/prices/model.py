@@ -1,4 +1,4 @@
-"""What an application may do, as far as its documents tell: its parts, states and reactions."""
+"""The outline of an application: its parts, states and reactions."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ SPEECH = "speech"
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """A part of an application that nothing breaks (rules U1, U4, U5)."""
+    """An indivisible part of an application (rules U1, U4, U5)."""
 
     node: Node
     what: str
     """``unit``, ``question``, ``recording``, ``call`` or the Command's name."""
     devices: frozenset[str]
     lasts: int
-    """The longest that others wait (ms), as far as the documents tell."""
+    """The longest wait of others (ms), as far as the documents determine it."""
     unknown: str = ""
-    """Why it may take longer than that; empty where it may not."""
+    """Why it may take longer; empty if it may not."""
     leaves: bool = False
     engages: bool = False
     loops: bool = False
@@ -31,7 +31,7 @@ class Price:
     listens: bool = False
     """Whether the user may speak in it: what they say comes on top."""
     inner: tuple[Price, ...] = ()
-    """What is in a unit."""
+    """The parts of a unit."""
 
     @property
     def names(self) -> set[str]:
@@ -56,7 +56,7 @@ class Price:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Something that the documents do not tell: a target or a document that is not known."""
+    """Something that the documents do not determine: an unknown target or document."""
 
     place: Place
     reason: str
@@ -109,7 +109,7 @@ class Reaction:
 
 @dataclass(slots=True)
 class Loop:
-    """Something that may go on without an end and without a wait for an event."""
+    """A loop that may run endlessly without a wait for an event."""
 
     place: Place
     what: str

@@ -1,4 +1,4 @@
-"""Events that an application makes for itself: ends of its Commands, sends, watches, throws."""
+"""Events that an application causes itself: ends of its Commands, sends, watches, throws."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MOVED = ("human", "moving", "position")
 
 
 class OwnEvents:
-    """Finds which events content makes its own application handle."""
+    """Finds the events that content causes in its own application."""
 
     def __init__(
         self,

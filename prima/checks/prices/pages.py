@@ -1,4 +1,4 @@
-"""The further documents of a VoiceXML application: the files that elements of it name."""
+"""The further documents of a VoiceXML application: files that its elements name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 
 MOST_PAGES = 100
-"""Documents of one application that are read."""
+"""Maximum number of documents of one application."""
 TARGETS = {
     "goto": ("next", "expr"),
     "submit": ("next", "expr"),
@@ -30,7 +30,7 @@ WITHIN = re.compile(r"""\s*(['"])#[^'"]*\1(\s*\+\s*[\w.$]+)*\s*""")
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where an element leads: dialogs of a page, or what is not known."""
+    """The target of an element: dialogs of a page, or unknown."""
 
     page: Page | None = None
     dialogs: tuple[str, ...] = ()
@@ -90,7 +90,7 @@ class Pages:
         return Target(found, (dialog or first,))
 
     def _open(self, uri: str, node: Node) -> Page | None:
-        """A document of the application's folder, read once; none if there is none to read."""
+        """A document of the application's folder, read once; None if it cannot be read."""
         if uri not in self._known:
             self._known[uri] = None
             if len(self._known) <= MOST_PAGES:

@@ -1,4 +1,4 @@
-"""How long the prompts of VoiceXML documents take at most, read without running anything."""
+"""Maximum durations of the prompts of VoiceXML documents, computed without a run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from prima.voicexml.prompts import APART, SENTENCE, SILENT, UNKNOWN_MS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 UNKNOWN_LETTERS = 20
-"""How much an expression is taken to say."""
+"""The assumed text of an expression."""
 SAYS = "an expression gives a part of what it says"
 REPEATED = "an expression says how often a part of it is said"
 

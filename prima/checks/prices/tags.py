@@ -1,4 +1,4 @@
-"""What elements of VoiceXML documents hold, and where their content leads."""
+"""Parts of VoiceXML documents, and the targets of their content."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def to_item(node: Node) -> bool:
 
 
 def leaves(content: Iterable[Node | str]) -> bool:
-    """Whether content leaves its dialog in each case."""
+    """Whether content always leaves its dialog."""
     nodes = [one for one in content if isinstance(one, Node)]
     for node in nodes:
         if node.tag in LEAVING and not to_item(node):

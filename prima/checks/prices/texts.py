@@ -1,4 +1,4 @@
-"""The texts that expressions may give, where a document's own constants tell them.
+"""The possible texts of expressions, if the document's constants determine them.
 
 ``panels[at].parts[0]`` can give only what stands in ``const panels = [...]``, whatever ``at`` is.
 Anything else is not known before a run.
@@ -38,7 +38,7 @@ UNDEFINED = "undefined"
 
 
 class Constants:
-    """The constants of a document that nothing changes."""
+    """The constants of a document that are never changed."""
 
     def __init__(self, document: Document) -> None:
         codes = list(_codes(document))
@@ -52,7 +52,7 @@ class Constants:
             self._values.pop(name, None)
 
     def texts(self, code: str) -> list[str] | None:
-        """All texts that an expression may give; None where that is not known."""
+        """All possible texts of an expression; None if unknown."""
         path = PATH.fullmatch(code)
         if path is None or path["name"] not in self._values:
             return None

@@ -1,4 +1,4 @@
-"""What the parts of a VoiceXML application cost, and how its dialogs follow one another."""
+"""Prices of a VoiceXML application, and the order of its dialogs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
 
 
 def outline(document: VoiceDocument, profile: Profile) -> Outline:
-    """All that is known of a VoiceXML application and its further documents."""
+    """The outline of a VoiceXML application and its further documents."""
     return _Reader(document, profile).outline()
 
 
@@ -356,7 +356,7 @@ class _Reader:
         return list({id(node): node for node in found}.values())
 
     def _setting(self, item: Node, dialog: Node, name: str) -> str:
-        """A property's value, innermost first."""
+        """A property's value, from the innermost element that sets it."""
         for node in self._scopes(item, dialog):
             if name in self._held(node).settings:
                 return self._held(node).settings[name]

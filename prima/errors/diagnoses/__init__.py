@@ -1,1 +1,1 @@
-"""Diagnoses that several modules make, by subject; others are declared beside their check."""
+"""Diagnoses that several modules use, by subject; others are declared beside their check."""

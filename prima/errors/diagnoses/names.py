@@ -1,4 +1,4 @@
-"""Names of forms, variables, events, Commands and files that nothing has."""
+"""Unknown names of forms, variables, events, Commands and files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Elements and attributes that the language does not have, or not here."""
+"""Elements and attributes that are unknown or misplaced."""
 
 from __future__ import annotations
 

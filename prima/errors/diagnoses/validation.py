@@ -1,4 +1,4 @@
-"""Validation itself: what is ignored, and what is not shown."""
+"""Validation itself: ignores, and omitted problems."""
 
 from __future__ import annotations
 

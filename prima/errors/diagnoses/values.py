@@ -1,4 +1,4 @@
-"""Values and texts that an element cannot have."""
+"""Wrong values and texts of elements."""
 
 from __future__ import annotations
 

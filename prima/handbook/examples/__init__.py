@@ -20,17 +20,17 @@ LOWERED = {
     "too-deep": ("depth", 5),
     "more-problems": ("problems", 1),
 }
-"""Limits under which the examples of some codes are read, so that they can be short."""
+"""Lower limits for the examples of some codes, so that they can be short."""
 BY_HAND = {
     "language": "load(..., languages=...) does not take it",
     "not-fetched": "load(...) is given no fetch",
 }
-"""Codes that only who calls :func:`prima.grammar.load` can meet, and when."""
+"""Codes that occur only with :func:`prima.grammar.load`, and when."""
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A document: its file's name, its text, and the problems that it has."""
+    """A document: file name, text and problems."""
 
     name: str
     text: str
@@ -60,7 +60,7 @@ def _example(code: str, which: str) -> Example:
 
 
 def _named(problem: Problem) -> Problem:
-    """A problem that names its file without the folder of the package."""
+    """A problem with its file's path relative to the package's folder."""
     name = Path(problem.place.file).name
     return problem._replace(place=problem.place._replace(file=name))
 
@@ -80,7 +80,7 @@ def _problems(code: str, path: Path) -> list[Problem]:
 
 
 def _loaded(path: Path) -> list[Problem]:
-    """The problems of a grammar that is read alone, by somebody who takes English only."""
+    """The problems of a grammar read alone, for English only."""
     from prima.grammar import load
 
     try:
@@ -105,7 +105,7 @@ def shown(code: str) -> str:
 
 
 def meaning(code: str) -> str:
-    """What a code means, with the rule or section that it comes from."""
+    """The meaning of a code, with its rule or section."""
     one = diagnoses()[code]
     return (
         f"{one.meaning} ({one.rule})" if one.rule and one.rule not in one.meaning else one.meaning
@@ -113,7 +113,7 @@ def meaning(code: str) -> str:
 
 
 def data(code: str) -> dict[str, Any]:
-    """A code's explanation and examples for a machine to read.
+    """A code's explanation and examples as data for JSON.
 
     Raises:
         UsageError: there is no such code.
@@ -134,7 +134,7 @@ def data(code: str) -> dict[str, Any]:
 
 
 def beside(code: str) -> dict[str, str]:
-    """Other files of a code's folder, by name: what its examples refer to."""
+    """The other files of a code's folder, by name, to which its examples refer."""
     return {
         path.name: path.read_text(encoding="utf-8")
         for path in sorted((FOLDER / code).iterdir())
@@ -143,7 +143,7 @@ def beside(code: str) -> dict[str, str]:
 
 
 def headline(code: str, word: str) -> str:
-    """What stands above an example: how it is read, if that is not the usual way."""
+    """A note above an example that is read in an unusual way."""
     if code in LOWERED:
         limit, number = LOWERED[code]
         return f"{word}, with --limit {limit}={number}:"
@@ -151,7 +151,7 @@ def headline(code: str, word: str) -> str:
 
 
 def told(example: Example) -> str:
-    """The problems of an example as ``prima validate`` tells them."""
+    """The problems of an example as ``prima validate`` prints them."""
     from prima.errors.rendering import render
 
     def lines(name: str) -> list[str]:

@@ -1,39 +1,20 @@
-"""Results of tests as people read them."""
+"""Test results as text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.errors import DocumentError, UsageError
 from prima.errors.rendering import excerpt
 from prima.errors.visible import visible
-from prima.loading.files import read_file
-from prima.markup.reader import decode
 from prima.testing.checking import Failure
 from prima.testing.running import Result
+from prima.testing.sources import SourceLines
 
 WORDS = {"passed": "passed", "failed": "FAILED", "error": "ERROR", "invalid": "INVALID"}
 
 
-class Sources:
-    """The lines of files, each file read once."""
-
-    def __init__(self) -> None:
-        self._held: dict[str, list[str]] = {}
-
-    def line(self, file: str, number: int) -> str:
-        """A line of a file, counted from 1; empty where it cannot be read."""
-        if file not in self._held:
-            try:
-                self._held[file] = decode(file, read_file(file)).split("\n")
-            except (DocumentError, UsageError):
-                self._held[file] = []
-        lines = self._held[file]
-        return lines[number - 1] if 0 < number <= len(lines) else ""
-
-
-def format_failure(failure: Failure, sources: Sources) -> str:
-    """A failure: its place and words, its source line with a caret, and rows of the run."""
+def format_failure(failure: Failure, sources: SourceLines) -> str:
+    """A failure: place, message, source line with a caret, and rows of the run."""
     place = failure.place
     parts = [f"{place}: {visible(failure.message)}"]
     line = sources.line(place.file, place.line)
@@ -46,23 +27,23 @@ def format_failure(failure: Failure, sources: Sources) -> str:
 
 
 def format_result(result: Result) -> str:
-    """All that a result has to tell that is not as expected."""
-    sources = Sources()
+    """The failures of a result, and the difference of its table."""
+    sources = SourceLines()
     parts = [format_failure(one, sources) for one in result.failures]
     if result.golden == "differs":
-        parts.append(f"{result.file}: the run's table is another one:\n{result.difference}")
+        parts.append(f"{result.file}: the run's table differs:\n{result.difference}")
     return "\n\n".join(parts)
 
 
 def row(result: Result, wide: int) -> str:
-    """A result in a line."""
+    """A result as one line."""
     return f"{WORDS[result.status]:<7}  {result.path:<{wide}}  {_checked(result)}".rstrip()
 
 
 def _checked(result: Result) -> str:
-    """What was compared."""
+    """What was checked."""
     if result.status == "invalid":
-        return "its documents are wrong"
+        return "documents have errors"
     wrong = len({(one.place.line, one.place.column) for one in result.failures})
     parts = []
     if result.expectations:
@@ -70,18 +51,18 @@ def _checked(result: Result) -> str:
         parts.append(f"{wrong} of {counted}" if wrong and result.status == "failed" else counted)
     told = {
         "same": "table as expected",
-        "differs": "another table",
+        "differs": "table differs",
         "skipped": "table not compared",
     }
     if result.golden:
         parts.append(told[result.golden])
     if result.status == "error":
         parts.append("the run ended by an error")
-    return ", ".join(parts) or "nothing is expected but that it runs"
+    return ", ".join(parts) or "no expectations; it ran"
 
 
 def counts(results: Iterable[Result]) -> dict[str, int]:
-    """How many results there are of each kind."""
+    """The number of results of each status."""
     found = dict.fromkeys(WORDS, 0)
     for result in results:
         found[result.status] += 1
@@ -89,6 +70,6 @@ def counts(results: Iterable[Result]) -> dict[str, int]:
 
 
 def summary(results: list[Result]) -> str:
-    """All results in a line."""
+    """All results as one line."""
     told = ", ".join(f"{status}: {n}" for status, n in counts(results).items() if n)
     return f"scenarios: {len(results)}; {told}"

@@ -1,4 +1,4 @@
-"""The documents that lie open, those on the disk, and which belong together."""
+"""The documents open in an editor, those on disk, and their relations."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from prima.markup.limits import LIMITS
 from prima.markup.reader import ENCODING, decode
 
 MOST_FILES = 2_000
-"""Documents of a workspace that are looked at."""
+"""Maximum number of documents of a workspace."""
 MOST_FOLDERS = 5_000
-"""Folders in which they are looked for."""
+"""Maximum number of folders searched for them."""
 FEW_FOLDERS = 50
-"""Folders around a document that is in no folder of the workspace."""
+"""Maximum number of folders searched around a document outside the workspace."""
 FRESH_SECONDS = 3.0
-"""How long a listing of the workspace counts."""
+"""How long a listing of the workspace is used."""
 SUFFIXES = (".xml", ".vxml", ".grxml")
 SKIPPED = frozenset(["node_modules", "__pycache__", "build", "dist", "target"])
 
 
 @dataclass(slots=True)
 class Text:
-    """A document's text, with what has been found out of it."""
+    """A document's text, with results computed from it."""
 
     text: str
     version: int | None = None
@@ -73,7 +73,7 @@ class Text:
         return self._marks
 
     def data(self) -> bytes:
-        """The bytes that it will be saved as, by the encoding it declares."""
+        """The text as bytes in its declared encoding."""
         match = ENCODING.match(self.text[:1000].encode("ascii", "replace"))
         try:
             return self.text.encode(match[1].decode() if match else "utf-8")
@@ -90,7 +90,7 @@ class Found:
 
 
 def path_of(uri: str) -> Path | None:
-    """The file that a URI names; a document without a file gets a name of its own."""
+    """The file of a URI; an untitled document gets a path of its own."""
     try:
         parts = urlsplit(uri)
     except ValueError:
@@ -113,8 +113,8 @@ def uri_of(path: Path) -> str:
     return path.as_uri() if path.is_absolute() else quote(str(path))
 
 
-class Desk:
-    """All documents that may be asked about."""
+class Workspace:
+    """All documents that requests may be about."""
 
     def __init__(self) -> None:
         self.open: dict[Path, Text] = {}
@@ -127,14 +127,14 @@ class Desk:
     # Documents ----------------------------------------------------------------
 
     def put(self, uri: str, text: str, version: int | None = None) -> Path | None:
-        """Take an open document's text."""
+        """Store an open document's text."""
         path = path_of(uri)
         if path is not None:
             self.open[path], self.uris[path] = Text(text, version), uri
         return path
 
     def drop(self, uri: str) -> Path | None:
-        """An open document is closed: its file counts again."""
+        """Close a document; its file is used again."""
         path = path_of(uri)
         if path is not None:
             self.open.pop(path, None)
@@ -150,7 +150,7 @@ class Desk:
         return self.uris.get(path) or uri_of(path)
 
     def text(self, path: Path) -> Text | None:
-        """A document, open or on the disk; None where it cannot be read."""
+        """A document, open or on disk; None if it cannot be read."""
         if path in self.open:
             return self.open[path]
         try:
@@ -179,11 +179,11 @@ class Desk:
     # The workspace ------------------------------------------------------------
 
     def forget(self) -> None:
-        """Files have been changed by somebody else."""
+        """Drop the listing, since files have changed."""
         self._listed = (float("-inf"), [])
 
     def files(self) -> list[Path]:
-        """The documents of the workspace and beside the open ones, and the open ones."""
+        """The documents of the workspace, the open ones, and those beside them."""
         since, listed = self._listed
         if time.monotonic() - since > FRESH_SECONDS:
             lone = {path.parent.parent for path in self.open if not self._has_folder(path)}
@@ -205,7 +205,7 @@ class Desk:
             return None
 
     def named(self, path: Path) -> list[tuple[Path, int, int]]:
-        """The files that a document names: each with where its name stands."""
+        """The files that a document names, with the positions of their names."""
         text = self.text(path)
         found: list[tuple[Path, int, int]] = []
         for tag in text.page.tags if text else ():
@@ -222,7 +222,7 @@ class Desk:
         return found
 
     def reading(self, path: Path) -> set[Path]:
-        """The files that count for a scenario or world: what it names, and what its world does."""
+        """The files that a scenario or world names, and those that its world names."""
         found: set[Path] = set()
         for target, *_ in self.named(path):
             found.add(target)
@@ -232,7 +232,7 @@ class Desk:
         return found
 
     def _scenes(self) -> Iterator[tuple[Path, set[Path]]]:
-        """Every scenario with all that belongs to it."""
+        """Every scenario with the files that belong to it."""
         for path in self.files():
             text = self.text(path)
             if text is None or "scenario" not in text.text or dialect(text.top) != "scenario":
@@ -241,7 +241,7 @@ class Desk:
             yield path, belongs
 
     def related(self, path: Path) -> list[Path]:
-        """A document and those that are in a scenario with it."""
+        """A document and those in a scenario with it."""
         found = {path}
         for _, belongs in self._scenes():
             if path in belongs:
@@ -260,7 +260,7 @@ class Desk:
     # Names ----------------------------------------------------------------------
 
     def uses(self, path: Path, mark: Mark) -> list[Found]:
-        """Every place where what a name means is named, its definition included."""
+        """All uses of a name, including its definition."""
         if mark.file:
             return self._elsewhere(path, mark)
         text = self.text(path)
@@ -304,7 +304,7 @@ class Desk:
         return found
 
     def given(self, path: Path, mark: Mark) -> list[Found]:
-        """Where a name is given; in no scenario with its document, anywhere in the workspace."""
+        """The definitions of a name: in its scenarios, or else anywhere in the workspace."""
         found = [one for one in self.uses(path, mark) if one.mark.defines]
         if not found and mark.shared:
             found = [one for one in self.known(path, mark.kind) if one.mark.name == mark.name]
@@ -313,7 +313,7 @@ class Desk:
     def known(self, path: Path, kinds: Iterable[str], anywhere: bool = True) -> list[Found]:
         """Definitions of some kinds that a document may use, each name once.
 
-        Those of the scenarios that it is in; without any, those of the whole workspace.
+        They are those of its scenarios, or else of the whole workspace.
         """
         wanted = frozenset(kinds)
         text = self.text(path)
@@ -338,28 +338,48 @@ class Desk:
             text = self.text(path)
             own = dialect(text.top) if text else ""
             for one in text.marks if text else ():
-                mine = "event" in one.kind and own in ("dialogue", "voicexml")  # each its own
+                mine = "event" in one.kind and own in (
+                    "dialogue",
+                    "voicexml",
+                )  # private to each document
                 if one.defines and not wanted.isdisjoint(one.kind) and not mine:
                     found.append(Found(path, one))
         return found
 
 
 def _walk(roots: Iterable[Path], most: int) -> Iterator[Path]:
-    """Documents in folders, up to the limits; hidden folders and what tools make left out."""
+    """Documents in folders, up to the limits, without hidden folders and build output."""
     waiting = deque(str(root) for root in roots)
     folders = files = 0
     while waiting and folders < most:
         folders += 1
-        try:
-            entries = sorted(os.scandir(waiting.popleft()), key=lambda entry: entry.name)
-            for entry in entries:
-                if entry.is_dir(follow_symlinks=False):
-                    if not entry.name.startswith(".") and entry.name not in SKIPPED:
-                        waiting.append(entry.path)
-                elif entry.name.lower().endswith(SUFFIXES) and entry.is_file():
-                    files += 1
-                    if files > MOST_FILES:
-                        return
-                    yield Path(entry.path).resolve()
-        except (OSError, ValueError):
-            continue
+        entries = _entries(waiting.popleft())
+        waiting += [entry.path for entry in entries if _is_searched(entry)]
+        found = [Path(entry.path).resolve() for entry in entries if _is_document(entry)]
+        yield from found[: MOST_FILES - files]
+        files += len(found)
+        if files > MOST_FILES:
+            return
+
+
+def _entries(folder: str) -> list[os.DirEntry[str]]:
+    """The entries of a folder by name; none if it cannot be read."""
+    try:
+        return sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except (OSError, ValueError):
+        return []
+
+
+def _is_searched(entry: os.DirEntry[str]) -> bool:
+    hidden = entry.name.startswith(".") or entry.name in SKIPPED
+    try:
+        return not hidden and entry.is_dir(follow_symlinks=False)
+    except OSError:
+        return False
+
+
+def _is_document(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.name.lower().endswith(SUFFIXES) and entry.is_file()
+    except OSError:
+        return False

@@ -1,4 +1,4 @@
-"""Labels: what leads from one state to another, in a few words."""
+"""Labels of edges: the causes of transitions in a few words."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from prima.graph.model import clean, short
 from prima.markup.tree import Node
 
 SAID = 44
-"""Letters of what somebody says."""
+"""Maximum length of speech."""
 TOLD = 60
-"""Letters of a condition."""
+"""Maximum length of a condition."""
 LITERAL = re.compile(r"""'([^'\\\n]*)'|"([^"\\\n]*)\"""")
 ASKED = frozenset({"noinput", "nomatch", "help"})
-"""Events after which a question is simply asked again."""
+"""Events after which a question is asked again by default."""
 YES = {"yes": "no", "no": "yes"}
 
 
 def quoted(text: str, letters: int = SAID) -> str:
-    """What is said, in quotation marks."""
+    """Speech in quotation marks."""
     return f'"{short(clean(text), letters)}"'
 
 
@@ -30,11 +30,11 @@ def ordinal(number: int) -> str:
 
 
 def condition(code: str, name: str, truth: bool) -> str:
-    """A condition; of one on the answer just given, the answer.
+    """A condition; if it is about the answer just given, that answer.
 
     Args:
         code: the expression.
-        name: the variable of the question that has been answered, if one has.
+        name: the variable of the question that has been answered, if any.
         truth: whether the answer is yes or no.
     """
     code = " ".join(code.split())
@@ -48,7 +48,7 @@ def condition(code: str, name: str, truth: bool) -> str:
 
 
 def joined(base: str, conditions: Iterable[str]) -> str:
-    """What happens, with the conditions under which it counts."""
+    """A cause with its conditions."""
     told = base
     for one in conditions:
         told += f" {one}" if one in YES or one.startswith('"') else f", {one}"
@@ -56,12 +56,12 @@ def joined(base: str, conditions: Iterable[str]) -> str:
 
 
 def otherwise(branches: list[str]) -> str:
-    """What holds when none of an ``if``'s branches does."""
+    """The label of the case that no branch of an ``if`` is taken."""
     return YES.get(branches[0], "otherwise") if len(branches) == 1 else "otherwise"
 
 
 def handled(events: Iterable[str], count: int, cond: str, hints: dict[str, list[str]]) -> str:
-    """What a handler takes, with what is known about where its events come from."""
+    """The events that a handler takes, with their known sources."""
     told = []
     for event in events:
         more = hints.get(event, [])
@@ -71,7 +71,7 @@ def handled(events: Iterable[str], count: int, cond: str, hints: dict[str, list[
 
 
 def literals(code: str, names: Iterable[str]) -> list[str]:
-    """The names that an expression holds as literals."""
+    """The names that an expression contains as literals."""
     known = set(names)
     held = [(match[1] or match[2] or "").strip() for match in LITERAL.finditer(code)]
     found = [name.removeprefix("#") for name in held]
@@ -79,7 +79,7 @@ def literals(code: str, names: Iterable[str]) -> list[str]:
 
 
 def sayings(grammars: Iterable[Node]) -> str:
-    """What a grammar takes, by its first words."""
+    """The first phrases that a grammar takes."""
     found: list[str] = []
     for grammar in grammars:
         outside = grammar.get("src") or grammar.get("srcexpr")
@@ -93,7 +93,7 @@ def sayings(grammars: Iterable[Node]) -> str:
 
 
 def _phrases(node: Node, depth: int = 0) -> list[str]:
-    """The alternatives that a grammar begins with, else all of its words."""
+    """The alternatives at a grammar's beginning, or else all of its words."""
     if depth > 40:
         return []
     inner = [child for child in node.nodes if child.tag not in ("tag", "meta", "metadata")]
@@ -110,7 +110,7 @@ def _phrases(node: Node, depth: int = 0) -> list[str]:
 
 
 def _words(node: Node, depth: int = 0) -> str:
-    """All words of a piece of a grammar; of alternatives, the first."""
+    """All words of a part of a grammar, with the first of alternatives."""
     parts: list[str] = []
     for item in node.content:
         if isinstance(item, str):

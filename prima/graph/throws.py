@@ -1,4 +1,4 @@
-"""Where a ``throw`` leads: to the handlers that may take the event, each with its reason."""
+"""The targets of a ``throw``: the handlers that may take the event, with reasons."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
-from prima.graph.words import condition, joined, ordinal
+from prima.graph.labels import condition, joined, ordinal
 
 MOST_DEEP = 4
-"""So many handlers that throw in turn are followed."""
+"""Maximum depth of handlers that throw in turn."""
 MOST_FOLLOWED = 2000
-"""Throws of one application that are followed."""
+"""Maximum number of throws of one application that are followed."""
 T = TypeVar("T")
 
 
@@ -25,13 +25,13 @@ class Taker(Generic[T]):
     cond: str
 
     def told(self, told: str) -> str:
-        """A reason that leads to this handler."""
+        """The label of an edge that leads through this handler."""
         times = f", {ordinal(self.count)} time" if self.count > 1 else ""
         return joined(told + times, [condition(self.cond, "", False)] if self.cond else [])
 
 
 def chosen(takers: Iterable[Taker[T]]) -> tuple[list[Taker[T]], bool]:
-    """Those handlers that may ever run, and whether one of them always does.
+    """The handlers that may run, and whether one of them always does.
 
     Of those for one count the innermost and first runs whose condition holds
     (VoiceXML 2.0, 5.2.4).
@@ -51,14 +51,14 @@ def chosen(takers: Iterable[Taker[T]]) -> tuple[list[Taker[T]], bool]:
 
 @dataclass(slots=True)
 class Throws:
-    """Follows throws, as far as they do not go round."""
+    """Follows throws without cycles."""
 
     under_way: list[str] = field(default_factory=list)
     followed: int = 0
 
     @contextmanager
     def following(self, event: str) -> Iterator[bool]:
-        """Whether a throw of an event is to be followed; while it is, it is not so again."""
+        """Whether to follow a throw of an event; not again while it is followed."""
         if event in self.under_way or len(self.under_way) == MOST_DEEP:
             yield False
             return

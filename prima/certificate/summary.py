@@ -1,21 +1,18 @@
-"""Certificates as text, and as data for programs."""
+"""Certificates as text, and as data for JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from prima.certificate.finding import Delay, Starving
+from prima.certificate.model import Certificate, Delay, Starving
 from prima.checks.prices import Gap, Price
 from prima.language.commands import PATIENCE_MS
 
-if TYPE_CHECKING:
-    from prima.certificate import Certificate
-
 RESPONSE = "first word or movement towards the user"
 MOST_REASONS = 5
-"""Reasons of one kind that are told; the data have all of them."""
+"""Maximum number of reasons of one kind in the text; the data have all."""
 
 
 def format_certificate(one: Certificate) -> str:
@@ -45,7 +42,7 @@ def format_certificate(one: Certificate) -> str:
 
 
 def _delays(one: Certificate) -> list[str]:
-    """What reactions wait for; events with equal waits are told together."""
+    """The waits of reactions; events with equal waits are combined."""
     if not one.delays:
         return [f"  never: {one.ea} does nothing that reactions of {one.fa} wait for"]
     told: dict[tuple[str, ...], list[str]] = {}
@@ -59,7 +56,7 @@ def _delays(one: Certificate) -> list[str]:
 
 
 def _delay(delay: Delay, one: Certificate) -> list[str]:
-    """How long the first Command waits, and the response where that is another time."""
+    """The wait of the first Command, and of the response if different."""
     response = delay.response
     found = _wait(delay, one)
     if response is None or response == replace(delay, response=None):
@@ -80,7 +77,7 @@ def _wait(delay: Delay, one: Certificate) -> list[str]:
 
 
 def _causes(delay: Delay, one: Certificate) -> Iterable[str]:
-    """What of the other is waited for."""
+    """The causes of a wait."""
     if delay.place is not None:
         yield f"for the {delay.what} at {delay.place}"
     if delay.after:
@@ -131,7 +128,7 @@ def _starving(starved: Starving, one: Certificate) -> list[str]:
 
 
 def _others(one: Certificate) -> list[str]:
-    """How long Commands wait that are no reactions, where nothing may starve."""
+    """The wait of Commands other than reactions, if nothing may starve."""
     if one.starves:
         return []
     if one.others.unknown:
@@ -143,7 +140,7 @@ def _others(one: Certificate) -> list[str]:
 
 
 def certificate_data(one: Certificate) -> dict[str, Any]:
-    """A certificate as plain data; times in ms, null where no bound is known."""
+    """A certificate as data for JSON; times in ms, null if unbounded or unknown."""
     return {
         "fa": one.fa,
         "ea": one.ea,

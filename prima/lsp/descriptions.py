@@ -1,4 +1,4 @@
-"""What hover and completion say of VoiceXML's attributes, events, rules and variables."""
+"""Descriptions of VoiceXML's attributes, events, rules and variables for hover and completion."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ RULES = {
     "V1": "An event goes to every application. What the user says goes first to the question that"
     " listens, then to what applications listen for all the time.",
 }
-"""The rules of docs/mediation.md that elements name, in short."""
+"""Short versions of the rules of docs/mediation.md that elements refer to."""
 
 SESSION = {
     "event": "the event that is being handled: name, data, message",
@@ -133,4 +133,4 @@ SESSION = {
     "document": "the variables of the document",
     "dialog": "the variables of the form",
 }
-"""Variables that are always there."""
+"""Predefined variables."""

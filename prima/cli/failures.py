@@ -1,0 +1,97 @@
+"""Exceptions that reach the top of the command line: each has a message and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from prima.cli.common import tell
+from prima.errors import DocumentError, RunError, UsageError, listed
+
+FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+def exit_code(error: BaseException) -> int:
+    """Print the message of an exception to stderr; return the exit code.
+
+    Raises:
+        Exception: an unexpected one, with ``PRIMA_DEBUG``.
+    """
+    for kinds, handle in HANDLERS:
+        if isinstance(error, kinds):
+            return handle(error)
+    if "PRIMA_DEBUG" in os.environ:
+        raise error
+    tell(
+        f"prima: this is a defect of prima: {type(error).__name__}: {error}."
+        " Please report it; PRIMA_DEBUG=1 shows where."
+    )
+    return RUN
+
+
+def _message(code: int, text: str = "") -> Callable[[Any], int]:
+    """A handler that prints a text, by default that of the exception."""
+
+    def handle(error: BaseException) -> int:
+        tell(f"prima: {text or error}")
+        return code
+
+    return handle
+
+
+def _problems(error: DocumentError) -> int:
+    from prima.errors.rendering import render
+    from prima.markup.limits import LIMITS
+    from prima.testing.sources import SourceLines
+
+    lines = SourceLines()
+    shown = [problem for problem in error.problems if problem.severity != "note"]
+    for problem in listed(shown, LIMITS.problems):
+        tell(render(problem, lines))
+    return PROBLEMS
+
+
+def _no_arguments(error: click.exceptions.NoArgsIsHelpError) -> int:
+    tell(error.format_message())
+    return USAGE
+
+
+def _usage(error: click.ClickException) -> int:
+    context = getattr(error, "ctx", None)
+    usage = f"{context.get_usage()}\n" if context is not None else ""
+    tell(f"{usage}prima: {error.format_message()}")
+    return USAGE
+
+
+def _closed_pipe(_error: BrokenPipeError) -> int:
+    """Nobody reads any more; Python must not flush stdout at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return FINE
+
+
+def _system(error: OSError) -> int:
+    tell(f"prima: cannot go on: {error.strerror}.")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    return USAGE
+
+
+HANDLERS: list[tuple[tuple[type[BaseException], ...], Callable[[Any], int]]] = [
+    ((SystemExit,), lambda _error: FINE),  # click raises it when nobody reads any more
+    ((DocumentError,), _problems),
+    ((UsageError,), _message(USAGE)),
+    ((RunError,), _message(RUN)),
+    ((click.exceptions.NoArgsIsHelpError,), _no_arguments),
+    ((click.ClickException,), _usage),
+    ((BrokenPipeError,), _closed_pipe),
+    ((OSError,), _system),
+    (
+        (UnicodeEncodeError,),
+        _message(USAGE, "the name of a file is not UTF-8 and cannot be written here; rename it."),
+    ),
+    ((MemoryError,), _message(RUN, "out of memory")),
+]
+"""The first entry of which the exception is an instance handles it."""

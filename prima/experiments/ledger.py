@@ -1,0 +1,146 @@
+"""The ledger beside a transcript: the inputs of its run, by which it is known to be up to date."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import stat
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from prima import __version__
+from prima.experiments.plan import LEDGER, TRANSCRIPT, Job, Options, Row
+
+if TYPE_CHECKING:
+    from prima.loading import Loaded
+
+MOST_LEDGER = 1_000_000
+"""Maximum length of a ledger (characters)."""
+MOST_DIGESTS = 10_000
+"""Maximum number of digests in memory."""
+KEPT = (
+    "policy", "exit", "ended", "records", "seconds", "streams_broken", "collisions",
+    "reactions", "reaction_mean", "reaction_max",
+    "responses", "response_mean", "response_max", "messages",
+)  # fmt: skip
+"""The fields of a row that a ledger keeps; the rest follows from the job."""
+
+
+class Inputs(Mapping[Path, bytes]):
+    """Records the digest of every file that a run reads; provides none itself."""
+
+    def __init__(self, scenario: str) -> None:
+        self.digests: dict[str, str | None] = {}
+        """By paths from the scenario's folder; None if there is no such file."""
+        self._folder = os.path.dirname(os.path.realpath(scenario))
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __getitem__(self, path: Path) -> bytes:
+        name = os.path.relpath(path, self._folder)
+        if name not in self.digests:
+            self.digests[name] = file_digest(path)
+        raise KeyError(path)
+
+    def __iter__(self) -> Iterator[Path]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
+
+    def look_at_sounds(self, loaded: Loaded) -> None:
+        """Record audio files too, of which applications read only the beginning."""
+        from prima.interpreter.elements import Document
+
+        for document in loaded.cast.documents:
+            if not isinstance(document, Document) and document.glance is not None:
+                folder = Path(document.folder).resolve()
+                document.glance = partial(self._glance, document.glance, folder)
+
+    def _glance(
+        self, glance: Callable[[str, int], tuple[bytes, int]], folder: Path, uri: str, most: int
+    ) -> tuple[bytes, int]:
+        from urllib.parse import unquote, urlsplit
+
+        path = (folder / unquote(urlsplit(uri).path).lstrip("/")).resolve()
+        if folder in path.parents:
+            self.get(path)
+        return glance(uri, most)
+
+
+_digests: dict[tuple[str, int, int, int], str] = {}
+"""Digests of files by path, modification time, size and inode."""
+
+
+def file_digest(path: str | Path) -> str | None:
+    """A file's SHA-256, or None if there is no such file."""
+    try:
+        state = os.stat(path)
+        if not stat.S_ISREG(state.st_mode):
+            return None
+        key = (str(path), state.st_mtime_ns, state.st_size, state.st_ino)
+        if key not in _digests:
+            if len(_digests) >= MOST_DIGESTS:
+                _digests.clear()
+            with open(path, "rb") as stream:
+                _digests[key] = hashlib.file_digest(stream, "sha256").hexdigest()
+        return _digests[key]
+    except (OSError, ValueError):
+        return None
+
+
+def key_of(options: Options, job: Job) -> dict[str, Any]:
+    """What determines a run, apart from its files."""
+    return {
+        "prima": __version__,
+        "scenario": job.scenario,
+        "policy": job.policy,
+        "bound": options.bound,
+        "patience": options.patience,
+        "hosts": list(options.hosts),
+        "limits": dict(options.limits),
+    }
+
+
+def earlier_row(options: Options, job: Job) -> Row | None:
+    """The row of the same run in an earlier batch, if its inputs and transcript are unchanged."""
+    try:
+        with open(f"{job.stem}{LEDGER}", encoding="utf-8") as stream:
+            ledger = json.loads(stream.read(MOST_LEDGER))
+        folder = os.path.dirname(os.path.realpath(job.scenario))
+        inputs: dict[str, str | None] = ledger["inputs"]
+        if (
+            ledger["key"] != key_of(options, job)
+            or any(file_digest(os.path.join(folder, one)) != inputs[one] for one in inputs)
+            or file_digest(f"{job.stem}{TRANSCRIPT}") != ledger["transcript"]
+        ):
+            return None
+        kept = {name: ledger["row"][name] for name in KEPT}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    fresh = Row(job.scenario, transcript=f"{job.stem}{TRANSCRIPT}", earlier=True, **kept)
+    return fresh if _sound(fresh) else None
+
+
+def _sound(row: Row) -> bool:
+    """Whether a row from a ledger has values of the right types."""
+    whole = (
+        row.exit,
+        row.records,
+        row.streams_broken,
+        row.collisions,
+        row.reactions,
+        row.responses,
+    )
+    times = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
+    parts = (row.seconds, *times)
+    words = (row.policy, row.ended, *(row.messages if isinstance(row.messages, list) else [0]))
+    return (
+        all(type(one) is int for one in whole)
+        and all(type(one) in (int, float) for one in parts)
+        and all(type(one) is str for one in words)
+    )

@@ -1,0 +1,230 @@
+"""The server's state and its conversion of places, problems and edits for an editor."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import logging
+from pathlib import Path
+from typing import Any
+
+from cattrs import Converter
+from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
+from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol, default_converter
+
+from prima import __version__
+from prima.errors import Problem
+from prima.errors.visible import visible
+from prima.lsp import naming
+from prima.lsp.names import dialect
+from prima.lsp.problems import Spot, check, spots
+from prima.lsp.text import Lines
+from prima.lsp.workspace import Text, Workspace
+
+SEVERITIES = {
+    "error": lsp.DiagnosticSeverity.Error,
+    "warning": lsp.DiagnosticSeverity.Warning,
+    "note": lsp.DiagnosticSeverity.Information,
+}
+
+logger = logging.getLogger("prima.lsp")
+
+
+def _converter() -> Converter:
+    """A converter of messages; unlike pygls's own it rejects values of wrong types."""
+    made: Converter = default_converter()  # type: ignore[no-untyped-call]
+    for kind in (str, int, bool):
+        made.register_structure_hook(kind, functools.partial(_exactly, kind))
+    return made
+
+
+def _exactly(kind: type, value: Any, _: object) -> Any:
+    if type(value) is not kind:
+        raise ValueError(f"{kind.__name__} is wanted")
+    return value
+
+
+class Protocol(LanguageServerProtocol):
+    """Answers requests with wrong parameters with an error; pygls leaves them unanswered."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """Read a message; errors in a request are sent back."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "id" in data and "method" in data:
+                asked = data["id"] if isinstance(data["id"], str | int) else None
+                message = f"Wrong parameters of {str(data['method'])[:80]}."
+                told = lsp.ResponseError(JsonRpcInvalidParams.CODE, message)
+                self._send_response(asked, None, told)  # type: ignore[arg-type]
+            raise error
+
+
+class Server(LanguageServer):
+    """The state of the server between requests."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "prima",
+            __version__,
+            text_document_sync_kind=lsp.TextDocumentSyncKind.Full,
+            protocol_cls=Protocol,
+            converter_factory=_converter,
+        )
+        self.documents = Workspace()
+        self.reported: dict[Path, dict[Path, list[Problem]]] = {}
+        """Problems by the validated document, and by their file."""
+        self.waiting: dict[Path, asyncio.TimerHandle] = {}
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """Do not log wrong messages of an editor: it gets an error as answer."""
+        logger.debug("%s: %s", type(error).__name__, error)
+
+    # Places -------------------------------------------------------------------
+
+    @property
+    def encoding(self) -> str:
+        """The unit in which this editor counts columns."""
+        encoding = self.workspace.position_encoding or lsp.PositionEncodingKind.Utf16
+        return str(getattr(encoding, "value", encoding))
+
+    def offset(self, lines: Lines, position: lsp.Position) -> int:
+        """The offset of a position."""
+        return lines.offset(position.line, position.character, self.encoding)
+
+    def range(self, lines: Lines, start: int, end: int) -> lsp.Range:
+        """The range of a piece of text."""
+        first, last = (lines.position(one, self.encoding) for one in (start, end))
+        return lsp.Range(lsp.Position(*first), lsp.Position(*last))
+
+    def location(self, place: naming.Spot) -> lsp.Location | None:
+        """A piece of a document."""
+        text = self.documents.text(place.path)
+        if text is None:
+            return None
+        return lsp.Location(
+            self.documents.uri(place.path), self.range(text.lines, place.start, place.end)
+        )
+
+    def locations(self, places: list[naming.Spot]) -> list[lsp.Location]:
+        """Pieces of documents."""
+        return [one for place in places if (one := self.location(place)) is not None]
+
+    def asked(self, params: Any) -> tuple[Path, Text, int] | None:
+        """The document and the offset that a request is about."""
+        found = self.documents.asked(params.text_document.uri)
+        if found is None or params.position.line >= len(found[1].lines.starts):
+            return None
+        path, text = found
+        return path, text, self.offset(text.lines, params.position)
+
+    # Problems -----------------------------------------------------------------
+
+    def check_soon(self, path: Path, delay: float) -> None:
+        """Check a document soon; a later call replaces an earlier one."""
+        if path in self.waiting:
+            self.waiting.pop(path).cancel()
+        loop = asyncio.get_running_loop()
+        self.waiting[path] = loop.call_later(delay, self._check, path)
+
+    def _check(self, path: Path) -> None:
+        self.waiting.pop(path, None)
+        if path not in self.documents.open:
+            return
+        try:
+            self.tell(path, check(self.documents, path))
+        except Exception:  # the next change is checked again
+            logger.exception("a document cannot be checked")
+
+    def tell(self, path: Path, found: dict[Path, list[Problem]]) -> None:
+        """Publish the problems found by validating a document, and clear old ones."""
+        before = self.reported.get(path, {})
+        self.reported[path] = found
+        for file in sorted({*before, *found}):
+            if file == path or before.get(file) != found.get(file):
+                self.publish(file)
+
+    def problems(self, file: Path) -> list[Problem]:
+        """All problems of a file, from all validated documents."""
+        return [one for told in self.reported.values() for one in told.get(file, ())]
+
+    def publish(self, file: Path) -> None:
+        """Publish all problems of a file."""
+        text = self.documents.text(file)
+        found = spots(self.documents, file, self.problems(file))
+        self.text_document_publish_diagnostics(
+            lsp.PublishDiagnosticsParams(
+                self.documents.uri(file),
+                [self.diagnostic(text.lines, one) for one in found] if text else [],
+                text.version if text else None,
+            )
+        )
+
+    def diagnostic(self, lines: Lines, one: Spot) -> lsp.Diagnostic:
+        """A problem as an editor shows it."""
+        problem = one.problem
+        return lsp.Diagnostic(
+            self.range(lines, one.start, one.end),
+            visible(f"{problem.message} {problem.remedy}".strip(), "\n"),
+            SEVERITIES[problem.severity],
+            problem.code,
+            source="prima",
+        )
+
+    def concerned(self, path: Path) -> list[Path]:
+        """Open documents whose problems may change with a document."""
+        return [
+            other
+            for other, text in self.documents.open.items()
+            if other != path
+            and dialect(text.top) in ("scenario", "world")
+            and path in self.documents.reading(other)
+        ]
+
+    # Edits --------------------------------------------------------------------
+
+    def edits(
+        self, found: list[naming.Edit], move: tuple[Path, Path] | None = None
+    ) -> lsp.WorkspaceEdit | None:
+        """Edits of documents, and a file to move after them."""
+        by_file: dict[Path, list[lsp.TextEdit]] = {}
+        for edit in found:
+            text = self.documents.text(edit.path)
+            if text is not None:
+                place = self.range(text.lines, edit.start, edit.end)
+                by_file.setdefault(edit.path, []).append(lsp.TextEdit(place, edit.text))
+        if move is None:
+            changes = {self.documents.uri(path): some for path, some in by_file.items()}
+            return lsp.WorkspaceEdit(changes=changes) if changes else None
+        parts: list[Any] = [
+            lsp.TextDocumentEdit(
+                lsp.OptionalVersionedTextDocumentIdentifier(
+                    self.documents.uri(path),
+                    self.documents.open[path].version if path in self.documents.open else None,
+                ),
+                list(some),
+            )
+            for path, some in by_file.items()
+        ]
+        parts.append(lsp.RenameFile(self.documents.uri(move[0]), self.documents.uri(move[1])))
+        return lsp.WorkspaceEdit(document_changes=parts)
+
+    @property
+    def moves_files(self) -> bool:
+        """Whether the editor can move files."""
+        workspace = self.client_capabilities.workspace
+        able = workspace.workspace_edit if workspace else None
+        return bool(
+            able
+            and able.document_changes
+            and "rename" in [str(getattr(x, "value", x)) for x in able.resource_operations or ()]
+        )
+
+    @property
+    def snippets(self) -> bool:
+        """Whether the editor supports snippets."""
+        document = self.client_capabilities.text_document
+        item = document.completion.completion_item if document and document.completion else None
+        return bool(item and item.snippet_support)

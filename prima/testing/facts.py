@@ -1,0 +1,89 @@
+"""The facts of a run that a scenario can expect, and when they may happen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from prima.testing.tracing import States
+from prima.transcript.record import Entry
+from prima.transcript.row import Row
+from prima.transcript.run import Run
+from prima.transcript.spans import base
+
+
+@dataclass(slots=True)
+class Fact:
+    """Something that happened: its number among the facts, its time (ms), and its record."""
+
+    number: int
+    time: int
+    phase: str
+    record: Entry
+    request: Entry
+    """The request of the Behavior, if there is one."""
+    said: str = ""
+    """What the Behavior says."""
+
+
+@dataclass(slots=True)
+class Window:
+    """When something is expected: from a time (ms) and after a fact, until a time."""
+
+    opens: int = 0
+    behind: int = -1
+    closes: int | None = None
+    ahead: int | None = None
+    """The number of the fact before which it must happen."""
+    why: str = ""
+    """What opens it, as a phrase."""
+
+    def holds(self, fact: Fact) -> bool:
+        """Whether a fact is in the window."""
+        return not self.early(fact) and not self.late(fact)
+
+    def early(self, fact: Fact) -> bool:
+        """Whether a fact comes before the window."""
+        return fact.time < self.opens or fact.number <= self.behind
+
+    def late(self, fact: Fact) -> bool:
+        """Whether a fact comes after the window."""
+        past = self.closes is not None and fact.time > self.closes
+        return past or (self.ahead is not None and fact.number >= self.ahead)
+
+
+@dataclass(slots=True)
+class RunFacts:
+    """A run as it is checked: facts, rows, and the states of applications."""
+
+    facts: list[Fact]
+    rows: list[Row]
+    states: States
+    end: int
+    """When it ended (ms)."""
+    ended: dict[str, str] = field(default_factory=dict)
+    """Why applications ended."""
+
+
+def make_run(run: Run, rows: list[Row], states: States) -> RunFacts:
+    """Collect the facts of a run."""
+    ended = {one.app: one.outcome for one in run.of("unload") if one.actor == "mediator"}
+    return RunFacts(list(_facts(run)), rows, states, round(run.end * 1000), ended)
+
+
+def _facts(run: Run) -> Iterable[Fact]:
+    """The facts that can be expected or waited for: of loops only the first, and no decisions."""
+    texts: dict[str, str] = {}
+    number = 0
+    for entry in run.entries:
+        phase, name = entry.phase, base(entry.behavior)
+        if phase == "start" and entry.text:
+            texts[name] = entry.text
+        ended = phase == "end" and entry.outcome != "again"
+        gone = phase == "unload" and entry.actor == "mediator"
+        first = phase == "start" and entry.first
+        if first or ended or gone or phase in ("listening", "event", "log", "send"):
+            request = run.asked(name) or entry
+            time = round(entry.time * 1000)
+            yield Fact(number, time, phase, entry, request, texts.get(name, ""))
+            number += 1

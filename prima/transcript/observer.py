@@ -1,0 +1,349 @@
+"""Counts the criteria of a run from its records, one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+
+from prima.messages import Record
+from prima.transcript.criteria import Criteria, Delay
+from prima.transcript.record import Entry
+
+
+@dataclass(slots=True)
+class _Tree:
+    """A Communication Stream as a user perceives it."""
+
+    name: str
+    app: str
+    pending: dict[str, Entry] = field(default_factory=dict)
+    """Requests of it that have not ended, by AB."""
+    topics: set[str] = field(default_factory=set)
+    """Those of them that do not leave the user."""
+    running: set[str] = field(default_factory=set)
+    leaving: set[str] = field(default_factory=set)
+    """What of it runs and leaves the user."""
+    looping: set[str] = field(default_factory=set)
+    """What of it runs and works in a feedback loop."""
+    speaking: set[str] = field(default_factory=set)
+    """What of it runs and speaks."""
+    spoken: bool = False
+    """Whether it has spoken, and no break has been counted since."""
+    spoken_into: bool = False
+    """Whether another application has spoken, by no reaction, since it last did."""
+    since: float = 0.0
+    """When another application came in or spoke into it."""
+    owed: list[tuple[float, Delay]] = field(default_factory=list)
+    """Events that it reacts to and has not responded to, with their times."""
+    begun: bool = False
+    engaged: bool = False
+    broken_by: str = ""
+    """The application that has come in since it last did something, if any."""
+    by_reaction: bool = False
+    left_by: set[str] = field(default_factory=set)
+    reacting: float = -1.0
+    """When a reaction of it started last, if nobody has come in since; else less than 0."""
+    asks: bool = False
+    """Whether it has asked or will ask the user something."""
+    faced: bool | None = None
+    """Whether robot and user faced each other at its first word, if that has been said."""
+
+    @property
+    def unfaced(self) -> bool:
+        """Whether it is a conversation that was begun without the channel."""
+        return self.asks and self.faced is False
+
+
+@dataclass(slots=True)
+class _Wait:
+    """An application waits for a service's answer."""
+
+    talked: bool
+    """Whether it was or has been doing something for the user: else nobody notices."""
+    since: float
+    broken: bool = False
+    """Whether another application came in, by no reaction."""
+
+
+@dataclass(slots=True)
+class _Event:
+    """An event that applications may react to."""
+
+    name: str
+    time: float
+    answered: set[str] = field(default_factory=set)
+    """Applications that have reacted."""
+    waited: str = ""
+    """The application whose wait was broken and that this answers, until it is taken up."""
+
+
+PARTS = 1 << 80
+"""Parts of a second in which floats from a microsecond on are whole numbers."""
+MOST_EVENTS = 1000
+"""How many events later a reaction may still come."""
+MOST_STREAMS = 256
+"""How many streams, and how many waits, are looked at at once: each start looks at all of them."""
+
+
+class Observer:
+    """Counts the criteria of one run in bounded memory.
+
+    Args:
+        delays: whether each reaction is kept in the result, beside their number and times.
+    """
+
+    def __init__(self, delays: bool = True) -> None:
+        self.found = Criteria()
+        self._keeps_delays = delays
+        self._delayed = 0
+        """The seconds of all reactions, in parts so small that the sum is exact."""
+        self._responded = 0
+        """The seconds until all responses, in such parts."""
+        self._trees: dict[str, _Tree] = {}
+        self._of: dict[str, _Tree] = {}
+        """The streams of behaviors that have not ended."""
+        self.broken_since = 0.0
+        """When another application came into the stream that was counted as broken last."""
+        self._seen = False
+        self._cut: set[str] = set()
+        """Behaviors that go on and have lost a device."""
+        self._now = 0.0
+        self._events: dict[int, _Event] = {}
+        """The latest events, by serial number."""
+        self._waits: dict[tuple[str, str], _Wait] = {}
+        """Applications that wait for a service's answer, by application and service."""
+        self._do: dict[str, Callable[[Entry], None]] = {
+            "request": self._request,
+            "start": self._start,
+            "end": self._end,
+            "cancel": self._end,
+            "fail": self._end,
+            "stream-end": lambda record: self._forget(record.tree),
+            "event": lambda record: self._event(record, record.event),
+            "emergency": lambda record: self._event(
+                record, f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
+            ),
+            "send": self._send,
+            "collision": self._collide,
+            "interrupt": self._interrupt,
+        }
+
+    def add(self, record: Entry) -> None:
+        """Add one record."""
+        self._now = record.time
+        if do := self._do.get(record.phase):
+            do(record)
+
+    def _send(self, record: Entry) -> None:
+        talking = any(tree.begun for tree in self._trees.values() if tree.app == record.app)
+        self._waits[record.app, record.data["to"]] = _Wait(talking, self._now)
+        if len(self._waits) > MOST_STREAMS:
+            del self._waits[next(iter(self._waits))]
+
+    def _interrupt(self, record: Entry) -> None:
+        self.found.restarts += 1
+        self._end(record, again=True)
+
+    def result(self) -> Criteria:
+        """The result so far."""
+        found = self.found
+        unfaced = found.unfaced + sum(tree.unfaced for tree in self._trees.values())
+        return replace(
+            found,
+            reaction_mean=_mean(self._delayed, found.reactions),
+            response_mean=_mean(self._responded, found.responses),
+            unfaced=unfaced,
+        )
+
+    def _request(self, record: Entry) -> None:
+        tree = self._trees.get(record.tree)
+        if tree is None:
+            tree = self._trees[record.tree] = _Tree(record.tree, record.app)
+            if len(self._trees) > MOST_STREAMS:
+                self._forget(next(iter(self._trees)))
+        tree.pending[record.behavior] = record
+        if not record.leaves:
+            tree.topics.add(record.behavior)
+        self._of[record.behavior] = tree
+        tree.asks = tree.asks or record.command == "q-and-a"
+
+    def _forget(self, name: str) -> None:
+        """A stream is over, or there are too many."""
+        tree = self._trees.pop(name, None)
+        self.found.unfaced += tree is not None and tree.unfaced
+
+    def _start(self, record: Entry) -> None:
+        name = record.behavior.partition(".")[0]
+        tree = self._of.get(name)
+        if tree is None:
+            return
+        request = tree.pending.get(name, record)
+        if record.cause is not None and record.cause in self._events:
+            self._react(tree, record.cause, self._events[record.cause])
+        if record.reactive:
+            tree.reacting = self._now
+        if record.text:
+            self._talk(tree, record)
+        again = not record.resumed and record.behavior.partition(".")[2] not in ("", "1")
+        if not again:
+            self._begin(tree, record, request)
+        self._go_on(tree, not again and "speaker" in request.devices)
+        tree.begun = True
+        tree.running.add(name)
+        if request.leaves:
+            tree.leaving.add(name)
+        if request.feedback:
+            tree.looping.add(name)
+        tree.engaged = tree.engaged or bool(request.engages)
+
+    def _talk(self, tree: _Tree, record: Entry) -> None:
+        """Something is said: its application is noticed while it waits; a conversation begins."""
+        for (app, _), wait in self._waits.items():
+            wait.talked = wait.talked or app == tree.app
+        if record.command != "active-sensing-human" and tree.faced is None:
+            tree.faced = self._seen
+
+    def _begin(self, tree: _Tree, record: Entry, request: Entry) -> None:
+        """A behavior begins or resumes: what does it do to the others, and is it a response?"""
+        speaks = "speaker" in request.devices
+        self._come_in(tree, speaks)
+        if request.leaves:
+            self._leave(tree, record.behavior)
+        if speaks:
+            tree.speaking.add(record.behavior.partition(".")[0])
+        if record.text or (request.engages and record.command != "q-and-a"):
+            self._respond(tree)
+
+    def _go_on(self, tree: _Tree, speaks: bool) -> None:
+        """A stream does something, or speaks: has another application broken it meanwhile?
+
+        What begins beside it at the same instant has not come in between.
+        """
+        spoken_into = speaks and tree.spoken_into
+        came_in = bool(tree.broken_by) and tree.since < self._now
+        broken = spoken_into or (came_in and not tree.by_reaction)
+        if broken:
+            self.found.broken += 1
+            self.broken_since = tree.since
+        tree.broken_by = ""
+        if speaks:
+            tree.spoken, tree.spoken_into = True, False
+        elif broken:
+            tree.spoken = False
+
+    def _react(self, tree: _Tree, serial: int, event: _Event) -> None:
+        """An application starts something because of an event: the first time counts."""
+        found, app = self.found, tree.app
+        if app not in event.answered:
+            event.answered.add(app)
+            seconds = round(self._now - event.time, 3)
+            found.reactions += 1
+            found.reaction_max = max(found.reaction_max, seconds)
+            self._delayed += int(seconds * PARTS)
+            delay = Delay(event.name, serial, app, seconds)
+            tree.owed = [*tree.owed[-MOST_STREAMS:], (event.time, delay)]
+            if self._keeps_delays:
+                found.delays.append(delay)
+        if event.waited == app:
+            event.waited = ""
+            found.broken_waiting += 1
+
+    def _respond(self, tree: _Tree) -> None:
+        """The user is spoken to or turned to: all that the stream reacts to has its response."""
+        found = self.found
+        for time, delay in tree.owed:
+            delay.response = seconds = round(self._now - time, 3)
+            found.responses += 1
+            found.response_max = max(found.response_max, seconds)
+            self._responded += int(seconds * PARTS)
+        tree.owed = []
+
+    def _come_in(self, tree: _Tree, speaks: bool) -> None:
+        """Something of a stream begins: what others have not finished may be broken by it."""
+        for other in self._trees.values():
+            if other.app != tree.app and other.begun:
+                self._come_into(other, tree, speaks)
+        for (app, _), wait in self._waits.items():
+            broken = wait.talked and app != tree.app and tree.reacting < wait.since
+            wait.broken = wait.broken or broken
+
+    def _come_into(self, other: _Tree, tree: _Tree, speaks: bool) -> None:
+        """A stream comes into another one, which is broken by it if it goes on later."""
+        if speaks and other.spoken and not other.spoken_into:
+            self._speak_into(other, tree)
+        idle = not other.running and not tree.running
+        # A stream that only has to drive away has no topic to break.
+        if other.topics and idle and not other.broken_by:
+            other.broken_by, other.since = tree.app, self._now
+            other.by_reaction = tree.reacting >= 0
+            other.reacting = -1.0  # when it goes on, that is no reaction any more
+
+    def _speak_into(self, other: _Tree, tree: _Tree) -> None:
+        """A stream speaks while another one that has spoken does something: is it its topic?
+
+        On a way or a search one may talk: a feedback Command takes as long as it takes.
+        """
+        if other.running and not other.looping and not other.speaking:
+            other.spoken_into, other.since = tree.reacting < 0, self._now
+            other.reacting = -1.0
+
+    def _leave(self, tree: _Tree, behavior: str) -> None:
+        """The robot goes away: is another application in the middle of a conversation?"""
+        for other in self._trees.values():
+            if other.app == tree.app or not other.engaged:
+                continue
+            if 0 < len(other.leaving) == len(other.running):
+                continue
+            if tree.name not in other.left_by:
+                other.left_by.add(tree.name)
+                self.found.left += 1
+
+    def _end(self, record: Entry, again: bool = False) -> None:
+        name = record.behavior.partition(".")[0]
+        tree = self._of.get(name)
+        if tree is None:
+            return
+        tree.running.discard(name)
+        tree.leaving.discard(name)
+        tree.looping.discard(name)
+        tree.speaking.discard(name)
+        if not (again or record.outcome in ("again", "halted")):
+            tree.pending.pop(name, None)
+            tree.topics.discard(name)
+            del self._of[name]
+            self._cut.discard(name)
+
+    def _event(self, record: Entry, name: str) -> None:
+        if name in ("human.found", "human.lost"):
+            self._seen = name == "human.found"
+        event = _Event(name, self._now)
+        if record.serial:
+            self._events[record.serial] = event
+            if len(self._events) > MOST_EVENTS:
+                del self._events[next(iter(self._events))]
+        for kind in ("reply.", "error.service."):
+            service = name.removeprefix(kind)
+            wait = self._waits.pop((record.app, service), None)
+            if name.startswith(kind) and wait is not None and wait.broken:
+                event.waited = record.app
+
+    def _collide(self, record: Entry) -> None:
+        name = record.behavior.partition(".")[0]
+        mine, theirs = self._of.get(name), self._of.get(record.by.partition(".")[0])
+        if mine is None or theirs is None or mine.app == theirs.app or name in self._cut:
+            return
+        self._cut.add(name)
+        self.found.units_cut += 1
+
+
+def _mean(parts: int, number: int) -> float:
+    """The mean of so many times, from their sum."""
+    return round(parts / PARTS / number, 3) if number else 0.0
+
+
+def observe(records: Iterable[Record]) -> Criteria:
+    """Count the criteria in a whole transcript."""
+    observer = Observer()
+    for record in records:
+        observer.add(Entry(record))
+    return observer.result()

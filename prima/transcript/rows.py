@@ -1,0 +1,146 @@
+"""The rows of a transcript's table, made from its records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from prima.messages import Record
+from prima.transcript.record import Entry
+from prima.transcript.row import Row, row_of
+from prima.transcript.spans import base
+
+UNSEEN = frozenset(
+    {"decision", "floor", "window", "leave", "stream-end", "suspend", "resume", "listening"}
+)
+"""Frequent phases that have no rows."""
+ASKED = ("command", "text", "args", "extra", "inserted", "source")
+"""Fields of a behavior's request that its row needs."""
+
+
+def make_rows(entries: Iterable[Entry]) -> list[Row]:
+    """The rows of a transcript, numbered; only records that may have a row are kept."""
+    held: list[Entry] = []
+    handled: set[int] = set()
+    asked: dict[str, Entry] = {}
+    ends: dict[str, float] = {}
+    for record in entries:
+        if record.cause:
+            handled.add(record.cause)
+        if record.phase == "request":
+            asked[record.behavior] = record.only(ASKED)
+        elif record.phase == "end":
+            if record.command == "iu":
+                ends[record.behavior] = record.time
+            if record.goal:
+                held.append(record)
+        elif record.phase not in UNSEEN:
+            held.append(record)
+    rows: list[Row] = []
+    collided: set[tuple[str, str]] = set()
+    for record in held:
+        row = row_of(record, asked, handled)
+        if record.phase == "collision":
+            pair = (base(record.behavior), base(record.by))
+            row = None if pair in collided else row  # every loop collides
+            collided.add(pair)
+        if row is not None:
+            row.number = len(rows)
+            rows.append(row)
+    _bracket(rows, ends)
+    return rows
+
+
+class GrowingTable:
+    """The table of a run in progress: rows are made as records come.
+
+    It does not wait for later records. A unit's rows begin with ``+`` and continue with a
+    bar, as its last row is not known yet. What the camera sees has a row once an application
+    reacts to it.
+    """
+
+    def __init__(self) -> None:
+        self.rows: list[Row] = []
+        self._asked: dict[str, Entry] = {}
+        self._handled: set[int] = set()
+        self._ignored: dict[int, Entry] = {}
+        """Events without a reaction yet, by their serial numbers."""
+        self._collided: set[tuple[str, str]] = set()
+        self._units: set[str] = set()
+        """Units that have a row and have not ended."""
+
+    def add(self, records: Iterable[Record]) -> list[Row]:
+        """Add the records of an instant, times in seconds; return their rows."""
+        held = [Entry(record) for record in records]
+        before = len(self.rows)
+        for record in held:
+            if record.cause:
+                self._handled.add(record.cause)
+            if record.phase == "request":
+                self._asked[record.behavior] = record
+        reacted = [self._ignored.pop(one) for one in sorted(self._handled & self._ignored.keys())]
+        for record in (*reacted, *held):
+            self._add(record)
+        return self.rows[before:]
+
+    def _add(self, record: Entry) -> None:
+        if record.phase == "event" and record.actor == "robot" and record.serial is not None:
+            if record.serial not in self._handled:
+                self._ignored[record.serial] = record
+        elif record.phase == "collision":
+            pair = (base(record.behavior), base(record.by))
+            if pair in self._collided:
+                return
+            self._collided.add(pair)
+        row = row_of(record, self._asked, self._handled)
+        if row is not None:
+            row.number = len(self.rows)
+            if row.unit and row.unit not in self._units:
+                self._units.add(row.unit)
+                row.bracket = "+"
+            elif self._units:
+                row.bracket = "|"
+            self.rows.append(row)
+        if record.phase in ("end", "cancel", "fail", "interrupt"):
+            self._units.discard(record.behavior)
+
+
+def _bracket(rows: list[Row], ends: dict[str, float]) -> None:
+    """Mark the rows of units, from the first to the last.
+
+    The answer to a unit's last question belongs to it (U5); rows between its interruption
+    and its restart do not (X2).
+    """
+    left = list(range(len(rows) + 1))  # for each row, near the next one without a mark
+    for indices in reversed(_unit_rows(rows, ends)):  # later units overwrite earlier ones
+        first, last = indices[0], indices[-1]
+        index = _next(left, first)
+        while index <= last:
+            inside = first < index < last
+            rows[index].bracket = "|" if inside else "+" if first != last else "["
+            left[index] = index + 1
+            index = _next(left, index)
+
+
+def _unit_rows(rows: list[Row], ends: dict[str, float]) -> list[list[int]]:
+    """The indices of each unit's rows, a unit that starts again counting as another."""
+    spans: dict[tuple[str, int], list[int]] = {}
+    broken: dict[str, int] = {}
+    for index, row in enumerate(rows):
+        if row.kind == "interrupt":
+            broken[row.behavior] = broken.get(row.behavior, 0) + 1
+        if row.unit:
+            spans.setdefault((row.unit, broken.get(row.unit, 0)), []).append(index)
+    for (unit, _), indices in spans.items():
+        final, after = rows[indices[-1]], indices[-1] + 1
+        answer = rows[after] if after < len(rows) and final.kind == "q-and-a" else None
+        if answer and answer.kind == "speech" and answer.time <= ends.get(unit, -1.0):
+            indices.append(after)
+    return list(spans.values())
+
+
+def _next(left: list[int], index: int) -> int:
+    """The first row without a mark at or after one; shortens the path for the next call."""
+    while left[index] != index:
+        left[index] = left[left[index]]
+        index = left[index]
+    return index
