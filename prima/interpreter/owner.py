@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from prima.interpreter.plain import PlainEngine
     from prima.script.isolated import AnyEngine
 
-FORM_STEPS = 10
+FORM_STEPS = 3
 """As many pieces of content is the work of beginning a form's own content, or a form item."""
 
 

@@ -77,7 +77,7 @@ def test_a_run_that_nobody_closed_gives_its_process_back(quick: None) -> None:
     pid = engine_of(engines).host.pid
     del engines
     gc.collect()
-    assert engine_of(Engines()).host.pid == pid
+    assert pid in [one.pid for one in worker._idle]
 
 
 def test_eas_are_apart_and_fas_together() -> None:
@@ -116,7 +116,7 @@ def test_processes_are_used_again_when_a_run_is_over() -> None:
     engines.close()
     with pytest.raises(EngineLost, match="its run has ended"):
         engine.value("1", scopes)
-    assert engine_of(Engines()).host.pid == pid
+    assert pid in [one.pid for one in worker._idle]
 
 
 def test_a_process_of_engines_can_write_no_file_and_hold_so_much() -> None:
