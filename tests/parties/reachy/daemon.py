@@ -19,6 +19,7 @@ from prima.devices.goals import Begin, Broke, Done, News, Report, Stopped
 from prima.devices.profile import Profile, read_robot
 from prima.live.drivers.reachy import DRIVER
 from prima.messages import Command
+from prima.sim.map import Map
 from tools.environments import python_of
 
 ROOT = Path(__file__).parents[3]
@@ -105,7 +106,7 @@ class Run:
 
     def __init__(self, address: str, more: str = "") -> None:
         self.profile = profile(address, more)
-        self.driver = DRIVER(self.profile.drivers[0], self.profile)
+        self.driver = DRIVER(self.profile.drivers[0], self.profile, Map("nowhere"))
         self.told: list[Report | News] = []
         self.driver.attach(self.told.append)
         self._keys = 0
@@ -113,7 +114,10 @@ class Run:
     def begin(self, kind: str, **args: Any) -> str:
         """Begin a goal; gives its key."""
         self._keys += 1
-        key, names = f"goal/{self._keys}", {"gesture": "neck arm", "move-head": "neck"}
+        key, names = (
+            f"goal/{self._keys}",
+            {"gesture": "neck arm", "move-head": "neck", "point-by-hand": "arm"},
+        )
         devices = frozenset(names.get(kind, "locomotion").split())
         given = {name.replace("_", "-"): value for name, value in args.items()}
         self.driver.start(Begin(key, kind, Command(kind, given), devices))

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from prima.errors import UsageError
 from prima.live.driver import Refused, Unreachable
 
 if TYPE_CHECKING:
     import httpx
     from websockets.asyncio.client import ClientConnection
 
-ADDRESS = "http://127.0.0.1:8000"
+PORT = 8000
+ADDRESS = f"http://127.0.0.1:{PORT}"
 """Where the daemon is, unless the robot's document says otherwise."""
 ENDS = {"move_completed", "move_failed", "move_cancelled"}
 ANSWER_S = 2.0
@@ -29,15 +29,12 @@ class Link:
     The daemon would play two moves at once, and each would pull the parts of the other back.
 
     Args:
-        address: the daemon's URL, or its host.
+        address: the daemon's URL.
         lost: called with the reason when the connection is gone.
-
-    Raises:
-        UsageError: it is no such address.
     """
 
     def __init__(self, address: str, lost: Callable[[str], None]) -> None:
-        self.address = _address(address)
+        self.address = address
         self._lost = lost
         self._client: httpx.AsyncClient | None = None
         self._socket: ClientConnection | None = None
@@ -73,7 +70,7 @@ class Link:
         try:
             self._socket = await connect(url, proxy=None, open_timeout=ANSWER_S)
         except (OSError, WebSocketException) as error:
-            raise Unreachable(f"{self.address} does not tell of moves: {error}.") from error
+            raise Unreachable(f"The daemon does not tell of moves: {error}.") from error
         self._watching = asyncio.create_task(self._watch(self._socket))
 
     async def check(self) -> None:
@@ -86,11 +83,11 @@ class Link:
             status = await self.ask("GET", "/api/daemon/status")
             state = status["state"]
         except (Refused, TypeError, KeyError) as error:
-            raise Unreachable(f"What answers at {self.address} is no Reachy Mini.") from error
+            raise Unreachable("What answers there is no Reachy Mini.") from error
         if state != "running":
             why = f" ({status['error']})" if status.get("error") else ""
             raise Unreachable(
-                f"The daemon at {self.address} does not run its robot; its state is {state}{why}."
+                f"The daemon does not run its robot; its state is {state}{why}."
                 " Start the robot in the daemon's dashboard."
             )
 
@@ -104,18 +101,18 @@ class Link:
         import httpx
 
         if self._client is None:
-            raise Unreachable(f"There is no connection with {self.address}.")
+            raise Unreachable("There is no connection with Reachy Mini.")
         try:
             async with asyncio.timeout(ANSWER_S):  # those of httpx are for each part of a request
                 answer = await self._client.request(method, path, json=body)
         except (httpx.HTTPError, TimeoutError) as error:
             reason = str(error) or "it takes too long"
             raise Unreachable(
-                f"No Reachy Mini answers at {self.address} ({reason}). Start its daemon,"
-                " or correct the address in the robot's document."
+                f"No Reachy Mini answers ({reason}). Start its daemon, or correct the address"
+                " in the robot's document."
             ) from error
         if answer.status_code == 503:
-            raise Unreachable(f"The daemon at {self.address} has lost its robot.")
+            raise Unreachable("The daemon has lost its robot.")
         try:
             told = answer.json()
         except ValueError:
@@ -177,7 +174,7 @@ class Link:
                 self._hear(message)
         except WebSocketException:
             pass
-        self._gone = f"The connection with the daemon at {self.address} is gone."
+        self._gone = "The connection with Reachy Mini's daemon is gone."
         self._news.set()
         self._lost(self._gone)
 
@@ -204,18 +201,22 @@ class Link:
         self._client = self._socket = self._watching = None
 
 
-def _address(written: str) -> str:
+def read_address(written: str) -> str:
+    """The URL of a daemon, of which the scheme and the port may be missing.
+
+    Raises:
+        ValueError: it is none.
+    """
     whole = written or ADDRESS
     try:
         parts = urlsplit(whole if "://" in whole else f"http://{whole}")
-        host, port = parts.hostname, parts.port or 8000
+        host, port = parts.hostname, parts.port or PORT
     except ValueError:
-        host, port = None, 0
+        host, port = None, PORT
     if not host or parts.scheme != "http" or parts.path.strip("/"):
         example = 'address="http://reachy-mini.local:8000"'
-        raise UsageError(f'"{whole}" is not the address of a Reachy Mini; write {example}.')
-    shown = f"[{host}]" if ":" in host else host
-    return f"http://{shown}:{port}"
+        raise ValueError(f'"{whole}" is not the address of a Reachy Mini; write {example}.')
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
 def _uuid(move: Any) -> str:
