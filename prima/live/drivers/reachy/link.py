@@ -20,6 +20,8 @@ ADDRESS = f"http://127.0.0.1:{PORT}"
 ENDS = {"move_completed", "move_failed", "move_cancelled"}
 ANSWER_S = 2.0
 """How long the daemon may take to answer a request."""
+CLOSE_S = 0.5
+"""How long a daemon may take to say good-bye."""
 UPDATES = "/api/move/ws/updates"
 
 
@@ -68,7 +70,9 @@ class Link:
 
         url = "ws" + self.address.removeprefix("http") + UPDATES
         try:
-            self._socket = await connect(url, proxy=None, open_timeout=ANSWER_S)
+            self._socket = await connect(
+                url, proxy=None, open_timeout=ANSWER_S, close_timeout=CLOSE_S
+            )
         except (OSError, WebSocketException) as error:
             raise Unreachable(f"The daemon does not tell of moves: {error}.") from error
         self._watching = asyncio.create_task(self._watch(self._socket))
