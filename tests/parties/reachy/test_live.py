@@ -62,7 +62,7 @@ def party(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Daemon]:
 
 
 def stage(folder: Path, address: str, touches: str) -> list[str]:
-    """Write a robot and applications into a folder, and give the command that runs them."""
+    """Write a robot and applications into a folder, and give the command that runs the robot."""
     spoken = (
         '<driver kind="user" devices="speaker speech-recognition">'
         f'<option name="touches" value="{touches}"/><option name="answers" value="yes"/></driver>'
@@ -76,17 +76,10 @@ def stage(folder: Path, address: str, touches: str) -> list[str]:
         (folder / name).write_text(text, encoding="utf-8")
     user = str(Path(__file__).with_name("user.py"))
     prima = [str(python_of("reachy")), "-m", "prima", "live", "--driver", user]
-    return [
-        *prima,
-        "--policy",
-        "prima+x6",
-        "--robot",
-        "robot.xml",
-        "--fa",
-        "fa.xml",
-        "--ea",
-        "ea.xml",
-    ]
+    return [*prima, "--robot", "robot.xml"]
+
+
+APPLICATIONS = ["--policy", "prima+x6", "--until", "40s", "--fa", "fa.xml", "--ea", "ea.xml"]
 
 
 def start(command: list[str], folder: Path) -> subprocess.Popen[str]:
@@ -116,7 +109,7 @@ def records(folder: Path) -> list[dict[str, Any]]:
 
 def test_two_applications_run_to_their_end_and_are_replayed(party: Daemon, tmp_path: Path) -> None:
     command = stage(tmp_path, party.address, "Are you looking for the way out?")
-    run = start([*command, "-o", "visit.jsonl"], tmp_path)
+    run = start([*command, *APPLICATIONS, "-o", "visit.jsonl"], tmp_path)
     out, errors = run.communicate(timeout=RUN_S)
     assert run.returncode == 0, out + errors
     lines = out.splitlines()
@@ -139,7 +132,7 @@ def test_what_turns_fails_with_the_daemon_and_the_other_application_goes_on(
 ) -> None:
     with daemon(tmp_path) as party:
         command = stage(tmp_path, party.address, "I cannot turn.")
-        run = start([*command, "-o", "visit.jsonl"], tmp_path)
+        run = start([*command, *APPLICATIONS, "-o", "visit.jsonl"], tmp_path)
         assert run.stdout is not None
         for line in run.stdout:  # at most for as long as --until says
             if "Turn to" in line:
@@ -155,8 +148,7 @@ def test_what_turns_fails_with_the_daemon_and_the_other_application_goes_on(
 
 def test_the_preflight_tries_all_that_it_does(party: Daemon, tmp_path: Path) -> None:
     command = stage(tmp_path, party.address, "")
-    end = command.index("--until")
-    run = start([*command[:end], "--robot", "robot.xml", "--check"], tmp_path)
+    run = start([*command, "--check"], tmp_path)
     out, errors = run.communicate(timeout=RUN_S)
     assert run.returncode == 0, out + errors
     assert "gesture perk-up" in out and "turn-to" in out and "point-by-hand" in out
@@ -164,7 +156,7 @@ def test_the_preflight_tries_all_that_it_does(party: Daemon, tmp_path: Path) -> 
 
 def test_an_address_where_nobody_is_ends_with_a_sentence(tmp_path: Path) -> None:
     command = stage(tmp_path, "http://127.0.0.1:9", "")
-    run = start(command, tmp_path)
+    run = start([*command, *APPLICATIONS], tmp_path)
     _, errors = run.communicate(timeout=RUN_S)
     assert run.returncode == 3
     assert (

@@ -252,11 +252,14 @@ def stands(settings: DriverSettings, site: Map) -> Place:
 
 
 def check_ways(settings: DriverSettings) -> None:
-    """Look at how Commands and gestures are carried out.
+    """Look at how Commands and gestures are carried out, and that nothing is to be sensed.
 
     Raises:
         UsageError: that cannot be done.
     """
+    for senses in settings.senses:
+        message = "The driver reachy senses nothing; remove it."
+        raise UsageError(f"{senses.place}: {message}")
     for does in settings.does:
         try:
             _check_way(does)
