@@ -267,7 +267,22 @@ def test_a_goal_that_is_cancelled_stops_its_move_and_none_that_waits_begins() ->
     play(test())
 
 
-def test_a_daemon_that_hangs_up_or_talks_nonsense_is_lost_once() -> None:
+def test_a_daemon_that_hangs_up_is_lost_though_nothing_moves() -> None:
+    async def test() -> None:
+        async with fake_reachy() as fake:
+            run = Run(fake)
+            await run.driver.open()
+            fake.hang_up()
+            while not run.told:
+                await asyncio.sleep(0.001)
+            reason = "The connection with Reachy Mini's daemon is gone."
+            assert run.told == [Lost(frozenset({"locomotion", "neck", "arm"}), reason)]
+            await run.driver.close()
+
+    play(test())
+
+
+def test_nonsense_ends_no_move_and_a_daemon_that_hangs_up_meanwhile_is_lost() -> None:
     async def test() -> None:
         async with fake_reachy() as fake:
             fake.ends = ""

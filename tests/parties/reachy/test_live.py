@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -143,6 +144,20 @@ def test_what_turns_fails_with_the_daemon_and_the_other_application_goes_on(
     assert run.returncode == 0 and "the robot is lost" in errors
     missing = [one for one in records(tmp_path) if one["phase"] == "device"]
     assert missing, "the transcript tells that the devices are missing"
+    replay(tmp_path)
+
+
+def test_ctrl_c_in_a_gesture_stops_the_robot(party: Daemon, tmp_path: Path) -> None:
+    command = stage(tmp_path, party.address, "")
+    run = start([*command, *APPLICATIONS, "-o", "visit.jsonl"], tmp_path)
+    assert run.stdout is not None
+    for line in run.stdout:
+        if "Gesture" in line:
+            run.send_signal(signal.SIGINT)
+            break
+    _, errors = run.communicate(timeout=RUN_S)
+    assert run.returncode == 130, errors
+    assert party.get("/api/move/running") == []
     replay(tmp_path)
 
 
