@@ -26,7 +26,9 @@ QUICKEST_S = 0.2
 SETTLE_S = 1.0
 """How long parts may take to come to rest after a move."""
 SAFE_S = 2.0
+"""How long it may take to stop everything."""
 GOTO = "goto"
+"""What ``by`` is where the document itself has the steps of a movement."""
 OUT = 90.0
 """Where an antenna is that lies flat (degrees)."""
 
