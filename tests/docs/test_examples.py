@@ -150,6 +150,7 @@ SCENE = (
     '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="x" world="w" robot="r">',
     "</scenario>",
 )
+PROFILE = '<robot xmlns="urn:prima:robot:1" version="1.0" id="x">'
 CONTEXTS = {
     "dialogue": (
         (BEGIN, "</prima>"),
@@ -158,7 +159,10 @@ CONTEXTS = {
         (f'{BEGIN}<form id="f"><field name="n">', "</field></form></prima>"),
     ),
     "scenario": (SCENE, (f'{SCENE[0]}<when at="1s">', f"</when>{SCENE[1]}")),
-    "robot": (('<robot xmlns="urn:prima:robot:1" version="1.0" id="x">', "</robot>"),),
+    "robot": (
+        (PROFILE, "</robot>"),
+        (f'{PROFILE}<driver kind="x">', "</driver></robot>"),
+    ),
     "world": (('<world xmlns="urn:prima:world:1" version="1.0" id="x">', "</world>"),),
 }
 

@@ -185,6 +185,8 @@ ALONE = {
     "mcap": {"exports.mcap"},
     "pygls": {"lsp.protocol", "lsp.server"},
     "lsprotocol": {"lsp.protocol", "lsp.server"},
+    "httpx": {"live.drivers.reachy.link"},
+    "websockets": {"live.drivers.reachy.link"},
 }
 """Libraries that one module or package alone knows."""
 

@@ -1,0 +1,315 @@
+"""What Reachy Mini does for each Command: moves of its daemon, one after the other."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import ClassVar
+
+from prima.devices.goals import At, Begin
+from prima.devices.profile import POINTING_MS, Profile
+from prima.devices.settings import Does, DriverSettings
+from prima.devices.settings import Pose as Place
+from prima.errors import UsageError
+from prima.live.driver import Refused, TaskDriver, Unreachable
+from prima.live.drivers.reachy.link import Link, read_address
+from prima.live.drivers.reachy.pose import LIMITS, NEAR, Pose, read_pose, read_step, wrapped
+from prima.messages import Data
+from prima.sim.map import Map
+
+NEEDS = ("httpx", "websockets")
+INSTALL = "pip install 'prima[reachy]'"
+QUICKEST_S = 0.2
+"""How long a movement takes at least."""
+SETTLE_S = 1.0
+"""How long parts may take to come to rest after a move."""
+SAFE_S = 2.0
+"""How long it may take to stop everything."""
+GOTO = "goto"
+"""What ``by`` is where the document itself has the steps of a movement."""
+OUT = 90.0
+"""Where an antenna is that lies flat (degrees)."""
+
+Step = dict[str, float]
+
+
+class ReachyDriver(TaskDriver):
+    """Turns the body, moves the head, and makes gestures with head and antennas.
+
+    The daemon plays one move at a time, so that what begins while another one plays begins
+    after it.
+    """
+
+    kind: ClassVar[str] = "reachy"
+    mapped: ClassVar[bool] = True
+    own: ClassVar[frozenset[str]] = frozenset(
+        {"turn", "move-head", "point-by-hand", "stop-moving", "set-speed-and-time"}
+    )
+
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
+        super().__init__(settings, profile, site)
+        self._link: Link | None = None
+        self._sent: Pose | None = None
+        """Where all parts were sent last; None where that was not reached."""
+        self._address = address_of(settings)
+        self._stands = stands(settings, site)
+        check_ways(settings)
+
+    async def open(self) -> None:
+        """Connect to the daemon, and wake the robot up if its motors are off.
+
+        Raises:
+            Unreachable: it is not there, or a library is missing.
+        """
+        missing = [name for name in NEEDS if find_spec(name) is None]
+        if missing:
+            raise Unreachable(f"The library {missing[0]} is missing: {INSTALL}")
+        await self._leave()
+        self._sent = None
+        self._link = Link(self._address, self.lose)
+        try:
+            await self._wake(self._link)
+        except BaseException:
+            await self._leave()
+            raise
+
+    async def _wake(self, link: Link) -> None:
+        await link.connect()
+        try:
+            motors = await link.ask("GET", "/api/motors/status")
+            if motors["mode"] != "enabled":
+                await link.ask("POST", "/api/motors/set_mode/enabled")
+                async with link.playing:
+                    await link.play("play/wake_up")
+            self._tell_direction(await self._look(link))
+        except (Refused, KeyError, TypeError) as error:
+            raise Unreachable(f"Reachy Mini does not wake up: {error}") from error
+
+    async def perform(self, goal: Begin) -> Data:
+        """Make the movements of a Command, one after the other.
+
+        Raises:
+            Refused: Reachy Mini cannot do it, or has not done it.
+            Unreachable: the daemon is gone.
+        """
+        link = self._link
+        if link is None:
+            raise Unreachable("Reachy Mini is not connected.")
+        if goal.kind == "stop-moving":
+            return {}  # what has moved the body was cancelled before
+        does = self.does(goal)
+        async with link.playing:
+            sent, self._sent = self._sent, None  # unless the end is reached
+            if does is not None and does.by != GOTO:
+                await link.play(f"play/recorded-move-dataset/{does.by}")
+            else:
+                self._sent = await self._make(link, goal, does, sent)
+        return {}
+
+    async def _make(self, link: Link, goal: Begin, does: Does | None, sent: Pose | None) -> Pose:
+        """Make movements, from where the parts were sent if they are there: motors sag a little."""
+        now = await self._look(link)
+        at = sent if sent is not None and now.near(sent) else now
+        changed: set[str] = set()
+        for step in self._steps(goal, does, at):
+            to = at.moved(step)
+            changed |= {"body" if name == "turn" else name for name in step} & LIMITS.keys()
+            await link.play("goto", to.goto(step.get("time") or self._lasts(at, to)))
+            self.report(goal)
+            at = to
+        await self._settle(link, at, changed)
+        self._tell_direction(at)
+        return at
+
+    def _steps(self, goal: Begin, does: Does | None, at: Pose) -> list[Step]:
+        """The movements that a Command is made of."""
+        direction = self._direction(goal)
+        if does is None:
+            if goal.kind not in WAYS:
+                raise Refused(f"The robot's document does not say how it does {goal.kind}.")
+            return WAYS[goal.kind](goal, at, direction)
+        values = self.values(goal)
+        if direction is not None:
+            values["heading"] = direction
+        return [read_step(name, one) for name, one in does.filled(values).items()]
+
+    def _direction(self, goal: Begin) -> float | None:
+        """Where a goal leads (degrees to the left of where the body is at 0), if it says so."""
+        args = goal.command.args
+        if "heading" in args:
+            return wrapped(_number(goal, "heading") - self._stands.heading)
+        if "toward" not in args:
+            return None
+        place, here = self.place(goal), self._stands
+        if place is None:
+            name = args["toward"]
+            raise Refused(f'Where is "{name}"? Write <place name="{name}" x="..." y="..."/>.')
+        if (place.x, place.y) == (here.x, here.y):
+            raise Refused(f'The robot stands at "{args["toward"]}" itself.')
+        angle = math.degrees(math.atan2(place.y - here.y, place.x - here.x))
+        return wrapped(angle - here.heading)
+
+    async def _look(self, link: Link) -> Pose:
+        return read_pose(await link.ask("GET", "/api/state/full"))
+
+    def _tell_direction(self, at: Pose) -> None:
+        """Tell where the robot looks, if its document says where it stands."""
+        here = self._stands
+        if "at" in self.settings.options:
+            self.tell(At(here.x, here.y, wrapped(here.heading + at.body)))
+
+    async def _settle(self, link: Link, to: Pose, changed: set[str]) -> None:
+        """Wait for parts to be where they were sent: the daemon calls any move completed."""
+        end = asyncio.get_running_loop().time() + SETTLE_S
+        while True:
+            now = await self._look(link)
+            far = {name: much for name, much in now.off(to).items() if name in changed}
+            part = max(far, key=far.__getitem__, default="")
+            if not part or far[part] <= NEAR:
+                return
+            if asyncio.get_running_loop().time() > end:
+                reached, sent = getattr(now, part), getattr(to, part)
+                raise Refused(
+                    f"Reachy Mini's {part} is at {reached:.0f} instead of {sent:.0f}: it does not go"
+                    " there as the other parts are, something holds or moves it, or its motors are"
+                    " off.",
+                    LIMITS[part][1],
+                )
+            await asyncio.sleep(0.05)
+
+    def _lasts(self, at: Pose, to: Pose) -> float:
+        """How long (s) a movement takes at the speeds of the robot's document."""
+        far = at.off(to)
+        turning, moving = far.pop("body"), max(far.values())
+        speeds = self.profile.turn_speed, self.profile.head_speed
+        return max(turning / speeds[0], moving / speeds[1], QUICKEST_S)
+
+    async def safe(self) -> None:
+        """Stop every move; the motors keep their force, or the head would fall."""
+        tasks = list(self._tasks.values())
+        for task in tasks:
+            task.cancel()
+        try:
+            async with asyncio.timeout(SAFE_S):
+                await asyncio.gather(*tasks, return_exceptions=True)
+                if self._link is not None:
+                    await self._link.stop_all()
+        except (Unreachable, Refused, TimeoutError):
+            pass  # nobody is there to be stopped
+
+    async def ping(self) -> None:
+        """Ask the daemon whether its robot runs.
+
+        Raises:
+            Unreachable: it does not.
+        """
+        if self._link is None:
+            raise Unreachable("Reachy Mini is not connected.")
+        await self._link.check()
+
+    async def close(self) -> None:
+        """End what runs, and the connection; the robot stays as it is."""
+        await super().close()
+        await self._leave()
+
+    async def _leave(self) -> None:
+        link, self._link = self._link, None
+        if link is not None:
+            await link.close()
+
+
+def address_of(settings: DriverSettings) -> str:
+    """The daemon's address.
+
+    Raises:
+        UsageError: it is none.
+    """
+    try:
+        return read_address(settings.address)
+    except ValueError as error:
+        raise UsageError(f"{settings.place}: {error}") from None
+
+
+def stands(settings: DriverSettings, site: Map) -> Place:
+    """Where the robot stands: at the place that the option ``at`` names, or at the map's origin.
+
+    Raises:
+        UsageError: there is no such place, or no such option.
+    """
+    unknown = sorted(settings.options.keys() - {"at"})
+    if unknown:
+        message = f'The driver reachy has no option "{unknown[0]}"; it has "at".'
+        raise UsageError(f"{settings.place}: {message}")
+    name = settings.options.get("at")
+    if name is None:
+        return Place(0.0, 0.0, 0.0)
+    if name in settings.places:
+        return settings.places[name]
+    point = site.point(name)
+    if point is None:
+        raise UsageError(f'{settings.place}: There is no place "{name}", where the robot stands.')
+    return Place(*point, site.headings.get(name, 0.0))
+
+
+def check_ways(settings: DriverSettings) -> None:
+    """Look at how Commands and gestures are carried out, and that nothing is to be sensed.
+
+    Raises:
+        UsageError: that cannot be done.
+    """
+    for senses in settings.senses:
+        message = "The driver reachy senses nothing; remove it."
+        raise UsageError(f"{senses.place}: {message}")
+    for does in settings.does:
+        try:
+            _check_way(does)
+        except Refused as error:
+            raise UsageError(f"{does.place}: {error}") from None
+
+
+def _check_way(does: Does) -> None:
+    if does.by == GOTO:
+        for name, step in does.filled({}).items():
+            Pose().moved(read_step(name, step))
+    elif "/" not in does.by.strip("/"):
+        raise Refused(f'by="{does.by}" is neither "{GOTO}" nor a recorded move, DATASET/MOVE.')
+
+
+def _number(goal: Begin, name: str) -> float:
+    value = goal.command.args.get(name)
+    return float(value) if isinstance(value, int | float) else 0.0
+
+
+def _head(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+    return [{"pan": _number(goal, "pan"), "tilt": _number(goal, "tilt")}]
+
+
+def _turn(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+    return [{"turn": _number(goal, "angle")}]
+
+
+def _drive(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+    if _number(goal, "speed"):
+        raise Refused("Reachy Mini has no wheels; it only turns.")
+    seconds = _number(goal, "time") / 1000
+    return [{"turn": _number(goal, "turn-speed") * seconds, "time": seconds}]
+
+
+def _point(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+    """Lay the antenna of the side out for a while: it points no more exactly than that."""
+    angle = _number(goal, "angle") if direction is None else wrapped(direction - at.body)
+    side = "left" if angle >= 0 else "right"
+    out, back = {side: OUT, "time": 0.5}, {side: getattr(Pose(), side), "time": 0.5}
+    return [out, {"time": POINTING_MS / 1000}, back]
+
+
+WAYS: dict[str, Callable[[Begin, Pose, float | None], list[Step]]] = {
+    "move-head": _head,
+    "turn": _turn,
+    "set-speed-and-time": _drive,
+    "point-by-hand": _point,
+}
+"""What each Command is that the robot's document need not explain, by where the parts are, and
+the direction that it leads to."""
