@@ -147,7 +147,9 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"clock", "driver", "journal"},
+        {"clock", "driver", "journal", "told"},
+        {"mapped"},
+        {"ros"},
         {"devices", "drivers"},
         {"shell"},
         {"visit"},
@@ -185,6 +187,10 @@ ALONE = {
     "mcap": {"exports.mcap"},
     "pygls": {"lsp.protocol", "lsp.server"},
     "lsprotocol": {"lsp.protocol", "lsp.server"},
+    "rclpy": {"live.drivers.ros2.link"},
+    "action_msgs": {"live.drivers.ros2.link"},
+    "qi": {"live.drivers.naoqi"},
+    "roslibpy": {"live.drivers.rosbridge.link"},
 }
 """Libraries that one module or package alone knows."""
 
