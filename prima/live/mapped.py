@@ -14,7 +14,7 @@ from prima.live.driver import Refused, TaskDriver, speaks
 from prima.live.told import Teller
 from prima.messages import Json
 
-DEGREES: Final = ("angle", "heading", "pan", "tilt", "turn", "turn-speed")
+DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
 """Values that a robot may want in radians: ``{NAME-radians}``."""
 FLUSH_S: Final = 0.05
 """How long sensors' values are gathered before they are told: the newest counts."""
@@ -61,6 +61,8 @@ class MappedDriver(TaskDriver):
             heading = self._at.heading if self._at is not None else 0.0
             values |= {"turn": turn, "heading": heading + turn}
             values.setdefault("turn-speed", math.copysign(self.profile.turn_speed, turn))
+        if "tilt" in values:  # some robots count downward
+            values["down"] = -values["tilt"]
         lasts = self.lasts(goal)
         if lasts is not None:
             values["seconds"] = lasts
