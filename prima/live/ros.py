@@ -24,6 +24,8 @@ SAFE_S: Final = 2.0
 """How long to wait until goals have stopped in an emergency."""
 SUCCEEDED, CANCELED = 4, 5
 """States of a goal, of ``action_msgs/msg/GoalStatus``."""
+AGAIN_S: Final = 0.5
+"""After what time it is asked again to cancel a goal: a bridge forgets it where that comes early."""
 REASONS: Final = ("error_msg", "error_string", "message", "reason")
 """Where results tell why they failed."""
 
@@ -141,6 +143,10 @@ class RosDriver(MappedDriver):
             await link.close()
             raise
         self._link, self.gone = link, False
+
+    def has(self, link: Link) -> bool:
+        """Whether this is the connection that is used."""
+        return self._link is link
 
     async def _leave(self) -> None:
         link, self._link, self.gone = self._link, None, True
@@ -278,7 +284,9 @@ async def _stop(sending: asyncio.Future[Sent]) -> None:
     """Cancel a goal, and wait until the server has ended it; one that was refused is over."""
     try:
         sent = await sending
-        sent.cancel()
+        while not sent.end.done():
+            sent.cancel()
+            await asyncio.wait([sent.end], timeout=AGAIN_S)
         await sent.end
     except (Refused, Unreachable):
         pass

@@ -46,7 +46,9 @@ class Motion:
     def move(self, x: float, y: float, theta: float) -> None:
         tell("drives", x=x, y=y, theta=theta)
 
-    def angleInterpolation(self, names: object, angles: object, times: object, absolute: bool) -> None:
+    def angleInterpolation(
+        self, names: object, angles: object, times: object, absolute: bool
+    ) -> None:
         tell("head", names=names, angles=angles, times=times, absolute=absolute)
 
     def stopMove(self) -> None:

@@ -89,11 +89,12 @@ def test_a_cancelled_goal_has_really_stopped(
 
 
 def test_a_speed_lasts_its_time(robot: Process, driver: Driven) -> None:
-    key = driver.start("set-speed-and-time", speed=0.2, **{"turn-speed": 0, "time": 500})
+    speed = {"speed": 0.2, "turn-speed": 0, "time": 500}
+    key = driver.start("set-speed-and-time", None, **speed)
     driver.expect("Done", key=key)
     began, ended = robot.expect("drives")["at"], robot.expect("stop")["at"]
     assert 0.4 < ended - began < 0.9
-    key = driver.start("set-speed-and-time", speed=0.2, **{"turn-speed": 0, "time": 5000})
+    key = driver.start("set-speed-and-time", None, **{**speed, "time": 5000})
     robot.expect("drives")
     at = driver.cancel(key)
     assert robot.expect("stop")["at"] - at < 1
@@ -194,9 +195,7 @@ def test_a_document_that_does_not_fit_is_told(
         driver.kill()
 
 
-def test_two_applications_run_to_their_end(
-    robot: Process, document: Path, tmp_path: Path
-) -> None:
+def test_two_applications_run_to_their_end(robot: Process, document: Path, tmp_path: Path) -> None:
     visit = Visit("naoqi", document, tmp_path / "visit.jsonl")
     try:
         robot.expect("goes", x=4)

@@ -29,7 +29,8 @@ STEP_S = 0.02
 
 
 def tell(what: str, **more: object) -> None:
-    print(json.dumps({"what": what, "at": time.monotonic(), **more}), flush=True)
+    sys.stdout.write(json.dumps({"what": what, "at": time.monotonic(), **more}) + "\n")
+    sys.stdout.flush()
 
 
 class Robot(Node):
