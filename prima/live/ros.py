@@ -93,20 +93,34 @@ def use_of(does: Does, kind: str) -> Use:
     Raises:
         UsageError: it does not say what that is.
     """
-    parts = does.type.split("/")
-    by_type = KINDS.get(parts[1], "") if len(parts) == 3 else ""
+    by_type = _kind(does.type)
     use = Use(does.kind or by_type, does.by, does.type)
-    if use.name and use.type and use.kind == by_type:
+    if use.name and by_type and use.kind == by_type:
         return use
     message = "A <does> of a ROS robot needs by and type."
     if use.name and use.type:
-        message = f'"{use.type}" is no type of an {use.kind or "interface"}.'
+        message = f'"{use.type}" is no {use.kind or "interface"} type.'
     remedy = 'Write for example by="/spin" type="nav2_msgs/action/Spin".'
     raise UsageError(f"{does.place}: {kind}: {message} {remedy}")
 
 
+def _kind(type_: str) -> str:
+    """The kind of interface that a type is for; nothing if it is no type."""
+    parts = type_.split("/")
+    return KINDS.get(parts[1], "") if len(parts) == 3 and all(parts) else ""
+
+
 def uses(settings: DriverSettings) -> list[Use]:
-    """All that a robot's document uses, once each."""
+    """All that a robot's document uses, once each.
+
+    Raises:
+        UsageError: it does not say what that is.
+    """
+    for senses in settings.senses:
+        if _kind(senses.type) != "topic":
+            message = f'<senses by="{senses.by}"> needs the type of the topic.'
+            remedy = 'Write for example type="std_msgs/msg/Bool".'
+            raise UsageError(f"{senses.place}: {settings.kind}: {message} {remedy}")
     made = {use_of(does, settings.kind): None for does in settings.does}
     stops = {Use("service", does.stop, ""): None for does in settings.does if does.stop}
     return list(made | stops)

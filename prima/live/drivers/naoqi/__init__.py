@@ -14,7 +14,7 @@ from prima.live.driver import Refused, Unreachable
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
-INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'"
+INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
 PORT: Final = 9559
 SAFE_S: Final = 2.0
 """How long to wait until goals have stopped in an emergency."""
@@ -72,7 +72,7 @@ class NaoqiDriver(MappedDriver):
                 await self._subscribe()
         except TimeoutError:
             await self._leave()
-            raise Unreachable(f"{url} does not answer") from None
+            raise Unreachable(f"{url} does not answer.") from None
         except BaseException:
             await self._leave()
             raise
@@ -98,10 +98,10 @@ class NaoqiDriver(MappedDriver):
             try:
                 found = await self._answer(lambda: session.service(name, _async=True))
             except Refused:
-                raise Unreachable(f"the robot has no service {name}") from None
+                raise Unreachable(f"the robot has no service {name}.") from None
             self._services[name] = found
         if method and not hasattr(self._services[name], method):
-            raise Unreachable(f"the service {name} has no method {method}")
+            raise Unreachable(f"the service {name} has no method {method}.")
 
     async def _subscribe(self) -> None:
         """Listen to the robot's memory."""

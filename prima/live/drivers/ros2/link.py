@@ -21,7 +21,7 @@ from prima.messages import Json
 
 SETUP = (
     "rclpy is not there ({}). It comes with ROS 2, not by pip: in this shell, first write"
-    " `source /opt/ros/DISTRIBUTION/setup.bash`, and run prima with the same version of Python"
+    " `source /opt/ros/DISTRIBUTION/setup.bash`, and run prima with the same version of Python."
 )
 LOOK_S = 0.05
 """How often it is looked whether a server has come."""
@@ -83,7 +83,7 @@ class RclpyLink:
             await self._run(partial(self._subscribe, senses, driver))
         while missing := await self._run(self._missing):
             if self._loop.time() > until:
-                raise Unreachable(self._not_there(missing))
+                raise Unreachable(f"{self._not_there(missing)}.")
             await asyncio.sleep(LOOK_S)
 
     def _make_node(self) -> None:

@@ -15,10 +15,10 @@ from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, Sent, Use
 from prima.messages import Json
 
-INSTALL: Final = "the library roslibpy is not there ({}). Write: pip install 'prima[rosbridge]'"
+INSTALL: Final = "the library roslibpy is not there ({}). Write: pip install 'prima[rosbridge]'."
 LAUNCH: Final = (
     "Start the bridge: ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
-    " send_action_goals_in_new_thread:=true"
+    " send_action_goals_in_new_thread:=true."
 )
 BLOCKED: Final = (
     "the bridge does not answer while a goal goes on, so nothing can be cancelled either;"
@@ -133,7 +133,7 @@ class RosbridgeLink:
             if not missing:
                 return
             if self._loop.time() + LOOK_S > until:
-                raise Unreachable(_not_there(missing))
+                raise Unreachable(f"{_not_there(missing)}.")
             await asyncio.sleep(LOOK_S)
 
     async def _missing(self) -> list[Use]:
