@@ -189,7 +189,7 @@ ALONE = {
     "lsprotocol": {"lsp.protocol", "lsp.server"},
     "rclpy": {"live.drivers.ros2.link"},
     "action_msgs": {"live.drivers.ros2.link"},
-    "qi": {"live.drivers.naoqi"},
+    "qi": {"live.drivers.naoqi.__init__"},
     "roslibpy": {"live.drivers.rosbridge.link"},
 }
 """Libraries that one module or package alone knows."""
