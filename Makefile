@@ -6,6 +6,8 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
+# Without those for robots (naoqi, rosbridge), which tests/parties installs.
+EXTRAS := dev export editor bench
 
 .PHONY: demo test test-live check mutants bench attack schemas build lock clean
 
@@ -53,7 +55,7 @@ build: $(VENV)/.dev
 
 lock: $(VENV)/.dev
 	$(LOCK) -o release/runtime.txt
-	$(LOCK) --all-extras -c release/runtime.txt -o release/dev.txt
+	$(LOCK) $(EXTRAS:%=--extra %) -c release/runtime.txt -o release/dev.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r release/dev.txt
 	$(BIN)/python -m release.licences
 

@@ -58,12 +58,14 @@ class Does:
     values: tuple[tuple[str, str], ...]
     """Names and values of the interface's arguments, as written."""
     place: Place
+    stop: str = ""
+    """What is called to stop it, where cancelling does not."""
 
     def filled(self, given: Mapping[str, Json]) -> dict[str, Json]:
         """The arguments as values within values, with what a Command gives put in.
 
         A value that is one slot keeps its type; one without a slot is read as JSON, if it is.
-        A slot for which nothing is given leaves its argument out.
+        A slot for which nothing is given leaves its argument out. Slots may be in a JSON list.
         """
         filled: dict[str, Json] = {}
         for name, written in self.values:
@@ -78,7 +80,10 @@ def _fill(written: str, given: Mapping[str, Json]) -> Json:
     if whole:
         return given.get(whole[1])
     if SLOT.search(written):
-        return SLOT.sub(lambda slot: str(given.get(slot[1], "")), written)
+        said = SLOT.sub(lambda slot: str(given.get(slot[1], "")), written)
+        if not written.startswith("["):
+            return said
+        written = said
     try:
         return json.loads(written)
     except ValueError:
@@ -108,11 +113,15 @@ class Senses:
     place: Place
 
     def value(self, message: Json) -> Json:
-        """The part of a message that counts; None where the message lacks it."""
+        """The part of a message that counts; None where the message lacks it.
+
+        A number in its field counts the parts of a list, from 0.
+        """
         for name in self.field.split(".") if self.field else ():
-            if not isinstance(message, dict) or name not in message:
-                return None
-            message = message[name]
+            if isinstance(message, list) and name.isdecimal():
+                message = dict(enumerate(message)).get(int(name))
+            else:
+                message = message.get(name) if isinstance(message, dict) else None
         return message
 
     def holds(self, value: Json) -> bool:
@@ -198,6 +207,7 @@ def _does(reader: Reader, node: Node) -> Does:
         _limits(reader, node),
         values,
         node.place,
+        node.get("stop"),
     )
 
 

@@ -212,6 +212,9 @@ ROBOT = Vocabulary(
                     "the kind of interface that `by` names",
                     choices=("action", "service", "topic"),
                 ),
+                attribute(
+                    "stop", "text", "the service or method that stops it, where cancelling does not"
+                ),
                 *LIMITS,
             ),
             ("set",),

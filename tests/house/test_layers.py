@@ -147,7 +147,9 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"clock", "driver", "journal"},
+        {"clock", "driver", "journal", "told"},
+        {"mapped"},
+        {"ros"},
         {"devices", "drivers"},
         {"shell"},
         {"visit"},
@@ -187,6 +189,10 @@ ALONE = {
     "lsprotocol": {"lsp.protocol", "lsp.server"},
     "httpx": {"live.drivers.reachy.link"},
     "websockets": {"live.drivers.reachy.link"},
+    "rclpy": {"live.drivers.ros2.link"},
+    "action_msgs": {"live.drivers.ros2.link"},
+    "qi": {"live.drivers.naoqi.__init__"},
+    "roslibpy": {"live.drivers.rosbridge.link"},
 }
 """Libraries that one module or package alone knows."""
 

@@ -17,12 +17,15 @@ from release.locked import locked
 from tests import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+ROBOTS = {"naoqi", "rosbridge"}
+"""Extras for robots, which are installed in environments of their own (tests/parties)."""
 
 
 def needed(extras: bool) -> list[Requirement]:
     named = list(PROJECT["dependencies"])
     if extras:
-        named += [one for extra in PROJECT["optional-dependencies"].values() for one in extra]
+        extras_of = PROJECT["optional-dependencies"].items()
+        named += [one for name, extra in extras_of if name not in ROBOTS for one in extra]
     return [Requirement(one) for one in named]
 
 

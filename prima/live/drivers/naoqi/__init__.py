@@ -1,0 +1,276 @@
+"""The driver of NAO and Pepper, by the ``qi`` framework."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Final
+
+from prima.devices.goals import LISTEN, Begin
+from prima.devices.settings import Does
+from prima.errors import UsageError
+from prima.live.driver import Refused, Unreachable
+from prima.live.mapped import MappedDriver, refuse_unmapped
+from prima.messages import Data, Json
+
+INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
+PORT: Final = 9559
+SAFE_S: Final = 2.0
+"""How long to wait until goals have stopped in an emergency."""
+SHARE: Final = 0.9
+"""How much of the time to open may be spent before it is told that nobody answers."""
+MEMORY: Final = "ALMemory"
+LANGUAGES: Final = {
+    "de": "German",
+    "en": "English",
+    "es": "Spanish",
+    "fr": "French",
+    "it": "Italian",
+    "ja": "Japanese",
+    "ko": "Korean",
+    "nl": "Dutch",
+    "pt": "Portuguese",
+    "zh": "Chinese",
+}
+"""The robot's names of languages: ``{language}``."""
+
+
+class NaoqiDriver(MappedDriver):
+    """A robot with NAOqi. Its address is that of its service directory: ``tcp://nao.local:9559``.
+
+    ``by`` names a service and its method, as ``ALTextToSpeech.say``; the values of ``set`` are its
+    arguments in their order. ``senses`` name events of ALMemory.
+    """
+
+    kind = "naoqi"
+
+    _session: Any = None
+    _services: dict[str, Any]
+    _links: list[tuple[Any, int]]
+    """Signals, and what is connected to them."""
+    _pending: set[asyncio.Future[Any]]
+
+    # The connection -------------------------------------------------------------------------
+
+    async def open(self) -> None:
+        """Connect with the robot's service directory, and see that all services are there."""
+        try:
+            import qi
+        except ImportError as error:
+            raise Unreachable(INSTALL.format(error)) from None
+        methods = self._methods()
+        await self._leave()
+        self._services, self._links, self._pending = {}, [], set()
+        self._session = session = qi.Session()
+        url = _url(self.settings.address)
+        try:
+            async with asyncio.timeout(self.settings.open / 1000 * SHARE):
+                await self._answer(lambda: session.connect(url, _async=True))
+                for service, method in methods:
+                    await self._find(service, method)
+                await self._subscribe()
+        except TimeoutError:
+            await self._leave()
+            raise Unreachable(f"{url} does not answer.") from None
+        except BaseException:
+            await self._leave()
+            raise
+        self.gone = False
+        session.disconnected.connect(partial(self._gone, session))
+
+    def _methods(self) -> list[tuple[str, str]]:
+        """The services and methods that the robot's document names."""
+        named = {name: does for does in self.settings.does for name in (does.by, does.stop) if name}
+        for does in self.settings.does:
+            if not does.by:
+                named[""] = does
+        for name, does in named.items():
+            if name.count(".") != 1:
+                remedy = 'Write for example by="ALTextToSpeech.say".'
+                message = f'"{name}" is not a service and its method.'
+                raise UsageError(f"{does.place}: naoqi: {message} {remedy}")
+        return [tuple(name.split(".")) for name in named]  # type: ignore[misc]
+
+    async def _find(self, name: str, method: str) -> None:
+        if name not in self._services:
+            session = self._session
+            try:
+                found = await self._answer(lambda: session.service(name, _async=True))
+            except Refused:
+                raise Unreachable(f"the robot has no service {name}.") from None
+            self._services[name] = found
+        if method and not hasattr(self._services[name], method):
+            raise Unreachable(f"the service {name} has no method {method}.")
+
+    async def _subscribe(self) -> None:
+        """Listen to the robot's memory."""
+        if not self.settings.senses:
+            return
+        await self._find(MEMORY, "subscriber")
+        memory = self._services[MEMORY]
+        for senses in self.settings.senses:
+            told = await self._answer(partial(memory.subscriber, senses.by, _async=True))
+            take = partial(self.sense_from_thread, senses)
+            link = await asyncio.to_thread(told.signal.connect, take)
+            self._links.append((told, link))
+
+    def _gone(self, session: Any, *_: object) -> None:
+        """The connection has been lost; in a thread of qi."""
+        if self._loop is not None and session is self._session and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self.lose, "the connection with the robot is lost")
+
+    def lose(self, reason: str) -> None:
+        """Give up what has not been answered."""
+        super().lose(reason)
+        for future in list(self._pending):
+            if not future.done():
+                future.set_exception(Unreachable(reason))
+                future.exception()
+
+    async def ping(self) -> None:
+        """Ask the service directory for its services."""
+        if self.gone:
+            raise Unreachable("there is no connection")
+        session = self._session
+        await self._answer(lambda: session.services(_async=True))
+
+    async def _leave(self) -> None:
+        session, self._session, self.gone = self._session, None, True
+        if session is not None:
+            self._links.clear()
+            self._services.clear()
+            closing = asyncio.to_thread(session.close)
+            await asyncio.wait([asyncio.ensure_future(closing)], timeout=SAFE_S)
+
+    async def close(self) -> None:
+        """Cancel what still runs, and leave."""
+        await self.end_goals(SAFE_S)
+        await self._leave()
+
+    # Goals ----------------------------------------------------------------------------------
+
+    def values(self, goal: Begin) -> dict[str, Json]:
+        """Add the robot's name of the language."""
+        primary = (goal.command.lang or "en").lower().partition("-")[0]
+        return super().values(goal) | {"language": LANGUAGES.get(primary, "English")}
+
+    async def perform(self, goal: Begin) -> Data:
+        """Call a method; it is done when the method returns, or after the Command's time."""
+        does = self.does(goal)
+        if does is None and goal.kind == LISTEN:
+            await self.hear(goal)
+        does = refuse_unmapped(does, goal)
+        arguments = list(does.filled(self.values(goal)).values())
+        stopped = False
+        calling, cancel = self._call(does.by, arguments)
+        try:
+            if await asyncio.shield(calling) is False:
+                raise Refused(f"{does.by} answers that it has failed")
+            if self._goes_on(goal, does):
+                await asyncio.sleep(self.lasts(goal) or 86_400)
+                stopped = True
+                await self._stop(does)
+        except asyncio.CancelledError:
+            if not stopped:
+                await self._end(does, calling, cancel)
+            raise
+        return {}
+
+    def _goes_on(self, goal: Begin, does: Does) -> bool:
+        """Whether what its method began goes on after that, until it is stopped."""
+        return bool(does.stop) and ("time" in goal.command.args or goal.kind == LISTEN)
+
+    async def _end(
+        self, does: Does, calling: asyncio.Future[Any], cancel: Callable[[], object]
+    ) -> None:
+        """Stop what a method does, and wait until it has returned."""
+        if does.stop:
+            await self._stop(does)
+        else:
+            await asyncio.to_thread(cancel)
+        await asyncio.wait([calling])
+        if not calling.cancelled():
+            calling.exception()
+
+    async def _stop(self, does: Does) -> None:
+        try:
+            await self._call(does.stop, [])[0]
+        except (Refused, Unreachable):
+            pass  # what it should stop goes on, and is waited for
+
+    def stand(self) -> None:
+        """Do what ``stop-moving`` does."""
+        if not self.gone and (does := self.settings.how("stop-moving")) is not None:
+            self._call(does.by, [])[0].add_done_callback(_heed)
+
+    async def safe(self) -> None:
+        """Call all that stops something."""
+        if self.gone:
+            return
+        named = {does.stop for does in self.settings.does if does.stop}
+        if (does := self.settings.how("stop-moving")) is not None:
+            named.add(does.by)
+        calls = [self._call(name, [])[0] for name in sorted(named)]
+        async with asyncio.timeout(SAFE_S):
+            await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
+
+    # Calls ----------------------------------------------------------------------------------
+
+    def _call(
+        self, name: str, arguments: list[Json]
+    ) -> tuple[asyncio.Future[Any], Callable[[], object]]:
+        """Call a method; gives its answer, and what cancels it."""
+        if self.gone:
+            raise Unreachable("there is no connection")
+        service, _, method = name.partition(".")
+        asked = getattr(self._services[service], method)(*arguments, _async=True)
+        return self._future(asked), asked.cancel
+
+    async def _answer(self, ask: Callable[[], Any]) -> Any:
+        return await self._future(ask())
+
+    def _future(self, asked: Any) -> asyncio.Future[Any]:
+        """The future of a call, for this loop."""
+        loop = asyncio.get_running_loop()
+        future: asyncio.Future[Any] = loop.create_future()
+        self._pending.add(future)
+        future.add_done_callback(self._pending.discard)
+
+        def settle(asked: Any) -> None:
+            if future.done():
+                return
+            if asked.isCanceled():
+                future.set_exception(Refused("the robot has cancelled it"))
+            elif asked.hasError():
+                future.set_exception(Refused(_said(asked.error())))
+            else:
+                future.set_result(asked.value())
+
+        def over(asked: Any) -> None:
+            if not loop.is_closed():
+                loop.call_soon_threadsafe(settle, asked)
+
+        asked.addCallback(over)
+        return future
+
+
+def _heed(future: asyncio.Future[Any]) -> None:
+    if not future.cancelled():
+        future.exception()
+
+
+def _said(error: object) -> str:
+    """What the robot says of an error: the first line of it."""
+    lines = (line.strip().removeprefix("RuntimeError: ") for line in str(error).splitlines())
+    return next((line for line in lines if line), "the robot has refused it")
+
+
+def _url(address: str) -> str:
+    """The URL of a service directory."""
+    url = address or "127.0.0.1"
+    url = url if "://" in url else f"tcp://{url}"
+    return url if ":" in url.partition("://")[2] else f"{url}:{PORT}"
+
+
+DRIVER = NaoqiDriver

@@ -1,0 +1,246 @@
+"""A connection with a rosbridge; roslibpy has a thread of its own for it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Final
+from urllib.parse import urlsplit
+
+from prima.devices.settings import Senses
+from prima.live.driver import Refused, Unreachable
+from prima.live.mapped import OFTEN
+from prima.live.ros import Outcome, RosDriver, Sent, Use
+from prima.messages import Json
+
+INSTALL: Final = "the library roslibpy is not there ({}). Write: pip install 'prima[rosbridge]'."
+LAUNCH: Final = (
+    "Start the bridge: ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
+    " send_action_goals_in_new_thread:=true."
+)
+BLOCKED: Final = (
+    "the bridge does not answer while a goal goes on, so nothing can be cancelled either;"
+    " start it with send_action_goals_in_new_thread:=true"
+)
+SHARE: Final = 0.9
+"""How much of the time to open, and of a heartbeat, may be spent before it is told what is missing."""
+LOOK_S: Final = 0.2
+"""How often it is looked whether a server has come."""
+THROTTLE_MS: Final = 100
+"""How often a sensor's values come at most."""
+LISTS: Final = {
+    "action": ("/rosapi/action_servers", "action_servers"),
+    "service": ("/rosapi/services", "services"),
+}
+"""The services that tell what is there, and where in their answers."""
+
+
+class RosbridgeLink:
+    """One connection, for as long as it lasts.
+
+    Args:
+        url: the bridge's.
+        longest: how long (s) it may take to connect and find all that is used.
+        heartbeat: how long (s) the bridge may take to answer whether it is there.
+    """
+
+    def __init__(self, url: str, longest: float, heartbeat: float) -> None:
+        self._url = url
+        self._longest = longest
+        self._heartbeat = heartbeat
+        self._loop = asyncio.get_running_loop()
+        self._pending: set[asyncio.Future[Any]] = set()
+        self._goals: dict[str, Any] = {}
+        """The clients of actions whose goals go on, by the goals' names."""
+        self._uses: list[Use] = []
+        self._topics: dict[Use, Any] = {}
+        self._ros: Any = None
+
+    # Connecting -----------------------------------------------------------------------------
+
+    async def connect(self, uses: list[Use], driver: RosDriver) -> None:
+        """Connect, subscribe, and wait until all servers are there."""
+        until = self._loop.time() + self._longest * SHARE
+        try:
+            import roslibpy
+        except ImportError as error:
+            raise Unreachable(INSTALL.format(error)) from None
+        logging.getLogger("roslibpy").setLevel(logging.CRITICAL)  # what matters is told by us
+        self._uses = uses
+        await self._knock(until)
+        self._ros = await asyncio.to_thread(self._join, until)
+        self._ros.on("close", lambda *_: self._closed(driver))
+        for use in uses:
+            if use.kind == "topic":
+                self._topics[use] = topic = roslibpy.Topic(self._ros, use.name, use.type)
+                topic.advertise()
+        for senses in driver.settings.senses:
+            self._subscribe(senses, driver)
+        await self._await_all(until)
+
+    async def _knock(self, until: float) -> None:
+        """See that somebody listens at the address: roslibpy does not tell."""
+        parts = urlsplit(self._url)
+        try:
+            async with asyncio.timeout_at(until):
+                _, writer = await asyncio.open_connection(parts.hostname, parts.port)
+        except (OSError, TimeoutError) as error:
+            why = f" ({error.strerror or error})" if isinstance(error, OSError) else ""
+            raise Unreachable(f"nobody answers at {self._url}{why}. {LAUNCH}") from None
+        writer.close()
+
+    def _join(self, until: float) -> Any:
+        from roslibpy import Ros
+        from roslibpy.comm import select_factory
+        from roslibpy.core import RosTimeoutError
+
+        select_factory(None).set_max_retries(0)  # the run connects again by itself
+        ros = Ros(self._url)  # takes a second the first time
+        try:
+            ros.run(timeout=max(until - self._loop.time(), 0.1))
+        except RosTimeoutError:
+            raise Unreachable(f"{self._url} does not answer as a rosbridge. {LAUNCH}") from None
+        return ros
+
+    def _closed(self, driver: RosDriver) -> None:
+        """The connection has been closed; in roslibpy's thread."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._lose, driver)
+
+    def _lose(self, driver: RosDriver) -> None:
+        reason = "the connection with the bridge is lost"
+        self.fail(reason)
+        if driver.has(self):
+            driver.lose(reason)
+
+    def _subscribe(self, senses: Senses, driver: RosDriver) -> None:
+        from roslibpy import Topic
+
+        rate = THROTTLE_MS if senses.what in OFTEN else 0
+        topic = Topic(self._ros, senses.by, senses.type, throttle_rate=rate)
+        topic.subscribe(lambda message: driver.sense_from_thread(senses, dict(message)))
+
+    async def _await_all(self, until: float) -> None:
+        while True:
+            try:
+                async with asyncio.timeout_at(until):
+                    missing = await self._missing()
+            except (TimeoutError, Refused):
+                reason = "does not tell what is there: the node rosapi is needed beside it"
+                raise Unreachable(f"{self._url} {reason}. {LAUNCH}") from None
+            if not missing:
+                return
+            if self._loop.time() + LOOK_S > until:
+                raise Unreachable(f"{_not_there(missing)}.")
+            await asyncio.sleep(LOOK_S)
+
+    async def _missing(self) -> list[Use]:
+        """The actions and services that are not there."""
+        there: dict[str, set[str]] = {}
+        for kind, (name, part) in LISTS.items():
+            answer = await self.call(Use("service", name, ""), {})
+            there[kind] = set(answer.get(part, []))
+        return [use for use in self._uses if use.kind in there and use.name not in there[use.kind]]
+
+    # Using it -------------------------------------------------------------------------------
+
+    async def send_goal(self, use: Use, values: dict[str, Json], on: Callable[[], None]) -> Sent:
+        """Send a goal to an action. The protocol does not tell whether it was accepted."""
+        from roslibpy import ActionClient, Goal
+
+        client = ActionClient(self._ros, use.name, use.type)
+        end = self._future()
+        over = partial(self._from_thread, end)
+        feedback = partial(self._post, on)
+        key = client.send_goal(Goal(values), over, feedback, over)
+        self._goals[key] = client
+        end.add_done_callback(lambda one: self._goals.pop(key, None))
+        return Sent(end, partial(client.cancel_goal, key))
+
+    def _from_thread(self, end: asyncio.Future[Outcome], told: Any) -> None:
+        status = getattr(told["status"], "value", told["status"])
+        values = told["values"]
+        result = dict(values) if isinstance(values, dict) else {"message": str(values)}
+        self._post(partial(_settle, end, Outcome(status, result)))
+
+    async def call(self, use: Use, values: dict[str, Json]) -> dict[str, Json]:
+        """Call a service; gives its answer."""
+        from roslibpy import Service, ServiceRequest
+
+        future = self._future()
+
+        def answer(told: Any) -> None:
+            self._post(partial(_settle, future, dict(told)))
+
+        def refuse(told: Any) -> None:
+            self._post(partial(_settle, future, Refused(str(told))))
+
+        Service(self._ros, use.name, use.type).call(ServiceRequest(values), answer, refuse)
+        return dict(await future)
+
+    def publish(self, use: Use, values: dict[str, Json]) -> None:
+        """Publish a message."""
+        from roslibpy import Message
+
+        if self._ros.is_connected:
+            self._topics[use].publish(Message(values))
+
+    async def ping(self) -> None:
+        """Ask what is there."""
+        try:
+            async with asyncio.timeout(self._heartbeat * SHARE):
+                missing = await self._missing()
+        except TimeoutError:
+            reason = BLOCKED if self._goals else "the bridge does not answer any more"
+            raise Unreachable(reason) from None
+        except Refused as error:
+            raise Unreachable(str(error)) from None
+        if missing:
+            raise Unreachable(_not_there(missing))
+
+    def cancel_all(self) -> None:
+        """Ask to cancel the goals that were sent by this connection; others cannot be named."""
+        for key, client in list(self._goals.items()):
+            client.cancel_goal(key)
+
+    # The thread -----------------------------------------------------------------------------
+
+    def _post(self, what: Callable[[], object], *_: object) -> None:
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(what)
+
+    def _future(self) -> asyncio.Future[Any]:
+        future: asyncio.Future[Any] = self._loop.create_future()
+        self._pending.add(future)
+        future.add_done_callback(self._pending.discard)
+        return future
+
+    def fail(self, reason: str) -> None:
+        """Give up what has not been answered."""
+        for future in list(self._pending):
+            if not future.done():
+                future.set_exception(Unreachable(reason))
+                future.exception()
+
+    async def close(self) -> None:
+        """End the connection."""
+        ros, self._ros = self._ros, None
+        if ros is not None and ros.is_connected:
+            await asyncio.to_thread(ros.close)
+
+
+def _settle(future: asyncio.Future[Any], told: object) -> None:
+    """Let a future have its result, or its error."""
+    if future.done():
+        return
+    if isinstance(told, Exception):
+        future.set_exception(told)
+    else:
+        future.set_result(told)
+
+
+def _not_there(missing: list[Use]) -> str:
+    names = ", ".join(str(use) for use in missing)
+    return f"{names} {'are' if len(missing) > 1 else 'is'} not there"

@@ -1,0 +1,144 @@
+"""What drivers share whose robot has an interface of its own, which its document maps Commands to."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from functools import partial
+from typing import ClassVar, Final
+
+from prima.devices import voice
+from prima.devices.goals import LISTEN, SAY, At, Begin
+from prima.devices.settings import Does, Senses
+from prima.live.driver import Refused, TaskDriver, speaks
+from prima.live.told import Teller
+from prima.messages import Json
+
+DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
+"""Values that a robot may want in radians: ``{NAME-radians}``."""
+FLUSH_S: Final = 0.05
+"""How long sensors' values are gathered before they are told: the newest counts."""
+OFTEN: Final = frozenset({"sensor", "pose", "human"})
+"""What is told by its newest value; of the rest each message counts."""
+
+
+class MappedDriver(TaskDriver):
+    """A driver that carries out what its ``does`` say, and tells what its ``senses`` say."""
+
+    mapped: ClassVar[bool] = True
+    own: ClassVar[frozenset[str]] = frozenset({LISTEN})
+
+    gone: bool = True
+    """Whether there is no connection."""
+    _at: At | None = None
+    _teller: Teller | None = None
+    _flush: asyncio.TimerHandle | None = None
+
+    # Goals ----------------------------------------------------------------------------------
+
+    def lasts(self, goal: Begin) -> float | None:
+        """How long (s) a goal takes by itself where the robot does not tell; None if unknown."""
+        command, profile = goal.command, self.profile
+        if goal.kind == SAY:
+            rates = profile.voices
+            return voice.duration(speaks(goal), command.lang or "en", rates) / 1000
+        if "time" in command.args:
+            return float(str(command.args["time"])) / 1000
+        turn = self._turn(goal)
+        if turn is not None:
+            return abs(turn) / profile.turn_speed
+        known = profile.gestures.get(str(command.args.get("name", "")))
+        known = known or profile.durations.get(goal.kind)
+        return None if known is None else known / 1000
+
+    def values(self, goal: Begin) -> dict[str, Json]:
+        """Add what robots ask for: times in seconds, radians, and quaternions."""
+        values = super().values(goal)
+        if self._at is not None:
+            values.setdefault("heading", self._at.heading)
+        turn = self._turn(goal)
+        if turn is not None:
+            heading = self._at.heading if self._at is not None else 0.0
+            values |= {"turn": turn, "heading": heading + turn}
+            values.setdefault("turn-speed", math.copysign(self.profile.turn_speed, turn))
+        if "tilt" in values:  # some robots count downward
+            values["down"] = -values["tilt"]
+        lasts = self.lasts(goal)
+        if lasts is not None:
+            values["seconds"] = lasts
+        for name in DEGREES:
+            if isinstance(values.get(name), int | float):
+                values[f"{name}-radians"] = math.radians(values[name])
+        half = values.get("heading-radians", 0.0) / 2
+        return values | {"heading-z": math.sin(half), "heading-w": math.cos(half)}
+
+    def _turn(self, goal: Begin) -> float | None:
+        """By how many degrees to the left a goal turns the body, if it does."""
+        if goal.kind not in ("turn", "turn-and-speak", "set-direction"):
+            return None
+        args, at, place = goal.command.args, self._at, self.place(goal)
+        if "angle" in args:
+            return float(str(args["angle"]))
+        if at is None:
+            raise Refused("where the robot is, is not known: no <senses as='pose'> has told it")
+        heading = float(str(args.get("heading", at.heading)))
+        if place is not None:
+            heading = math.degrees(math.atan2(place.y - at.y, place.x - at.x))
+        return (heading - at.heading + 180) % 360 - 180
+
+    async def hear(self, goal: Begin) -> None:
+        """Listen without being told how: the ear is open all the time."""
+        self.accept(goal)
+        await asyncio.get_running_loop().create_future()
+
+    # The connection -------------------------------------------------------------------------
+
+    def lose(self, reason: str) -> None:
+        """Tell once that the connection is gone."""
+        if not self.gone:
+            self.gone = True
+            super().lose(reason)
+
+    async def end_goals(self, longest: float) -> None:
+        """Cancel all goals, and wait (s) until they have ended."""
+        for task in list(self._tasks.values()):
+            task.cancel()
+        if self._tasks:
+            await asyncio.wait(list(self._tasks.values()), timeout=longest)
+
+    # Senses -----------------------------------------------------------------------------------
+
+    def sense_from_thread(self, senses: Senses, message: Json) -> None:
+        """Take a message of the robot, in any thread."""
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(partial(self.sense, senses, message))
+
+    def sense(self, senses: Senses, message: Json) -> None:
+        """Take a message of the robot. Times of what is told often are evened out."""
+        self._teller = self._teller or Teller()
+        self._teller.take(senses, message)
+        if senses.what not in OFTEN:
+            self._tell_sensed()
+        elif self._flush is None:
+            loop = asyncio.get_running_loop()
+            self._flush = loop.call_later(FLUSH_S, self._tell_sensed)
+
+    def _tell_sensed(self) -> None:
+        if self._flush is not None:
+            self._flush.cancel()
+            self._flush = None
+        for news in self._teller.drain() if self._teller is not None else ():
+            if isinstance(news, At):
+                self._at = news
+            self.tell(news)
+
+
+def refuse_unmapped(does: Does | None, goal: Begin) -> Does:
+    """How a goal is carried out.
+
+    Raises:
+        Refused: the robot's document does not say.
+    """
+    if does is None:
+        raise Refused(f'the robot\'s document has no <does command="{goal.kind}">')
+    return does
