@@ -140,7 +140,7 @@ INSIDE = {
         {"__init__"},
     ],
     "devices": [
-        {"ear", "goals", "protocol", "reading", "senses", "vocabulary", "voice"},
+        {"ear", "goals", "lines", "protocol", "reading", "senses", "vocabulary", "voice"},
         {"settings"},
         {"loop", "profile", "speech"},
         {"conductor"},
