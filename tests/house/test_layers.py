@@ -88,6 +88,7 @@ INSIDE = {
         {"semantics", "tags", "types"},
         {"grammar", "linking"},
         {"answers", "dialogue", "loading"},
+        {"phrases"},
         {"__init__"},
     ],
     "interpreter": [

@@ -221,8 +221,8 @@ def test_commands_tell_what_happens(line: str, news: News) -> None:
         ('/event visitor name="Ann', "A quotation mark is not closed."),
         ("/sensor light", 'Write "/sensor NAME=VALUE".'),
         ("/stop now", "Nothing follows this command."),
-        ("x" * 2001, "A line may have 2000 letters; this one has more."),
-        ("a\0b", "The line holds a character that is none: U+0000."),
+        ("x" * 2001, "The line is longer than 2000 characters."),
+        ("a\0b", "The line contains an invalid character: U+0000."),
     ],
 )
 def test_a_wrong_line_says_what_to_write(line: str, message: str) -> None:
@@ -255,7 +255,7 @@ def test_wrong_lines_change_nothing(
 
     asyncio.run(play())
     printed = capsys.readouterr()
-    assert "Type /help." in printed.err and "this one has more" in printed.err
+    assert "Type /help." in printed.err and "is longer than" in printed.err
     assert "/touch SENSOR" in printed.err and not printed.out
 
 
