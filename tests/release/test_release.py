@@ -19,10 +19,14 @@ from tests import ROOT
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
+LOCKED = ("dev", "export", "editor", "bench", "reachy")
+"""The extras that developers install; those of speech have an environment of their own."""
+
+
 def needed(extras: bool) -> list[Requirement]:
     named = list(PROJECT["dependencies"])
     if extras:
-        named += [one for extra in PROJECT["optional-dependencies"].values() for one in extra]
+        named += [one for extra in LOCKED for one in PROJECT["optional-dependencies"][extra]]
     return [Requirement(one) for one in named]
 
 

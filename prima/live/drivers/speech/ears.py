@@ -47,7 +47,9 @@ class GrammarEar:
         if self._decoder.lookup_word(word):
             return True
         sounds = self._pronouncing.sounds(word)
-        return bool(sounds) and self._decoder.add_word(word, sounds, True) >= 0
+        if sounds:
+            self._decoder.add_word(word, sounds, True)
+        return bool(sounds)
 
     def hear(self, sound: bytes) -> str:
         """The words of what listens that are nearest to a sound; none if nothing listens."""

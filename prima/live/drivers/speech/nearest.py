@@ -14,6 +14,8 @@ LONGEST = 400
 """Letters that are compared."""
 SURE, HEARD, ALONE = 0.99, 0.9, 0.6
 """How sure it is of words that both recognisers have heard, the open one, the grammar's alone."""
+EASIER = 0.2
+"""How much less like what was said a phrase may be that the grammar's recogniser has heard."""
 AGREED = 0.5
 """By how much of what it lacks a phrase is surer when both recognisers have heard it."""
 
@@ -39,12 +41,10 @@ def hypotheses(said: str, fits: str, phrases: Iterable[str], cutoff: float) -> l
     if not said:
         return [Hypothesis(fits, ALONE)] if fits else []
     first = Hypothesis(said, SURE if fold(fits) == fold(said) else HEARD)
-    found: dict[str, float] = {}
-    for phrase in phrases:
-        found[fold(phrase)] = likeness(said, phrase)
-    if fits:
-        sure = likeness(said, fits)
-        found[fold(fits)] = sure + (1 - sure) * AGREED if sure >= cutoff else 0.0
+    found = {fold(phrase): likeness(said, phrase) for phrase in phrases}
+    sure = likeness(said, fits)
+    if fits and sure >= cutoff - EASIER:
+        found[fold(fits)] = max(sure + (1 - sure) * AGREED, cutoff)
     near = {text: sure for text, sure in found.items() if sure >= cutoff and text != fold(said)}
     ranked = sorted(near.items(), key=lambda one: -one[1])[: MOST - 1]
     less = first.confidence - 0.01

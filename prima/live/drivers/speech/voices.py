@@ -29,7 +29,8 @@ def resampled(samples: Any, rate: int) -> bytes:
     kept = wanted // 2 + 1
     spectrum = numpy.pad(spectrum[:kept], (0, max(kept - len(spectrum), 0)))
     made = numpy.fft.irfft(spectrum, wanted) * wanted / len(samples)
-    return (numpy.clip(made, -1, 1) * LOUDEST).astype("<i2").tobytes()
+    sound: bytes = (numpy.clip(made, -1, 1) * LOUDEST).astype("<i2").tobytes()
+    return sound
 
 
 def hibari() -> Voice:
@@ -107,7 +108,7 @@ class Voices:
         """Load the voices of some languages now; one that is missing is missed when it speaks."""
         for lang in languages:
             with suppress(Refused):
-                self._voice(lang)
+                self.say("a", lang)  # what it needs is loaded by that
 
     def say(self, text: str, lang: str) -> bytes:
         """The sound of a text.
