@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from prima.messages import Data, Inbound, Json, Occurred, Sensed
 
 LOST_AFTER_MS = 1000
@@ -67,3 +69,14 @@ class Sensors:
         changed = {key: one for key, one in values.items() if self.values.get(key, ...) != one}
         self.values.update(changed)
         return [Sensed(changed)] if changed else []
+
+
+def sensor_value(text: str) -> Json:
+    """A sensor's value as people write it: true, false, a number, or else a text."""
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        number = float(text)
+        return number if math.isfinite(number) else text
+    except ValueError:
+        return text

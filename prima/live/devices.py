@@ -135,7 +135,7 @@ class LiveDevices:
         """The next instant at which something is to be collected, if one is known."""
         told = None if self._told is None else max(self._told, self._last + 1)
         times = [
-            self._last + 1 if self._loads or self._news or self._entrances.unseen else None,
+            self._last + 1 if self._loads or self._entrances.unseen else None,
             told,
             self.conductor.due(self._sees.visible),
             self.services.due(),
@@ -191,6 +191,7 @@ class LiveDevices:
         self.conductor.sight.restore(state.found)
         self.conductor.sensors.values.update(state.sensors)
         self._news += first
+        self._told = self._last
 
     # The drivers' side -------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ All methods are called in the event loop of the run; a thread reports with
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from prima.devices.goals import (
@@ -27,6 +27,7 @@ from prima.devices.goals import (
 from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings, Limits, Pose
 from prima.errors import RunError
+from prima.grammar.answers import Answers
 from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
@@ -99,6 +100,12 @@ class Driver:
 
     def stand(self) -> None:
         """Stop the wheels where the body rolls on after a Command (rule F5)."""
+
+    def hears(self, takes: Sequence[Answers]) -> None:
+        """What the questions and links that listen take from now on; told each time it changes.
+
+        A recogniser makes its grammar of it. Others need not heed it.
+        """
 
     async def safe(self) -> None:
         """Stop everything at once, whatever runs. Called more than once, and after a loss."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
 from prima.devices import voice
+from prima.devices.senses import sensor_value
 from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.messages import (
@@ -268,7 +268,7 @@ class Person:
             case "event":
                 return [Occurred(values["name"], "environment", values["data"])]
             case "sensor":
-                self.sensors[values["name"]] = _plain(values["value"])
+                self.sensors[values["name"]] = sensor_value(values["value"])
             case "fail":
                 device, hangs = values["device"], bool(values["hangs"])
                 how = "hangs" if hangs else "fails"
@@ -316,13 +316,3 @@ class Person:
 def _part(said: voice.Timeline, ms: int) -> str:
     """What has been said after a time: whole words, unless not even one is over."""
     return said.heard(ms) or said.text[: max(sum(1 for end in said.ends if end <= ms), 1)]
-
-
-def _plain(text: str) -> Json:
-    if text in ("true", "false"):
-        return text == "true"
-    try:
-        number = float(text)
-        return number if math.isfinite(number) else text
-    except ValueError:
-        return text

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from prima.errors import DocumentError, Problem, UsageError, one_of
+from prima.grammar.phrases import phrases
 from prima.interpreter.elements import Document
 from prima.interpreter.events import Events
 from prima.language.values import LONGEST_MS
@@ -19,7 +20,6 @@ from prima.sim.hearing import check_hearing
 from prima.sim.rehearsal import Rehearsal, check_cast
 from prima.sim.scenario import Scenario, read_scenario
 from prima.sim.services import Web
-from prima.talk.phrases import phrases
 from prima.talk.scene import Scene, comment, seconds, when
 from prima.talk.typed import Line, Names
 from prima.transcript.lines import finished

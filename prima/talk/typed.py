@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import re
-import shlex
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from html import escape
 
+from prima.devices.lines import check_line, split_event, split_message, split_sensor
 from prima.errors import UsageError, did_you_mean
 from prima.language.values import read_value
 
-LONGEST_LINE = 2000
-"""Maximum length of a line (characters)."""
-UNFIT = re.compile("[^\t -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML does not allow."""
 PIECE = re.compile(r"(?:^|\s+)(?=/[^\W\d])")
 """The place before a command in a line."""
 
@@ -126,10 +122,8 @@ def _release(rest: str) -> str:
 
 
 def _message(rest: str) -> str:
-    found = re.fullmatch(r"from (.+?): (.+)", rest)
-    if not rest or (f"{rest} ".startswith("from ") and found is None):
-        raise UsageError(f'Write "{COMMANDS["message"].usage}".')
-    return element("message", found[2], **{"from": found[1]}) if found else element("message", rest)
+    sender, text = split_message(rest, COMMANDS["message"].usage)
+    return element("message", text, **{"from": sender})
 
 
 def _fail(rest: str) -> str:
@@ -140,27 +134,15 @@ def _fail(rest: str) -> str:
 
 
 def _event(rest: str) -> str:
-    name, *pairs = _words(rest) or [""]
-    if not name or any("=" not in pair[1:] for pair in pairs):
-        raise UsageError(f'Write "{COMMANDS["event"].usage}".')
-    split = [pair.partition("=") for pair in pairs]
-    data = "".join(f'<data name="{escape(key)}" value="{escape(text)}"/>' for key, _, text in split)
+    name, given = split_event(rest, COMMANDS["event"].usage)
+    pairs = given.items()
+    data = "".join(f'<data name="{escape(key)}" value="{escape(text)}"/>' for key, text in pairs)
     return f'<event name="{escape(name)}">{data}</event>' if data else element("event", name=name)
 
 
 def _sensor(rest: str) -> str:
-    words = _words(rest.replace("=", " ", 1))
-    if len(words) != 2:
-        raise UsageError(f'Write "{COMMANDS["sensor"].usage}".')
-    return element("sensor", name=words[0], value=words[1])
-
-
-def _words(text: str) -> list[str]:
-    """Words; quotation marks group several."""
-    try:
-        return shlex.split(text)
-    except ValueError:
-        raise UsageError("A quotation mark is not closed.") from None
+    name, value = split_sensor(rest, COMMANDS["sensor"].usage)
+    return element("sensor", name=name, value=value)
 
 
 def _read(kind: str, text: str) -> int:
@@ -224,10 +206,7 @@ def read_line(text: str) -> Line:
     Raises:
         UsageError: it is wrong; the message says what to write.
     """
-    if len(text) > LONGEST_LINE:
-        raise UsageError(f"The line is longer than {LONGEST_LINE} characters.")
-    if found := UNFIT.search(text):
-        raise UsageError(f"The line contains an invalid character: U+{ord(found[0]):04X}.")
+    check_line(text)
     words = text.split(maxsplit=1)
     name = _name(words[0])[0] if words else "wait"
     if COMMANDS[name].element is None and name != "wait":

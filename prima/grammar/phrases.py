@@ -1,4 +1,4 @@
-"""Some answers to a question, for completion."""
+"""Some of what a question takes, to be offered to somebody who types, or looked for in what is heard."""
 
 from __future__ import annotations
 
@@ -27,19 +27,20 @@ TYPES = {"boolean": ["yes", "no"]}
 """Answers of built-in types that have few."""
 
 
-def phrases(answers: Answers) -> list[str]:
-    """Some answers that a field takes, shortest first."""
-    found = dict.fromkeys(islice(answers.options, MOST))
+def phrases(answers: Answers, most: int = MOST) -> list[str]:
+    """Some of what a field takes, without what speech does not carry, the shortest first."""
+    found = dict.fromkeys(islice(answers.options, most))
     for grammar in answers.grammars:
-        found |= dict.fromkeys(islice(_Phrases().of(grammar.expansion), MOST))
+        found |= dict.fromkeys(islice(_Phrases(most).of(grammar.expansion), most))
     found |= dict.fromkeys(TYPES.get(answers.type, ()))
-    return sorted(filter(None, found), key=lambda phrase: len(phrase.split()))[:MOST]
+    return sorted(filter(None, found), key=lambda phrase: len(phrase.split()))[:most]
 
 
 class _Phrases:
     """Some phrases of one grammar, found in a bounded number of steps."""
 
-    def __init__(self) -> None:
+    def __init__(self, most: int) -> None:
+        self._most = most
         self._left = STEPS
 
     def of(self, part: Part, depth: int = 0) -> Iterator[str]:
@@ -56,7 +57,7 @@ class _Phrases:
                 yield from self.of(rule.body, depth + 1)
             case Choice(parts):
                 for one in parts:
-                    yield from islice(self.of(one, depth + 1), MOST)
+                    yield from islice(self.of(one, depth + 1), self._most)
             case Sequence(parts):
                 yield from self._joined(parts, depth + 1)
             case Repeat(inner, low, high):
@@ -69,6 +70,8 @@ class _Phrases:
         """Phrases of parts one after another."""
         found = [""]
         for part in parts:
-            then = list(islice(self.of(part, depth), MOST))
-            found = [" ".join(filter(None, (one, two))) for one in found for two in then][:MOST]
+            then = list(islice(self.of(part, depth), self._most))
+            found = [" ".join(filter(None, (one, two))) for one in found for two in then][
+                : self._most
+            ]
         return found

@@ -1,0 +1,198 @@
+"""A terminal in the place of voice and ear: what the robot says is printed, what the user says typed."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from collections.abc import Callable
+
+from prima.devices import voice
+from prima.devices.goals import LISTEN, SAY, Accepted, Begin, Done, Sees, Speaks, Stopped
+from prima.devices.profile import Profile
+from prima.devices.settings import DriverSettings
+from prima.errors import UsageError
+from prima.errors.visible import visible
+from prima.live.driver import Driver, speaks
+from prima.live.drivers.console.commands import HERE, Typed, help_text, read_typed, waits
+from prima.live.drivers.console.lines import Lines
+from prima.messages import Heard
+from prima.sim.map import Map
+
+TYPED_MS = 100
+"""How long typed words take to be said, so that the robot can stop asking before it hears them."""
+TICK_S = 0.02
+FASTEST = 1000.0
+
+
+class ConsoleDriver(Driver):
+    """Speaker, speech recognition and human detection by standard error and standard input.
+
+    A text lasts as long as the robot's voice takes for it, or ``option`` ``speed`` times as
+    short. Where it has the device human-detection, the user is seen from the start, unless
+    ``user`` is ``false``. ``stdin`` ``false`` leaves standard input alone.
+    """
+
+    kind = "console"
+    mapped = True
+    own = frozenset({SAY, LISTEN})
+
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
+        super().__init__(settings, profile, site)
+        self._saying: dict[str, int] = {}
+        """When the texts of goals have been said (ms of the run)."""
+        self._listening: set[str] = set()
+        self._heard: tuple[int, str] | None = None
+        """What the user is saying, and when they have said it (ms of the run)."""
+        self._lines: Lines | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._speed = 1.0
+
+    async def open(self) -> None:
+        """Begin to read.
+
+        Raises:
+            UsageError: an option is wrong.
+        """
+        unknown = sorted(self.settings.options.keys() - {"speed", "user", "stdin"})
+        if unknown:
+            message = f'{self.settings.place}: there is no option "{unknown[0]}".'
+            raise UsageError(f"{message} The options are speed, stdin and user.")
+        self._speed = self._number("speed", 1.0)
+        seen, source = self._flag("user", True), _standard_input()
+        if self._flag("stdin", True) and source is not None and self._lines is None:
+            self._lines = Lines(source)
+            self._task = asyncio.ensure_future(self._read(self._lines))
+        if self._sees:
+            self.tell(HERE if seen else Sees(False))
+
+    @property
+    def _sees(self) -> bool:
+        """Whether it is its own business where the user is."""
+        return "human-detection" in self.settings.devices
+
+    def start(self, goal: Begin) -> None:
+        """Print what is to be said, or open the ear."""
+        self.tell(Accepted(goal.key))
+        if goal.kind == LISTEN:
+            self._listening.add(goal.key)
+            return
+        text, command = speaks(goal), goal.command
+        rates = self.profile.voices
+        lasts = voice.timeline(command.text or "", command.lang, rates, command.cues).total
+        self._saying[goal.key] = self.now() + max(round(lasts / self._speed), 1)
+        if text:
+            self._print(f"robot: {' '.join(visible(text).split())}")
+
+    def cancel(self, key: str) -> None:
+        """Stop at once."""
+        if key in self._saying:
+            self._print("robot: (breaks off)")
+        self._end(key)
+
+    def _end(self, key: str) -> None:
+        self._saying.pop(key, None)
+        self._listening.discard(key)
+        self.tell(Stopped(key))
+
+    async def safe(self) -> None:
+        """Fall silent."""
+        for key in list(self._saying):
+            self.cancel(key)
+
+    async def close(self) -> None:
+        """Read no more."""
+        if self._lines is not None:
+            self._lines.close()
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+
+    def due(self) -> int | None:
+        """When a text has been said, or the user's words."""
+        heard = [self._heard[0]] if self._heard is not None else []
+        return min([*self._saying.values(), *heard], default=None)
+
+    def sample(self, now: int) -> None:
+        """Tell what has been said by now."""
+        for key in [key for key, ends in self._saying.items() if ends <= now]:
+            del self._saying[key]
+            self.tell(Done(key))
+        if self._heard is not None and self._heard[0] <= now:
+            text, self._heard = self._heard[1], None
+            self.tell(Heard(text))
+
+    # What is typed ----------------------------------------------------------------------
+
+    async def _read(self, lines: Lines) -> None:
+        """Carry out one line after the other."""
+        while (line := await lines.next()) is not None:
+            if not line.strip():
+                continue
+            try:
+                await self._carry_out(read_typed(line))
+            except UsageError as error:
+                self._print(str(error))
+
+    async def _carry_out(self, typed: Typed) -> None:
+        if isinstance(typed.news, Sees) and not self._sees:
+            raise UsageError("Another driver sees the user: human-detection is not this one's.")
+        if typed.news is not None:
+            self.tell(typed.news)
+        elif typed.said:
+            self._heard = self.now() + TYPED_MS, typed.said
+            self.tell(Speaks(True))
+            await self._until(lambda: self._heard is None)
+        elif typed.command == "wait":
+            await self._wait(waits(typed.rest))
+        elif typed.command == "help":
+            self._print(help_text())
+        else:
+            signal.raise_signal(signal.SIGINT)
+
+    async def _wait(self, lasts: int | None) -> None:
+        if lasts is None:
+            await self._until(lambda: bool(self._listening) and not self._saying)
+            return
+        until = self.now() + lasts
+        await self._until(lambda: self.now() >= until)
+
+    async def _until(self, holds: Callable[[], bool]) -> None:
+        """Wait until something holds by the run's clock, which may be faster than real time."""
+        while not holds():
+            await asyncio.sleep(TICK_S)
+
+    def _print(self, text: str) -> None:
+        """Print to standard error: standard output has the rows of the run."""
+        sys.stderr.write(f"{visible(text, chr(10))}\n")
+        sys.stderr.flush()
+
+    # Options ----------------------------------------------------------------------------
+
+    def _number(self, name: str, default: float) -> float:
+        text = self.settings.options.get(name, str(default))
+        try:
+            number = float(text)
+        except ValueError:
+            number = 0.0
+        if not 0 < number <= FASTEST:
+            message = f'{self.settings.place}: {name} is "{text}".'
+            raise UsageError(f"{message} Write a number above 0, up to {FASTEST:g}.")
+        return number
+
+    def _flag(self, name: str, default: bool) -> bool:
+        text = self.settings.options.get(name, str(default).lower())
+        if text not in ("true", "false"):
+            raise UsageError(f'{self.settings.place}: {name} is "{text}". Write true or false.')
+        return text == "true"
+
+
+def _standard_input() -> int | None:
+    """Its file descriptor, if there is one."""
+    try:
+        return sys.stdin.fileno()
+    except (AttributeError, OSError, ValueError):
+        return None
+
+
+DRIVER = ConsoleDriver

@@ -1,0 +1,131 @@
+"""What an operator types besides what the user says: the commands of ``prima talk`` that a robot knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from prima.devices.goals import News, Sees
+from prima.devices.lines import check_line, split_event, split_message, split_sensor
+from prima.devices.senses import sensor_value
+from prima.errors import UsageError, did_you_mean
+from prima.language.values import BadValue, read_value
+from prima.messages import Emergency, Occurred, Sensed
+
+NEAR_M = 1.0
+"""How far in front of the robot the user stands."""
+HERE = Sees(True, NEAR_M, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command: how it is written, what it does, and what it tells the run."""
+
+    usage: str
+    help: str
+    tells: Callable[[str], News] | None = None
+    """Of what follows the name; None where nothing is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """A line: words of the user, news, or a command of another kind, with what follows it."""
+
+    said: str = ""
+    news: News | None = None
+    command: str = ""
+    rest: str = ""
+
+
+def _touch(rest: str) -> News:
+    if not rest or " " in rest:
+        raise UsageError(f'Write "{COMMANDS["touch"].usage}".')
+    return Occurred(f"touch.{rest}", "user", {"sensor": rest})
+
+
+def _event(rest: str) -> News:
+    name, data = split_event(rest, COMMANDS["event"].usage)
+    try:
+        read_value("event", name)
+    except BadValue as error:
+        raise UsageError(f'"{name}" {error}') from None
+    return Occurred(name, "environment", data)
+
+
+def _sensor(rest: str) -> News:
+    name, value = split_sensor(rest, COMMANDS["sensor"].usage)
+    return Sensed({name: sensor_value(value)})
+
+
+def _message(rest: str) -> News:
+    sender, text = split_message(rest, COMMANDS["message"].usage)
+    return Occurred("message", "environment", {"from": sender, "text": text})
+
+
+def _alone(news: News) -> Callable[[str], News]:
+    """A command with nothing behind its name."""
+
+    def tell(rest: str) -> News:
+        if rest:
+            raise UsageError("Nothing follows this command.")
+        return news
+
+    return tell
+
+
+COMMANDS = {
+    "touch": Command("/touch SENSOR", "touches the robot", _touch),
+    "event": Command("/event NAME KEY=VALUE ...", "an event of the surroundings", _event),
+    "sensor": Command("/sensor NAME=VALUE", "a sensor's value changes", _sensor),
+    "message": Command("/message from NAME: TEXT", "a message arrives", _message),
+    "leave": Command("/leave", "the user goes away and is seen no more", _alone(Sees(False))),
+    "come": Command("/come", "the user is seen again", _alone(HERE)),
+    "stop": Command("/stop", "the emergency stop is pressed", _alone(Emergency(True))),
+    "go": Command(
+        "/go", "it is released, and what it stopped goes on", _alone(Emergency(False, True))
+    ),
+    "wait": Command("/wait TIME, /wait", "the next line waits so long, or for a question"),
+    "help": Command("/help", "says this"),
+    "quit": Command("/quit", "ends the run, as Ctrl-C does"),
+}
+
+
+def read_typed(text: str) -> Typed:
+    """Read a line that is not empty.
+
+    Raises:
+        UsageError: it is no line; the message says what to write.
+    """
+    check_line(text)
+    text = " ".join(text.split())
+    if not text.startswith("/"):
+        return Typed(said=text)
+    word, _, rest = text[1:].partition(" ")
+    command = COMMANDS.get(word)
+    if command is None:
+        hint = did_you_mean(f"/{word}", [f"/{name}" for name in COMMANDS]) or "Type /help."
+        raise UsageError(f'There is no command "/{word[:60]}". {hint}')
+    if command.tells is not None:
+        return Typed(news=command.tells(rest))
+    if word == "wait" and rest:
+        _duration(rest)
+    return Typed(command=word, rest=rest)
+
+
+def _duration(text: str) -> int:
+    try:
+        return int(read_value("duration", text))
+    except BadValue as error:
+        raise UsageError(f'"{text}" {error}') from None
+
+
+def waits(rest: str) -> int | None:
+    """How long (ms) a ``/wait`` lasts; None for until a question listens."""
+    return _duration(rest) if rest else None
+
+
+def help_text() -> str:
+    """What the commands do."""
+    wide = max(len(one.usage) for one in COMMANDS.values())
+    lines = [f"{one.usage:<{wide}}  {one.help}" for one in COMMANDS.values()]
+    return "\n".join([f"{'TEXT':<{wide}}  the user says it", *lines])

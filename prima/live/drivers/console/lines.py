@@ -1,0 +1,77 @@
+"""Lines from a file descriptor, read beside the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Iterator
+from threading import Semaphore, Thread
+
+CHUNK = 4096
+LONGEST = 16_000
+"""Bytes of a line that are kept; such a line is refused anyway."""
+AHEAD = 100
+"""Lines that are read before they are asked for."""
+
+
+class Lines:
+    """Gives the lines of a terminal, a pipe or a file until its end.
+
+    A thread reads, for no other way serves all three. It waits for input for ever, so it keeps
+    nobody from ending the program.
+
+    Args:
+        source: the file descriptor.
+    """
+
+    def __init__(self, source: int) -> None:
+        self._source = source
+        self._loop = asyncio.get_running_loop()
+        self._queue: asyncio.Queue[str | None] = asyncio.Queue()
+        self._room = Semaphore(AHEAD)
+        self._closed = False
+        Thread(target=self._read, name="console", daemon=True).start()
+
+    async def next(self) -> str | None:
+        """The next line, without its end; None at the end of the input."""
+        line = await self._queue.get()
+        self._room.release()
+        return line
+
+    def close(self) -> None:
+        """Read no more, once the thread has got what it waits for."""
+        self._closed = True
+        self._room.release()
+
+    def _read(self) -> None:
+        for line in _lines(self._source):
+            self._room.acquire()
+            if self._closed:
+                return
+            try:
+                self._loop.call_soon_threadsafe(self._queue.put_nowait, line)
+            except RuntimeError:  # the loop is gone
+                return
+
+
+def _lines(source: int) -> Iterator[str | None]:
+    """The lines of a source, and None at its end."""
+    left = b""
+    while read := _piece(source):
+        *whole, left = (left + read).split(b"\n")
+        yield from map(_text, whole)
+        left = left[:LONGEST]
+    if left:
+        yield _text(left)
+    yield None
+
+
+def _piece(source: int) -> bytes:
+    try:
+        return os.read(source, CHUNK)
+    except OSError:  # a terminal that is gone
+        return b""
+
+
+def _text(line: bytes) -> str:
+    return line.rstrip(b"\r").decode("utf-8", "replace")

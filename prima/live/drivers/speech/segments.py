@@ -1,0 +1,66 @@
+"""Where the user's words begin and end in the sound that the microphone hears."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+from prima.live.drivers.speech.sound import CHUNK_S
+
+LIKELY, UNLIKELY = 0.5, 0.35
+"""How likely a chunk is speech when speech begins at the latest, and goes on at least."""
+ONSET = 3
+"""Chunks of speech with which it begins: a click is none."""
+BEFORE_S = 0.5
+"""How much sound before that belongs to it."""
+LONGEST_S = 20.0
+"""Longer speech is taken as it is by then."""
+
+
+class Segments:
+    """Cuts what is heard into utterances.
+
+    Args:
+        likely: how likely a chunk is speech (0 to 1).
+        silence: seconds of silence that end an utterance.
+    """
+
+    def __init__(self, likely: Callable[[bytes], float], silence: float) -> None:
+        self._likely = likely
+        self._silence = max(round(silence / CHUNK_S), 1)
+        self._before: deque[bytes] = deque(maxlen=round(BEFORE_S / CHUNK_S))
+        self._said: list[bytes] = []
+        self._run = 0
+        """Chunks of speech so far, or once it has begun, of silence."""
+
+    @property
+    def speaking(self) -> bool:
+        """Whether the user is speaking."""
+        return bool(self._said)
+
+    def reset(self) -> None:
+        """Forget what was heard."""
+        self._before.clear()
+        self._said.clear()
+        self._run = 0
+
+    def feed(self, chunk: bytes) -> bytes | None:
+        """Hear a chunk.
+
+        Returns:
+            an utterance that has ended with it; else None.
+        """
+        likely = self._likely(chunk)
+        if not self._said:
+            self._before.append(chunk)
+            self._run = self._run + 1 if likely >= LIKELY else 0
+            if self._run == ONSET:
+                self._said, self._run = list(self._before), 0
+            return None
+        self._said.append(chunk)
+        self._run = self._run + 1 if likely < UNLIKELY else 0
+        if self._run < self._silence and len(self._said) * CHUNK_S < LONGEST_S:
+            return None
+        said = b"".join(self._said)
+        self.reset()
+        return said

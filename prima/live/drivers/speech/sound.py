@@ -1,0 +1,156 @@
+"""Sound in and out: 16-bit mono at 16 kHz, by a sound card or by two pipes in memory."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from threading import Lock
+from time import monotonic
+from typing import Any, Protocol
+
+from prima.live.driver import Unreachable
+
+RATE = 16_000
+"""Samples a second."""
+CHUNK = 1024
+"""Bytes that are heard at once: 32 ms, as much as the detector of speech takes."""
+CHUNK_S = CHUNK / 2 / RATE
+Hear = Callable[[bytes], None]
+
+
+def seconds(sound: bytes) -> float:
+    """How long a sound lasts."""
+    return len(sound) / 2 / RATE
+
+
+class Sound(Protocol):
+    """A microphone and a loudspeaker."""
+
+    def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
+        """Begin to listen.
+
+        Args:
+            hear: is given each :data:`CHUNK` of sound, in any thread.
+            lost: is told why no sound comes any more, in any thread.
+
+        Raises:
+            Unreachable: there is no such device.
+        """
+
+    async def play(self, sound: bytes) -> None:
+        """Play a sound to its end; it falls silent at once when this is cancelled."""
+
+    def close(self) -> None:
+        """Give back the devices."""
+
+
+class Pipes:
+    """A loudspeaker and a microphone in memory, for users who are synthetic."""
+
+    def __init__(self) -> None:
+        self.played: Hear = lambda _: None
+        """Is given each chunk that the robot plays, when it is played."""
+        self._hear: Hear = lambda _: None
+        self._left = b""
+
+    def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
+        """Begin to listen."""
+        self._hear = hear
+
+    def put(self, sound: bytes) -> None:
+        """Let the microphone hear a sound."""
+        sound = self._left + sound
+        for start in range(0, len(sound) - CHUNK + 1, CHUNK):
+            self._hear(sound[start : start + CHUNK])
+        self._left = sound[len(sound) // CHUNK * CHUNK :]
+
+    async def play(self, sound: bytes) -> None:
+        """Play a sound in real time."""
+        began = monotonic()
+        for start in range(0, len(sound), CHUNK):
+            self.played(sound[start : start + CHUNK])
+            ends = began + seconds(sound[: start + CHUNK])
+            await asyncio.sleep(max(ends - monotonic(), 0))
+
+    def close(self) -> None:
+        """Hear nothing more."""
+        self._hear = lambda _: None
+
+
+class SoundCard:
+    """The machine's microphone and loudspeaker.
+
+    Args:
+        source: the microphone's name or number; empty for the usual one.
+        sink: the loudspeaker's.
+    """
+
+    def __init__(self, source: str = "", sink: str = "") -> None:
+        self._names = source, sink
+        self._streams: list[Any] = []
+        self._lock = Lock()
+        self._buffer = b""
+
+    def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
+        """Begin to listen.
+
+        Raises:
+            Unreachable: there is no such device, or no sound at all.
+        """
+        self.close()
+        try:
+            import sounddevice
+        except (ImportError, OSError) as error:
+            message = f"there is no sound: {error}. Install PortAudio (libportaudio2)"
+            raise Unreachable(f"{message} and: pip install 'prima[speech]'") from None
+
+        def heard(data: Any, *_: object) -> None:
+            hear(bytes(data))
+
+        def wanted(data: Any, *_: object) -> None:
+            data[:] = self._take(len(data))
+
+        form = {"samplerate": RATE, "channels": 1, "dtype": "int16", "blocksize": CHUNK // 2}
+        source, sink = (int(name) if name.isdigit() else name or None for name in self._names)
+        ended = lambda: lost("the sound card is gone")  # noqa: E731
+        try:
+            made = (
+                (sounddevice.RawInputStream, heard, source),
+                (
+                    sounddevice.RawOutputStream,
+                    wanted,
+                    sink,
+                ),
+            )
+            for kind, callback, device in made:
+                stream = kind(device=device, callback=callback, finished_callback=ended, **form)
+                self._streams.append(stream)
+                stream.start()
+        except Exception as error:  # PortAudio's own, and ValueError for a name
+            self.close()
+            hint = "python -m sounddevice lists the devices"
+            raise Unreachable(f"the sound card cannot be opened: {error} ({hint})") from None
+
+    def _take(self, size: int) -> bytes:
+        with self._lock:
+            taken, self._buffer = self._buffer[:size], self._buffer[size:]
+        return taken.ljust(size, b"\0")
+
+    async def play(self, sound: bytes) -> None:
+        """Play a sound."""
+        with self._lock:
+            self._buffer = sound
+        try:
+            while self._buffer:
+                await asyncio.sleep(CHUNK_S)
+        finally:
+            with self._lock:
+                self._buffer = b""
+
+    def close(self) -> None:
+        """Give back the devices."""
+        streams, self._streams = self._streams, []
+        for stream in streams:
+            with suppress(Exception):  # it is gone already
+                stream.close(ignore_errors=True)

@@ -1,0 +1,159 @@
+"""A mediated run whose user is heard by sound: Figure 5.3, with another voice for the user.
+
+The robot's voice, the detector of speech and both recognisers are the real ones; two pipes in
+memory are the sound card. What the user says is a scenario's answers.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+from threading import Timer
+
+import pytest
+
+from tools.environments import install, python_of
+
+ROOT = Path(__file__).parents[3]
+HERE = "tests/parties/speech"
+LONGEST_S = 240
+LAST = "O.K. I'll stop following you."
+ROWS = [
+    "Where are you going?",
+    "Come on, let's go.",
+    "Topological Move (to kidode-room)",
+    "touches the robot's head",
+    "What's the matter with you?",
+    "Come on, follow me.",
+    "Active Sensing Human",
+    "a message from Prof. Kidode arrives",
+    "I've just got a message.",
+    "Do you have a reply?",
+    "O.K. I'll send your message.",
+    "I found you, I'll start following",
+    "Tracking Human",
+    "touches the robot's head",
+    "May I stop following you?",
+    LAST,
+]
+"""What is done and said, in this order."""
+
+
+@pytest.fixture(scope="module")
+def python() -> str:
+    install("speech")
+    return str(python_of("speech"))
+
+
+def prima(python: str, *words: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [python, "-m", "prima", *words],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200", "PYTHONUNBUFFERED": "1"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def test_a_user_who_is_heard_takes_the_robot_along(python: str, tmp_path: Path) -> None:
+    journal = tmp_path / "visit.jsonl"
+    running = prima(
+        python,
+        *("live", "--robot", f"{HERE}/heard.xml", "--driver", f"{HERE}/user.py"),
+        *("--world", "documents/worlds/office.xml", "--fa", "documents/fa/follow.xml"),
+        *("-o", str(journal)),
+    )
+    limit = Timer(LONGEST_S, running.kill)
+    limit.start()
+    shown, waited = [], list(ROWS)
+    assert running.stdout is not None
+    for line in running.stdout:
+        shown.append(line)
+        if waited and waited[0] in line:
+            waited.pop(0)
+        if not waited:
+            break
+    running.send_signal(signal.SIGINT)
+    running.communicate()
+    limit.cancel()
+    assert not waited, "".join(shown)
+    assert running.returncode == 130
+    assert "the recogniser" not in "".join(shown)
+    again = prima(python, "replay", str(journal))
+    told, _ = again.communicate(timeout=60)
+    assert (again.returncode, told) == (0, "the same, byte for byte\n")
+
+
+SAYS = """
+import asyncio, time
+from pathlib import Path
+from prima.devices.goals import SAY, Begin
+from prima.devices.profile import read_robot
+from prima.live.drivers.speech import SpeechDriver
+from prima.live.drivers.speech.sound import Pipes
+from prima.messages import Command
+from prima.sim.map import read_world
+
+class Quiet(SpeechDriver):
+    def sound(self):
+        return Pipes()
+
+async def main():
+    robot = read_robot("r.xml", Path("documents/robots/speech.xml").read_bytes())
+    site = read_world("w.xml", Path("documents/worlds/room.xml").read_bytes())
+    settings = next(one for one in robot.drivers if one.kind == "speech")
+    driver, told = Quiet(settings, robot, site), []
+    driver.attach(lambda one: told.append((time.monotonic(), one)))
+    await driver.open()
+    texts = {"en": "Hello there, how are you?", "ja": "こんにちは。", "de": "Guten Tag.", "xx": "Hm."}
+    for lang, text in texts.items():
+        driver.start(Begin(lang, SAY, Command("speak", {}, text, lang=lang), frozenset()))
+        for _ in range(1000):
+            if told and type(told[-1][1]).__name__ in ("Done", "Broke"):
+                break
+            await asyncio.sleep(0.01)
+        print(type(told[-1][1]).__name__, *getattr(told[-1][1], "reason", "").split())
+        told.clear()
+    driver.start(Begin("long", SAY, Command("speak", {}, "Hello. " * 20, lang="en"), frozenset()))
+    await asyncio.sleep(2)
+    began = time.monotonic()
+    driver.cancel("long")
+    await asyncio.sleep(0.5)
+    print(type(told[-1][1]).__name__, told[-1][0] - began < 0.2)
+    print(await driver.check())
+    await driver.close()
+
+asyncio.run(main())
+"""
+
+
+def test_languages_have_voices_and_what_is_cancelled_stops_at_once(python: str) -> None:
+    done = subprocess.run(
+        [python, "-c", SAYS],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=False,
+    )
+    assert done.stdout.splitlines() == [
+        "Done",
+        "Done",
+        "Done",
+        'Broke espeak-ng has no voice for the language "xx"',
+        "Stopped True",
+        "['no sound comes from the microphone']",
+    ], done.stdout + done.stderr
+
+
+def test_a_machine_without_a_sound_card_says_so(python: str) -> None:
+    checked = prima(python, "live", "--robot", "documents/robots/speech.xml", "--check")
+    told, _ = checked.communicate(timeout=120)
+    assert checked.returncode == 3
+    assert "Traceback" not in told
+    assert "FAILS  speech" in told and "the sound card cannot be opened" in told
