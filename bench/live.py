@@ -79,7 +79,7 @@ def staged(applications: int, folder: str) -> tuple[Loop, Instant]:
     driver = Instant(settings, cast.robot, cast.world)
     live = LiveDevices(cast.robot, [driver], Services([]), [doc.id for doc in cast.documents])
     session = make_session(cast, policy_named("prima"), None, "none", None)
-    return Loop(session, live, FOREVER_MS, None), driver
+    return Loop(session, live, FOREVER_MS, bounded=False), driver
 
 
 def event_to_order(applications: int = 10) -> float:

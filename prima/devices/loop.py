@@ -22,14 +22,14 @@ class Loop:
     """One run: a session on its devices, instant by instant. Times are ms from its start."""
 
     def __init__(
-        self, session: Session, devices: Devices, until: int, most: int | None = MAX_RECORDS
+        self, session: Session, devices: Devices, until: int, bounded: bool = True
     ) -> None:
         self.session = session
         self.devices = devices
         self.until = until
         """When the run ends at the latest."""
-        self.most = most
-        """Records that it may make; None for as many as come, where nobody keeps them."""
+        self.bounded = bounded
+        """Whether it may make a number of records alone; nobody has to keep those of a live run."""
         self.journal: Callable[[list[Record]], object] = lambda _: None
         """Is given the records of an instant before its orders are carried out."""
         self.now = 0
@@ -111,8 +111,8 @@ class Loop:
         for order in orders:
             self.devices.order(now, order)
         self._deadline, self._ended = session.deadline(), session.over
-        if self.most is not None:
+        if self.bounded:
             self._made += len(records)
-            self._full = self._made > self.most or session.written > MAX_WRITTEN
+            self._full = self._made > MAX_RECORDS or session.written > MAX_WRITTEN
         self.devices.observe(now, records)
         return records

@@ -293,7 +293,7 @@ def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -
         start,
     )
     session = make_session(cast, policy, settings.bound, settings.isolate, settings.patience)
-    return Loop(session, devices, FOREVER_MS, most=None)
+    return Loop(session, devices, FOREVER_MS, bounded=False)
 
 
 def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver]:

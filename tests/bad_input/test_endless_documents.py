@@ -54,7 +54,7 @@ def test_who_sends_himself_event_after_event_ends_alone(prima: Prima, tmp_path: 
     write(tmp_path, "bad.xml", app(loops, name="bad"))
     write(tmp_path, "app.xml", GOOD)
     write(tmp_path, "s.xml", scenario('<application src="bad.xml"/>' + PLAY))
-    prima("run", "s.xml", "-o", "t").check(3, "prima: bad: error.semantic: bad.xml:2:75: it loops")
+    prima("run", "s.xml", "-o", "t").check(3, "prima: bad: error.semantic: bad.xml:2:1: it loops")
     assert messages(tmp_path / "t") == ["alive"]
     assert len((tmp_path / "t").read_bytes()) < 5_000_000
 

@@ -119,7 +119,7 @@ REPLAYS: list[Any] = [
     ("no-head", lambda good: "".join(good.splitlines(True)[1:]), 2, "does not begin with its run"),
     ("policy", head(policy="zz"), 2, 'There is no policy "zz"'),
     ("other-file", lambda good: re.sub(r'"app.xml":"\w+"', '"app.xml":"0"', good), 2, "not the file"),
-    ("unknown-app", inbound("load", app="zz"), 2, 'loads "zz"'),
+    ("unknown-app", inbound("load", app="zz"), 2, 'loads an unknown application: "zz"'),
     ("unknown-ab", inbound("end", behavior="zz#1", command="speak", app="a"), 1, "differs"),
     ("head-empty", lambda good: record("run"), 2, "t.jsonl"),
     ("head-no-policy", head(), 2, "t.jsonl"),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 from tests.helpers.opened import CHROMIUM, SCENARIO
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # its event loop must not outlast these tests
 def browser() -> Iterator[Browser]:
     pytest.importorskip("playwright")
     from playwright.sync_api import sync_playwright

@@ -178,7 +178,7 @@ def test_a_record_that_is_no_object_is_told_plainly(tmp_path: Path) -> None:
         done = prima("show", "t.jsonl", cwd=tmp_path)
         assert done.returncode == 2
         assert "t.jsonl:1: " in done.stderr
-        assert "braces" in done.stderr and "dictionary" not in done.stderr
+        assert "write an object such as" in done.stderr and "dictionary" not in done.stderr
 
 
 def test_talk_is_not_saved_to_a_folder(tmp_path: Path) -> None:

@@ -266,7 +266,7 @@ def test_a_certificate_takes_no_option_of_problems(given: list[str]) -> None:
 def test_a_certificate_compares_an_fa_with_an_ea() -> None:
     fa, ea = ROOT / "documents" / "fa" / "follow.xml", ROOT / "documents" / "ea" / "library.xml"
     done = prima("validate", "--with", ea, fa, cwd=ROOT)
-    assert done.returncode == 2 and "library.xml: is an EA" in done.stderr
+    assert done.returncode == 2 and "library.xml: this is an EA" in done.stderr
     done = prima("validate", "--with", fa, "documents/ea", cwd=ROOT)
     assert done.returncode == 0 and "What pizza can do to follow" in done.stdout
 

@@ -130,6 +130,7 @@ VERBS = [
     *("explain t.jsonl 3", "explain f.jsonl 1", "explain f.jsonl 3 --format json", "explain {raw}"),
     *("talk s.xml", "talk s.xml --format json", "new ea {raw}", "new scenario x{raw}", "new {raw} x"),
     *("study s.xml", "documents {raw}/x", "graph app.xml --to json"),
+    *("live s.xml --speed 1000", "live {raw}", "live --resume {raw}", "live --ea {strange} --robot {raw}"),
     *("schemas {raw}/x", "demo -o {raw}/x", "lsp {raw}"),
     *DRAWN,
     *EXPORTED,

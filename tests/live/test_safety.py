@@ -82,7 +82,7 @@ def stage(tmp_path: object) -> Callable[..., tuple[Loop, list[Robot]]]:
         names = [doc.id for doc in cast.documents]
         devices = LiveDevices(cast.robot, robots, Services([]), names)
         session = make_session(cast, policy_named("prima"), None, "none", None)
-        return Loop(session, devices, FOREVER_MS, None), robots
+        return Loop(session, devices, FOREVER_MS, bounded=False), robots
 
     return made
 

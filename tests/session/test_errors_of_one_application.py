@@ -157,8 +157,8 @@ def test_a_dialog_that_begins_again_and_again_ends_soon() -> None:
 @pytest.mark.parametrize(
     ("forms", "most"),
     [
-        ('<form id="f"><subdialog name="s" src="#g"/><block><goto next="#f"/></block></form>', 2_000),
-        ('<form id="f"><block name="b"><clear/></block></form>', 2_000),
+        ('<form id="f"><subdialog name="s" src="#g"/><block><goto next="#f"/></block></form>', 5_000),
+        ('<form id="f"><block name="b"><clear/></block></form>', 5_000),
         ('<form id="f">{}<block name="b"><clear/></block></form>', 100),
     ],
 )  # fmt: skip

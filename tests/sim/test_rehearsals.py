@@ -17,7 +17,7 @@ from prima.session import Session
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.robot import Robot
 from prima.sim.world import World
-from prima.transcript import criteria
+from prima.transcript import observer
 from tests import ROOT
 from tests.helpers.rehearsing import HEAD, rehearse, when
 
@@ -164,7 +164,7 @@ REACTS = """<watch name="near" when="sensor.human.distance &lt; 1.5"/>
 
 def test_nothing_is_kept_of_what_is_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A user comes back once a minute; records are written, not kept."""
-    monkeypatch.setattr(criteria, "MOST_EVENTS", 10)
+    monkeypatch.setattr(observer, "MOST_EVENTS", 10)
     (tmp_path / "app.xml").write_text(HEAD.format("fa", "app", "en") + REACTS + "</prima>")
     path = tmp_path / "scenario.xml"
     path.write_text(
