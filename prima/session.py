@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from prima.grammar.answers import Answers
 from prima.interpreter.application import Interpreter
 from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
@@ -375,6 +376,20 @@ class Session:
         """The application of a name, if it is there."""
         app = self.apps.get(name)
         return [app] if app is not None and name in self._loaded and not app.over else []
+
+    def listening(self) -> list[Answers]:
+        """What is listened for: by the question that listens, and by links (V1).
+
+        What a VoiceXML document listens for is not among it.
+        """
+        found: list[Answers] = []
+        question = self.mediator.question()
+        if question is not None and question.run is not None and self._hears(question):
+            answers = self.apps[question.app.name].answers(question.run.number)
+            found += [answers] if answers is not None else []
+        for app in self._in_order():
+            found += app.listening()
+        return found
 
     def _heard(self, value: Heard) -> None:
         """V1: the question that listens, then links that listen all the time, then nomatch."""

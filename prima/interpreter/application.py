@@ -241,6 +241,12 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         """A tag failed, so that its grammar does not take what was said."""
         self.actions.append(Say("log", f"no match: {message}", source(node)))
 
+    def listening(self) -> Sequence[Answers]:
+        """What the links of the form and the document take (V1)."""
+        if self.frame is None or self.over:
+            return ()
+        return [link.answers for link in (*self.frame.form.links, *self.document.links)]
+
     def answers(self, run: int) -> Answers | None:
         """What the asking field takes, if a field asks."""
         asking = self._asking(run)

@@ -98,6 +98,10 @@ class App(Bounds[Evaluator], ABC):
         """What the question of a run takes, if that can be listed."""
         return None
 
+    def listening(self) -> Sequence[Answers]:
+        """What its links take that listen all the time, as far as that can be listed."""
+        return ()
+
     def go_on_entering(self, state: int) -> None:
         """The events raised on entering a state have been handled (C6)."""
         return

@@ -32,6 +32,7 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.devices.settings import Limits
+from prima.grammar.answers import Answers
 from prima.live.driver import Driver
 from prima.live.journal import Known
 from prima.messages import (
@@ -106,6 +107,10 @@ class LiveDevices:
         self.lost: Callable[[Driver], None] = lambda _: None
         """Is told of a driver that has lost its robot."""
         self._watches = watches
+        self.listening: Callable[[], Sequence[Answers]] = tuple
+        """What is listened for now."""
+        self._taken: Sequence[Answers] = ()
+        """What the drivers were told of that."""
         self._read = read
         self._loads = list(loads)
         self._entrances = entrances or Entrances([])
@@ -176,6 +181,11 @@ class LiveDevices:
         if self._heard:
             self._heard = False
             self.conductor.ear.listen_on(now)
+        takes = self.listening()
+        if [id(one) for one in takes] != [id(one) for one in self._taken]:
+            self._taken = takes
+            for driver in self.drivers:
+                driver.hears(takes)
         for driver in self.drivers:
             driver.observe(now, records)
 

@@ -293,6 +293,7 @@ def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -
         start,
     )
     session = make_session(cast, policy, settings.bound, settings.isolate, settings.patience)
+    devices.listening = session.listening
     return Loop(session, devices, FOREVER_MS, bounded=False)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import pytest
 
@@ -12,6 +12,8 @@ from prima.devices.goals import Begin, Lost
 from prima.devices.loop import Loop
 from prima.devices.settings import USUAL, DriverSettings, Limits
 from prima.errors import Place, RunError
+from prima.grammar.answers import Answers
+from prima.grammar.phrases import phrases
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import TaskDriver, Unreachable
@@ -49,6 +51,7 @@ class Robot(TaskDriver):
         self.lasts = lasts
         self.safe_calls = 0
         self.doing: list[str] = []
+        self.heard: list[list[str]] = []
         self.there = True
         self.begun: Callable[[Begin], None] = lambda _: None
 
@@ -68,6 +71,9 @@ class Robot(TaskDriver):
     async def safe(self) -> None:
         self.safe_calls += 1
 
+    def hears(self, takes: Sequence[Answers]) -> None:
+        self.heard.append([*phrases(takes[0])] if takes else [])
+
 
 @pytest.fixture
 def stage(tmp_path: object) -> Callable[..., tuple[Loop, list[Robot]]]:
@@ -82,6 +88,7 @@ def stage(tmp_path: object) -> Callable[..., tuple[Loop, list[Robot]]]:
         names = [doc.id for doc in cast.documents]
         devices = LiveDevices(cast.robot, robots, Services([]), names)
         session = make_session(cast, policy_named("prima"), None, "none", None)
+        devices.listening = session.listening
         return Loop(session, devices, FOREVER_MS, bounded=False), robots
 
     return made
@@ -131,6 +138,13 @@ def test_a_run_ends_with_a_safe_robot(stage: Stage) -> None:
     assert voice.doing == ["say", "say", "say", "listen", "say"]
     assert body.doing == ["turn", "turn", "turn"]
     assert voice.safe_calls == body.safe_calls == 1
+
+
+def test_a_recogniser_is_told_what_is_listened_for(stage: Stage) -> None:
+    loop, (voice, _) = stage()
+    answer_when_asked(voice)
+    carried_out(loop)
+    assert voice.heard == [["yes"], []]
 
 
 def test_an_emergency_stop_makes_every_driver_safe_at_once(stage: Stage) -> None:
