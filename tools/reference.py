@@ -21,7 +21,7 @@ from typing import Any
 import prima
 from prima.checks.codes import diagnoses
 from prima.devices import loop
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary import ROBOT, SERVICES
 from prima.errors import LONGEST_TEXT, UsageError
 from prima.grammar import builtin, chart
 from prima.grammar.answers import TYPES
@@ -58,7 +58,7 @@ from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
 ROOT = Path(__file__).resolve().parent.parent
-VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO)
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)
 MARKER = re.compile(
     r"(<!-- generated: (?P<name>[\w-]+) -->\n).*?(<!-- end: (?P=name) -->)", re.DOTALL
 )
@@ -570,6 +570,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "world": lambda: elements(WORLD, 4),
     "robot": lambda: elements(ROBOT, 4),
     "scenario": lambda: elements(SCENARIO, 4),
+    "services": lambda: elements(SERVICES, 4),
     "fields": fields,
     "phases": phases,
     "codes": codes,

@@ -47,6 +47,9 @@ FASTEST = 1000.0
 @click.option("--world", type=click.Path(), help="The site's map, and what its areas offer.")
 @fa_option
 @ea_option
+@click.option(
+    "--services", type=click.Path(), help="Ask the services of this document, and no others."
+)
 @click.option("-o", "--output", type=click.Path(), help="Write the journal here, as it grows.")
 @click.option("--resume", "journal", type=click.Path(), help="Go on with a run that was cut off.")
 @click.option(
@@ -91,6 +94,7 @@ def live(
     world: str | None,
     fas: tuple[str, ...],
     eas: tuple[str, ...],
+    services: str | None,
     output: str | None,
     journal: str | None,
     checks: bool,
@@ -128,7 +132,7 @@ def live(
     from prima.live.visit import Chosen, Settings, begin, go_on
 
     raise_limits(limits)
-    chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps)
+    chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     _check_usage(chosen, journal, output, checks)
     web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
     settings = Settings(policy, bound, patience, isolate, speed, until, sync, web=web)
@@ -139,7 +143,9 @@ def live(
         _check(chosen, settings)
         return
     if output is not None:
-        check_output(output, "journal", *filter(None, (scenario, robot, world, *fas, *eas)))
+        check_output(
+            output, "journal", *filter(None, (scenario, robot, world, services, *fas, *eas))
+        )
     if journal is not None:
         from prima.live.journal import read_broken
 
@@ -158,12 +164,14 @@ def _check_usage(chosen: Chosen, journal: str | None, output: str | None, checks
     """
     given = chosen.scenario or chosen.fas or chosen.eas
     if journal is not None:
-        if given or chosen.robot or chosen.world or chosen.maps or output:
+        if given or chosen.robot or chosen.world or chosen.maps or chosen.services or output:
             raise UsageError("--resume goes on with what the journal names; leave out the rest.")
         return
     if chosen.scenario and (chosen.fas or chosen.eas or chosen.world or chosen.maps):
         message = "A scenario names its own applications and world;"
         raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
+    if chosen.scenario and chosen.services:
+        raise UsageError("A scenario has its own services; leave out --services.")
     if checks and not chosen.robot:
         raise UsageError("Name the robot to be checked with --robot.")
     if checks:

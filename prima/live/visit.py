@@ -19,8 +19,9 @@ from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
 from prima.live.journal import Broken, Journal, catch_up, going_on, known, redacted
+from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
-from prima.loading import Loaded, load_scenario, stage
+from prima.loading import Loaded, load_scenario, load_services, stage
 from prima.loading.files import in_place_of_files, read_file
 from prima.loading.heads import check_files, chosen_policy, run_record
 from prima.messages import Json, Record
@@ -29,7 +30,7 @@ from prima.sim.devices import sensors_watched, watches
 from prima.sim.entrances import Entrances
 from prima.sim.map import Map
 from prima.sim.rehearsal import Rehearsal, make_session
-from prima.sim.services import Services, Web
+from prima.sim.services import Web
 
 FOREVER_MS = 10**13
 """How long a run may last on a robot: nobody ends it but its applications, or people."""
@@ -48,6 +49,7 @@ class Chosen:
     fas: tuple[str, ...] = ()
     eas: tuple[str, ...] = ()
     maps: tuple[str, ...] = ()
+    services: str = ""
 
     def loaded(self) -> Loaded:
         """Load it all.
@@ -59,7 +61,18 @@ class Chosen:
         if self.scenario:
             return load_scenario(self.scenario, robot=self.robot)
         given = self.world or None, self.robot or None, self.maps, bool(self.world)
-        return stage(self.fas, self.eas, (), *given)
+        loaded = stage(self.fas, self.eas, (), *given)
+        if self.services:
+            _, loaded.files[self.services] = load_services(self.services)
+        return loaded
+
+    def answering(self, web: Web | None) -> LiveServices:
+        """What answers what applications send and fetch.
+
+        Raises:
+            UsageError: a secret is not in the environment.
+        """
+        return LiveServices(load_services(self.services)[0] if self.services else (), web)
 
     def told(self, folder: str) -> dict[str, Json]:
         """The same for a journal in a folder: paths lead from there, and the robot is whole."""
@@ -68,7 +81,7 @@ class Chosen:
             return os.path.relpath(path, folder or ".")
 
         told: dict[str, Json] = {"robot": seen(self.robot)} if self.robot else {}
-        for name in ("scenario", "world"):
+        for name in ("scenario", "world", "services"):
             if path := getattr(self, name):
                 told[name] = seen(path)
         for name, paths in (("fa", self.fas), ("ea", self.eas)):
@@ -82,16 +95,15 @@ class Chosen:
         return told
 
 
-def reloaded(head: Record, name: str) -> Loaded:
-    """Load what a journal says that it was made with; the robot is the one in the journal.
+def chosen_then(head: Record, name: str) -> Chosen:
+    """What a journal says that it was made with.
 
     Args:
         head: its first record.
         name: its path, from which paths in it lead.
 
     Raises:
-        DocumentError: documents are wrong.
-        UsageError: the record says nothing of files, or a file is not the one of then.
+        UsageError: the record says nothing of files.
     """
     live = head["data"].get("live")
     if not isinstance(live, dict):
@@ -106,15 +118,30 @@ def reloaded(head: Record, name: str) -> Loaded:
         return tuple(path(one) for one in told) if isinstance(told, list) else ()
 
     parts = (str(one).partition("=") for one in live.get("maps") or ())
-    chosen = Chosen(
+    return Chosen(
         path(live.get("robot")),
         path(live.get("scenario")),
         path(live.get("world")),
         paths(live.get("fa")),
         paths(live.get("ea")),
         tuple(f"{uri}={path(where)}" for uri, _, where in parts),
+        path(live.get("services")),
     )
-    texts = {}
+
+
+def reloaded(head: Record, name: str) -> Loaded:
+    """Load what a journal says that it was made with; the robot is the one in the journal.
+
+    Args:
+        head: its first record.
+        name: its path, from which paths in it lead.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: the record says nothing of files, or a file is not the one of then.
+    """
+    chosen = chosen_then(head, name)
+    live, texts = head["data"]["live"], {}
     if chosen.robot and isinstance(live.get("document"), str):
         texts[Path(chosen.robot).resolve()] = live["document"].encode()
     with in_place_of_files(texts):
@@ -225,7 +252,10 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
         cast.scenario.date = now.isoformat(timespec="seconds")
     name = settings.policy or cast.scenario.policy
     policy = chosen_policy(name, loaded)
-    loop = _simulated(loaded, policy, settings) if simulated else _real(loaded, policy, settings)
+    if simulated:
+        loop = _simulated(loaded, policy, settings)
+    else:
+        loop = _real(loaded, policy, settings, chosen.answering(settings.web))
     if settings.until is not None:
         loop.until = settings.until
     told = chosen.told(os.path.dirname(output or ""))
@@ -243,7 +273,7 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
         UsageError: a file is not the one of then, or the run was a simulation.
     """
     head = broken.records[0]
-    loaded = reloaded(head, broken.path)
+    chosen, loaded = chosen_then(head, broken.path), reloaded(head, broken.path)
     data = head["data"]
     if data["live"].get("scenario"):
         message = "a scenario's world is gone with its run; run it again from its beginning."
@@ -257,7 +287,8 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
         patience=None if patience is None else round(patience * 1000),
     )
     start = broken.time
-    loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, start)
+    services = chosen.answering(settings.web)
+    loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, services, start)
     missed = catch_up(broken, loop.session)
     loop.go_on(start)
     state = known(broken.records)
@@ -276,7 +307,9 @@ def _simulated(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
     return Rehearsal(loaded.cast, policy, *given)
 
 
-def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -> Loop:
+def _real(
+    loaded: Loaded, policy: Policy, settings: Settings, services: LiveServices, start: int = -1
+) -> Loop:
     """A run on the robot's drivers."""
     cast = loaded.cast
     drivers = make_drivers(cast.robot, cast.world, settings.drivers)
@@ -284,7 +317,7 @@ def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -
     devices = LiveDevices(
         cast.robot,
         drivers,
-        Services([], settings.web),
+        services,
         own,
         Entrances(cast.offers),
         watches(cast.documents),
@@ -292,6 +325,7 @@ def _real(loaded: Loaded, policy: Policy, settings: Settings, start: int = -1) -
         policy.exclusive,
         start,
     )
+    services.run = devices
     session = make_session(cast, policy, settings.bound, settings.isolate, settings.patience)
     devices.listening = session.listening
     return Loop(session, devices, FOREVER_MS, bounded=False)

@@ -57,7 +57,9 @@ from prima.markup.spans import value_span
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from prima.devices.endpoints import Endpoint
     from prima.devices.profile import Profile
+    from prima.grammar import Grammar
     from prima.markup.tree import Node
     from prima.session import AnyDocument
     from prima.sim.devices import Cast
@@ -239,11 +241,11 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
         if application:
             return _application_problems(path, data)
         from prima.devices.profile import read_robot
-        from prima.devices.vocabulary import ROBOT
+        from prima.devices.vocabulary import ROBOT, SERVICES
         from prima.sim.map import read_world
         from prima.sim.vocabulary import SCENARIO, WORLD
 
-        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO)
+        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)
         vocabulary = check_root(parse(path, data, kinds), kinds)
         if vocabulary is DIALOGUE:
             return _application_problems(path, data)
@@ -256,6 +258,9 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
             return reading.problems
         elif vocabulary is ROBOT:
             return read_robot(path, data).warnings
+        elif vocabulary is SERVICES:
+            _services(path, data)
+            return []
         else:
             return _load(path_of(path), data, whole=True).problems
     except DocumentError as error:
@@ -396,6 +401,33 @@ def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
     except DocumentError as error:
         problems = error.problems
     return [_in_folder(path.parent, problem) for problem in problems]
+
+
+def load_services(path: str) -> tuple[list[Endpoint], str]:
+    """Load a document of services; gives its digest, too.
+
+    Raises:
+        DocumentError: with all its problems.
+        UsageError: the file cannot be read.
+    """
+    data = read_file(path)
+    return _services(path, data), _digest(data)
+
+
+def _services(path: str, data: bytes) -> list[Endpoint]:
+    from prima.devices.endpoints import read_services
+    from prima.grammar import load
+
+    folder = path_of(path).parent
+    fetch = _fetcher(folder)
+
+    def grammar(name: str) -> Grammar:
+        try:
+            return load(fetch(name), base=name, fetch=fetch)
+        except DocumentError as error:
+            raise DocumentError([_in_folder(folder, one) for one in error.problems]) from None
+
+    return read_services(path, data, grammar)
 
 
 def _in_folder(folder: Path, problem: Problem) -> Problem:

@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
@@ -153,7 +153,7 @@ class _Asking:
     def run(self, method: str, values: Data) -> None:
         """Ask, and keep what is answered or what is wrong."""
         try:
-            data = self._body(_request(self.uri, method, values))
+            data = self._body(form_request(self.uri, method, values))
             self.size = len(data)
             self.found = answer("", 0, self.uri, data)
             self.found.host = True
@@ -162,7 +162,7 @@ class _Asking:
             self.found = Fetched("", 0, self.uri, status=error.code, problem=problem)
             error.close()
         except URLError as error:
-            self.found = Fetched("", 0, self.uri, problem=_silence(error.reason))
+            self.found = Fetched("", 0, self.uri, problem=silence(error.reason))
         except (OSError, HTTPException, ValueError) as error:
             why = "the answer breaks off" if isinstance(error, IncompleteRead) else error
             self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {why}")
@@ -172,9 +172,7 @@ class _Asking:
 
     def close(self) -> None:
         """End the connections, so that nothing more is sent or read."""
-        for one in self.held:
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
+        end_connections(self.held)
 
     def _body(self, request: Request) -> bytes:
         """The bytes of the answer to a request, wherever it is moved to.
@@ -182,26 +180,16 @@ class _Asking:
         Raises:
             HTTPError, OSError, HTTPException, ValueError: there is no such answer.
         """
-        for _ in range(MOST_REDIRECTIONS + 1):
-            self.hosts.check(request.full_url)
-            self.hosts.count(self.app)
-            try:
-                with _opener(self.held).open(request, timeout=REAL_SECONDS) as response:
-                    return self._read(response)
-            except HTTPError as error:
-                where = error.headers.get("Location", "") if error.code in MOVED else ""
-                if not where:
-                    raise
-                error.close()
-                request = _moved(request, error.code, where)
-        _refuse(f"it is moved more than {MOST_REDIRECTIONS} times")
+        return follow(request, self._check, self._read, self.held, REAL_SECONDS)
+
+    def _check(self, request: Request) -> None:
+        self.hosts.check(request.full_url)
+        self.hosts.count(self.app)
 
     def _read(self, response: HTTPResponse) -> bytes:
         """An answer's body: as long as a document may be, and as it is."""
-        if (coding := response.headers.get("Content-Encoding", "identity")) != "identity":
-            _refuse(f"the host sends it compressed, as {coding[:20]}")
         most = min(LIMITS.bytes, self.hosts.left(self.app))
-        data: bytes = response.read(most + 1)
+        data = read_plain(response, most + 1)
         if len(data) > LIMITS.bytes:
             _refuse(f"it is larger than {LIMITS.bytes / 1_000_000:g} MB")
         if len(data) > most:
@@ -209,7 +197,60 @@ class _Asking:
         return data
 
 
-def _silence(reason: object) -> str:
+def follow(
+    request: Request,
+    check: Callable[[Request], None],
+    read: Callable[[HTTPResponse], bytes],
+    held: list[socket.socket],
+    seconds: float,
+) -> bytes:
+    """The bytes of the answer to a request, wherever it is moved to.
+
+    Args:
+        request: what is asked.
+        check: refuses a request (ValueError), or adds headers to it.
+        read: reads the body of an answer.
+        held: gets the connections, so that they can be ended.
+        seconds: how long (s) a host may be silent.
+
+    Raises:
+        HTTPError, OSError, HTTPException, ValueError: there is no such answer.
+    """
+    for _ in range(MOST_REDIRECTIONS + 1):
+        check(request)
+        try:
+            with _opener(held).open(request, timeout=seconds) as response:
+                return read(response)
+        except HTTPError as error:
+            where = error.headers.get("Location", "") if error.code in MOVED else ""
+            if not where:
+                raise
+            error.close()
+            request = _moved(request, error.code, where)
+    _refuse(f"it is moved more than {MOST_REDIRECTIONS} times")
+
+
+def read_plain(response: HTTPResponse, most: int) -> bytes:
+    """At most so many bytes of an answer that is not compressed.
+
+    Raises:
+        ValueError: it is compressed.
+    """
+    if (coding := response.headers.get("Content-Encoding", "identity")) != "identity":
+        _refuse(f"the host sends it compressed, as {coding[:20]}")
+    data: bytes = response.read(most)
+    return data
+
+
+def end_connections(held: Iterable[socket.socket]) -> None:
+    """End connections, so that nothing more is sent or read."""
+    for one in held:
+        with suppress(OSError):
+            one.shutdown(socket.SHUT_RDWR)
+
+
+def silence(reason: object) -> str:
+    """Why a host does not answer, for an error of urllib."""
     told = str(reason)
     return told if isinstance(reason, ValueError) else f"the host does not answer: {told}"
 
@@ -268,7 +309,8 @@ def _refuse(message: str) -> NoReturn:
     raise ValueError(message)
 
 
-def _request(uri: str, method: str, values: Data) -> Request:
+def form_request(uri: str, method: str, values: Data) -> Request:
+    """A request that sends values as a form does."""
     encoded = urlencode({name: _text(value) for name, value in values.items()})
     if method == "post":
         return Request(uri, encoded.encode(), {"User-Agent": "PRIMA"}, method="POST")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary import ROBOT, SERVICES
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
@@ -89,7 +89,7 @@ GRAMMAR = Vocabulary(
 )
 """SRGS in XML, as used in VoiceXML documents."""
 
-VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, VOICEXML, GRAMMAR)
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES, VOICEXML, GRAMMAR)
 BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
 BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
 

@@ -55,7 +55,9 @@ class Services:
             asked = self._asked.get(which, 0)
             reply = service.replies[min(asked, len(service.replies) - 1)]
             self._asked[which] = asked + 1
-        self._later(now, reply.after, _fetched(order, reply) if fetches else _event(order, reply))
+        self._later(
+            now, reply.after, fetched_of(order, reply) if fetches else event_of(order, reply)
+        )
 
     def _named(self, name: str, app: str) -> Service | None:
         """The service of a name that an application may ask: its own, or that of all."""
@@ -68,7 +70,7 @@ class Services:
         below = [
             one
             for one in self._services.values()
-            if one.uri and _is_below(uri, one.uri) and one.application in ("", app)
+            if one.uri and is_below(uri, one.uri) and one.application in ("", app)
         ]
         return max(below, key=lambda one: (len(one.uri), one.application), default=None)
 
@@ -88,7 +90,7 @@ class Services:
         problem = not_allowed(uri)
         if uri.startswith(SCHEME):
             problem = self._no_such(uri.removeprefix(SCHEME))
-        self._later(now, 1, Fetched(order.app, _serial(order), uri, problem=problem))
+        self._later(now, 1, Fetched(order.app, serial_of(order), uri, problem=problem))
 
     def _wait(self, now: int) -> None:
         """Wait, in real time, for what hosts were asked before this instant."""
@@ -97,7 +99,7 @@ class Services:
             found, after = asking(), 1
             if found is None:
                 found, after = Fetched("", 0, order.data["to"], problem=NO_ANSWER), SILENCE
-            found.app, found.serial = order.app, _serial(order)
+            found.app, found.serial = order.app, serial_of(order)
             self._later(asked, after, found)
 
     def _later(self, now: int, after: int, value: Occurred | Fetched) -> None:
@@ -127,17 +129,19 @@ class Services:
         return arrived
 
 
-def _serial(order: Order) -> int:
+def serial_of(order: Order) -> int:
+    """The serial of what an application has sent."""
     return int(order.behavior.rpartition("!")[2])
 
 
-def _is_below(uri: str, base: str) -> bool:
+def is_below(uri: str, base: str) -> bool:
     """Whether a URI is an address or lies under it."""
     rest = uri.removeprefix(base)
     return uri.startswith(base) and (not rest or base.endswith("/") or rest[0] in "/?")
 
 
-def _event(order: Order, reply: Reply) -> Occurred:
+def event_of(order: Order, reply: Reply) -> Occurred:
+    """A reply as the event that an application is told of."""
     name = order.data["to"]
     if reply.error:
         data = {"service": name, "message": reply.error}
@@ -145,9 +149,9 @@ def _event(order: Order, reply: Reply) -> Occurred:
     return Occurred(f"reply.{name}", "environment", dict(reply.data), order.app)
 
 
-def _fetched(order: Order, reply: Reply) -> Fetched:
+def fetched_of(order: Order, reply: Reply) -> Fetched:
     """A reply as the answer to a fetch."""
-    serial, uri = _serial(order), order.data["to"]
+    serial, uri = serial_of(order), order.data["to"]
     if reply.error:
         return Fetched(order.app, serial, uri, status=reply.status, problem=reply.error)
     return answer(order.app, serial, uri, reply.body or _xml(reply.data))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary import ROBOT, SERVICES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.sim.vocabulary import SCENARIO, WORLD
 from tests import ROOT
@@ -19,7 +19,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").r
 FENCE = re.compile(
     r"^```(?P<language>\w*)(?: (?P<name>\S+))?\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
-NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO)}
+NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)}
 MODULE = [sys.executable, "-m", "prima"]
 
 

@@ -142,7 +142,7 @@ INSIDE = {
     ],
     "devices": [
         {"ear", "goals", "lines", "protocol", "reading", "senses", "vocabulary", "voice"},
-        {"settings"},
+        {"endpoints", "settings"},
         {"loop", "profile", "speech"},
         {"conductor"},
         {"__init__"},
@@ -152,6 +152,7 @@ INSIDE = {
         {"mapped"},
         {"ros"},
         {"devices", "drivers"},
+        {"services"},
         {"shell"},
         {"visit"},
         {"preflight"},

@@ -1,0 +1,359 @@
+"""The services of a live run: real HTTP, by name, without making the run wait.
+
+A request runs in a thread, as a host may send so slowly that no timeout ends it. Its answer is
+an inbound record, so that a replay asks nobody. Deadlines are real time at any speed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from http.client import HTTPException, HTTPResponse
+from typing import TYPE_CHECKING, TypeVar
+from urllib.error import HTTPError, URLError
+from urllib.parse import urlsplit
+from urllib.request import Request
+
+from prima.devices.endpoints import Endpoint, Unfit, filled_by_grammar
+from prima.errors import UsageError
+from prima.loading.web import end_connections, follow, form_request, read_plain, silence
+from prima.messages import Data, Fetched, Inbound, Json, Order
+from prima.sim.happenings import Reply
+from prima.sim.services import (
+    NO_ANSWER,
+    SCHEME,
+    Web,
+    answer,
+    event_of,
+    fetched_of,
+    host_of,
+    is_below,
+    not_allowed,
+    serial_of,
+)
+from prima.sim.telephone import Telephone
+
+if TYPE_CHECKING:
+    from prima.live.devices import LiveDevices
+
+T = TypeVar("T")
+BUSY = frozenset([429, 502, 503, 504])
+"""Statuses after which a service is asked again."""
+FIRST_S = 0.1
+"""How long (s) it is waited before a service is asked again; then twice as long, and so on."""
+MOST_ASKED = 32
+"""Requests of a run that are under way at one time."""
+HIDDEN = b"***"
+"""What takes the place of a secret that a host sends back."""
+
+
+class LiveServices:
+    """Asks the services of a run's document, and the hosts that the run allows.
+
+    Args:
+        endpoints: the services.
+        web: fetches from other hosts, where the run allows it.
+        environment: has the secrets.
+
+    Raises:
+        UsageError: a secret is not there.
+    """
+
+    def __init__(
+        self,
+        endpoints: Iterable[Endpoint],
+        web: Web | None = None,
+        environment: Mapping[str, str] = os.environ,
+    ) -> None:
+        self._endpoints = {one.name: one for one in endpoints}
+        self._secrets = {one.name: _secrets(one, environment) for one in self._endpoints.values()}
+        self._hosts = frozenset(host_of(one.url) for one in self._endpoints.values())
+        self._web = web
+        self._telephone = Telephone()
+        self._arrived: list[tuple[int, Inbound]] = []
+        self._last = -1
+        self._under_way = 0
+        self.run: LiveDevices
+        """Whose clock counts, and what lets things run in the background."""
+
+    def due(self) -> int | None:
+        """When an answer is to be collected."""
+        times = [time for time, _ in self._arrived[:1]]
+        calls = self._telephone.due()
+        times += [] if calls is None else [calls]
+        return max(min(times), self._last + 1) if times else None
+
+    def collect(self, now: int) -> list[Inbound]:
+        """The answers that have come."""
+        self._last = now
+        inbound = [value for _, value in self._arrived]
+        self._arrived.clear()
+        return inbound + self._telephone.collect(now)
+
+    def order(self, now: int, order: Order) -> None:
+        """Take a message, a fetch or a call."""
+        if "transfer" in order.data:
+            self._telephone.order(now, order)
+        elif self._under_way >= MOST_ASKED:
+            problem = f"{MOST_ASKED} requests are under way already"
+            self._arrive(now + 1, _failed(order, problem))
+        else:
+            self._under_way += 1
+            self.run.spawn(self._answer(order))
+
+    def _arrive(self, now: int, value: Inbound) -> None:
+        self._arrived.append((now, value))
+        self.run.wake()
+
+    async def _answer(self, order: Order) -> None:
+        """See an order through; whatever happens, the application is told."""
+        try:
+            value = await self._asked(order)
+        except Unfit as error:
+            value = _failed(order, str(error))
+        except Exception as error:
+            value = _failed(order, f"it cannot be asked: {type(error).__name__}")
+        finally:
+            self._under_way -= 1
+        self._arrive(self.run.now(), value)
+
+    async def _asked(self, order: Order) -> Inbound:
+        fetches, name = "method" in order.data, str(order.data["to"])
+        endpoint = self._of(name) if fetches else self._endpoints.get(name)
+        if endpoint is None and fetches and not name.startswith(SCHEME):
+            return await self._outside(order)
+        if endpoint is None:
+            name = name.removeprefix(SCHEME)
+            hint = "name it in the document of --services"
+            raise Unfit(f'there is no service "{name}"; {hint}')
+        params = order.data.get("params", order.data) if fetches else order.data["params"]
+        if fetches and not endpoint.model:
+            return await self._fetch(endpoint, order, params)
+        data = await self._data(endpoint, params)
+        return fetched_of(order, Reply(0, data)) if fetches else event_of(order, Reply(0, data))
+
+    def _of(self, uri: str) -> Endpoint | None:
+        """The service that a URI is of: the one named, or the one with the longest address."""
+        if uri.startswith(SCHEME):
+            return self._endpoints.get(uri.removeprefix(SCHEME))
+        below = (one for one in self._endpoints.values() if is_below(uri, one.url))
+        return max(below, key=lambda one: len(one.url), default=None)
+
+    async def _outside(self, order: Order) -> Inbound:
+        """Ask a host of ``--allow-host``."""
+        uri, data = str(order.data["to"]), order.data
+        if self._web is None:
+            raise Unfit(not_allowed(uri))
+        asking = self._web(order.app, uri, data["method"], data["params"])
+        found = await in_thread(asking) or Fetched("", 0, uri, problem=NO_ANSWER)
+        found.app, found.serial = order.app, serial_of(order)
+        return found
+
+    async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
+        """Bytes of a service, for VoiceXML."""
+        uri, method = str(order.data["to"]), str(order.data["method"])
+        where = endpoint.url if uri.startswith(SCHEME) else uri
+        repeats = method == "get" or endpoint.repeats
+        body = await self._ask(endpoint, lambda: form_request(where, method, params), repeats)
+        found = answer(order.app, serial_of(order), uri, body)
+        found.host = True
+        return found
+
+    async def _data(self, endpoint: Endpoint, params: Data) -> dict[str, Json]:
+        """The data of a service's reply; for a language model perhaps the fallback's."""
+        try:
+            what = endpoint.chat(params) if endpoint.model else params
+            body = await self._ask(endpoint, lambda: _request(endpoint, what), endpoint.repeats)
+            given = read_json(body, "the answer")
+            if endpoint.model:
+                given = _content(given)
+            return endpoint.reply(given)
+        except Unfit:
+            if (found := filled_by_grammar(endpoint, params)) is not None:
+                return found
+            raise
+
+    async def _ask(self, endpoint: Endpoint, make: Callable[[], Request], again: bool) -> bytes:
+        """The bytes of an answer, asked for again where that is allowed and may help.
+
+        Raises:
+            Unfit: there is none.
+        """
+        asking = _Asking(endpoint, self._secrets[endpoint.name], self._hosts)
+        try:
+            async with asyncio.timeout(endpoint.deadline / 1000):
+                for count in range(endpoint.retries if again else 0):
+                    with suppress(_Busy):
+                        return await in_thread(lambda: asking.run(make()))
+                    await asyncio.sleep(FIRST_S * 2**count)
+                return await in_thread(lambda: asking.run(make()))
+        except TimeoutError:
+            raise Unfit(f"no answer within {endpoint.deadline / 1000:g} s") from None
+        finally:
+            asking.close()
+
+
+class _Busy(Unfit):
+    """It may help to ask again."""
+
+
+@dataclass(slots=True)
+class _Asking:
+    """Requests to one service, one after the other, each in a thread."""
+
+    endpoint: Endpoint
+    secrets: dict[str, tuple[str, str]]
+    hosts: frozenset[str]
+    held: list[socket.socket] = field(default_factory=list)
+    closed: bool = False
+
+    def run(self, request: Request) -> bytes:
+        """Ask.
+
+        Raises:
+            Unfit: there is no answer.
+        """
+        try:
+            body = follow(request, self._check, self._read, self.held, self._seconds)
+        except HTTPError as error:
+            error.close()
+            why = f"the service answers {error.code}"
+            raise (_Busy if error.code in BUSY else Unfit)(why) from None
+        except URLError as error:
+            raise _Busy(silence(error.reason)) from None
+        except (OSError, HTTPException):
+            raise _Busy("the answer breaks off") from None
+        except ValueError as error:
+            raise Unfit(str(error)) from None
+        for _, secret in self.secrets.values():
+            body = body.replace(secret.encode(), HIDDEN)
+        return body
+
+    @property
+    def _seconds(self) -> float:
+        return self.endpoint.deadline / 1000
+
+    def close(self) -> None:
+        """End all connections."""
+        self.closed = True
+        end_connections(self.held)
+
+    def _check(self, request: Request) -> None:
+        """Let no other host be asked, nor any but the service's own be told a secret."""
+        url, own = request.full_url, self.endpoint.url
+        if self.closed:
+            raise Unfit("nobody waits for it any more")
+        if urlsplit(url).scheme not in ("http", "https") or host_of(url) not in self.hosts:
+            raise Unfit(f'it is moved to the host "{host_of(url)}", which no service names')
+        if urlsplit(url)[:2] != urlsplit(own)[:2]:
+            return
+        for name, value in self.endpoint.headers.items():
+            request.add_header(name, value)
+        for name, (before, secret) in self.secrets.items():
+            request.add_header(name, before + secret)
+
+    def _read(self, response: HTTPResponse) -> bytes:
+        """An answer's body, chunk by chunk: its deadline is that of all."""
+        most = self.endpoint.most
+        ends = time.monotonic() + self._seconds
+        data = read_plain(response, most + 1)
+        if len(data) > most:
+            raise Unfit(f"the answer is larger than {most:,} bytes")
+        if time.monotonic() > ends or self.closed:
+            raise Unfit("the answer is too slow")
+        return data
+
+
+def _secrets(endpoint: Endpoint, environment: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """What a service's headers have from the environment, with what stands before it.
+
+    Raises:
+        UsageError: a variable is not set, or is no header's value.
+    """
+    found = {}
+    for name, (before, variable) in endpoint.variables.items():
+        secret = environment.get(variable, "").strip()
+        where = f"{endpoint.place}: the environment variable {variable}"
+        if not secret:
+            hint = f"Set it before the run: export {variable}=..."
+            raise UsageError(f'{where} is not set; the service "{endpoint.name}" needs it. {hint}')
+        if not secret.isascii() or not secret.isprintable():
+            raise UsageError(f"{where} has characters that no header may have.")
+        found[name] = (before, secret)
+    return found
+
+
+def _request(endpoint: Endpoint, what: Data) -> Request:
+    """A request that sends values: in the URL, or as JSON."""
+    if endpoint.method == "get":
+        return form_request(endpoint.url, "get", what)
+    headers = {"User-Agent": "PRIMA", "Content-Type": "application/json"}
+    body = json.dumps(dict(what), ensure_ascii=False).encode()
+    return Request(endpoint.url, body, headers, method=endpoint.method.upper())
+
+
+def read_json(body: bytes | str, what: str) -> Json:
+    """A text as JSON (RFC 8259).
+
+    Raises:
+        Unfit: it is none.
+    """
+
+    def refuse(name: str) -> Json:
+        raise ValueError(name)
+
+    try:
+        return json.loads(body, parse_constant=refuse)
+    except (ValueError, RecursionError):
+        raise Unfit(f"{what} is not JSON") from None
+
+
+def _content(given: Json) -> Json:
+    """What a language model says, as JSON."""
+    try:
+        said = given["choices"][0]["message"]["content"]
+    except (TypeError, KeyError, IndexError):
+        raise Unfit("the answer has no choices[0].message.content") from None
+    if not isinstance(said, str):
+        raise Unfit("the model says nothing")
+    return read_json(said, "what the model says")
+
+
+def _failed(order: Order, why: str) -> Inbound:
+    """The answer to an order of which nothing came."""
+    if "method" in order.data:
+        return fetched_of(order, Reply(0, error=why))
+    return event_of(order, Reply(0, error=why))
+
+
+async def in_thread(work: Callable[[], T]) -> T:
+    """Let something that waits run in a thread that nobody waits for at the end of the run."""
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[T] = loop.create_future()
+
+    def settle(value: T | None, error: BaseException | None) -> None:
+        if done.done():
+            return
+        if error is not None:
+            done.set_exception(error)
+        else:
+            done.set_result(value)  # type: ignore[arg-type]
+
+    def run() -> None:
+        value, error = None, None
+        try:
+            value = work()
+        except Exception as problem:
+            error = problem
+        with suppress(RuntimeError):  # the run is over
+            loop.call_soon_threadsafe(settle, value, error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return await done
