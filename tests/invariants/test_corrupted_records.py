@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from prima.invariants import check
 from prima.messages import Emergency, Inbound, Occurred, Unloaded
 from tests.helpers.generated.plays import Play, perform, plays
 from tests.helpers.generated.world import APPS, World
-from tests.invariants import check
 
 Records = list[dict[str, Any]]
 Corruption = Callable[[Records], Records]

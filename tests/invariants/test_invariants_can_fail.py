@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
+from prima.invariants import check, numbers
 from tests.helpers.generated.plays import Play, perform, plays
 from tests.helpers.generated.scripts import Ask, Leave, Script, drive, scripts
 from tests.helpers.generated.world import Run, World
-from tests.invariants import check, numbers
 from tests.invariants.broken import (
     always_substituted,
     anything_composed,

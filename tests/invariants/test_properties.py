@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 from random import Random
 
@@ -17,14 +16,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from prima.interpreter.elements import Document, Subdialog, all_items
+from prima.invariants import callers, check, numbers, unfinished
 from prima.messages import Record
-from prima.session import AnyDocument, Session
+from prima.session import Session
 from tests import ROOT
 from tests.helpers.generated.plays import Play, perform, plays, without_hints
 from tests.helpers.generated.scripts import Script, drive, scripts
 from tests.helpers.generated.world import APPS, Run, baselines, extended
-from tests.invariants import check, numbers, unfinished
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
 SCENARIOS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
@@ -186,20 +184,6 @@ def test_no_hash_seed_decides_anything(first: str, second: str) -> None:
     assert outputs[0] == outputs[1]
 
 
-def calling(documents: Iterable[AnyDocument]) -> set[str]:
-    """Applications that have subdialogs, or are VoiceXML."""
-    return {
-        document.id
-        for document in documents
-        if not isinstance(document, Document)
-        or any(
-            isinstance(item, Subdialog)
-            for form in document.forms.values()
-            for item in all_items(form.items)
-        )
-    }
-
-
 @pytest.mark.parametrize("policy", ["prima", "prima+all", "fifo", "fair", "fixed", "none"])
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
@@ -208,7 +192,7 @@ def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
 
     loaded = load_scenario(path)
     records = rehearse(loaded, policy).records
-    found = check(records, policy, calling=calling(loaded.cast.documents))
+    found = check(records, policy, calling=callers(loaded.cast.documents))
     expected = {1} if policy == "none" else set()
     assert numbers(found) <= expected, found
 
@@ -222,7 +206,7 @@ STEPS = int(os.environ.get("PRIMA_STEPS", "2"))
 def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> None:
     """The run ends as it would have, nothing of it is a defect, and the rules are kept."""
     from prima import load_scenario, rehearse
-    from prima.loading.files import in_place_of_files
+    from prima.loading.files import Contents, in_place_of_files
 
     text, hangs = path.read_text(encoding="utf-8"), str(how == "hangs").lower()
     whole = rehearse(load_scenario(path), "prima").records
@@ -233,9 +217,9 @@ def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> 
             if how == "works again":
                 happens += f'<when at="{time + 2500}ms"><repair device="{device}"/></when>'
             failing = text.replace("</scenario>", f"{happens}</scenario>")
-            with in_place_of_files({path: failing.encode()}):
+            with in_place_of_files(Contents({path: failing.encode()})):
                 loaded = load_scenario(path)
                 made = rehearse(loaded, "prima")
-            found = check(made.records, calling=calling(loaded.cast.documents))
+            found = check(made.records, calling=callers(loaded.cast.documents))
             assert not found and not made.defects, (device, time, found, made.defects)
             assert made.records[-1]["phase"] == "over", (device, time)

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import pytest
 
+from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
@@ -19,7 +20,6 @@ from tests.helpers.generated.plays import Play, perform
 from tests.helpers.generated.world import World
 from tests.helpers.plays import HEAD, told
 from tests.helpers.stage import Stage, ask, command, move, say, search
-from tests.invariants import check
 
 EVENT = 7
 

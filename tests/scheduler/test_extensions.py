@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import pytest
 
+from prima.invariants import check
 from prima.language.commands import TABLE_4_2, Argument, CommandType
 from prima.messages import (
     Command,
@@ -15,7 +16,6 @@ from prima.messages import (
 from tests.helpers.generated.scripts import Ask, Script, drive
 from tests.helpers.generated.world import TABLE, World
 from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say, search
-from tests.invariants import check
 
 EVENT, LATER = 7, 8
 ALL = "prima+all"

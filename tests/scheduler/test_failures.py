@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
@@ -22,7 +23,6 @@ from tests.helpers.generated.scripts import Ask, Leave, Script, drive
 from tests.helpers.generated.world import World
 from tests.helpers.plays import NESTED, play, stepped, told
 from tests.helpers.stage import Stage, ask, chain, command, move, say
-from tests.invariants import check
 
 EVENT = 7
 

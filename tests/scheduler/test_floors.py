@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.invariants import check
 from prima.messages import (
     Command,
     Group,
@@ -16,7 +17,6 @@ from prima.messages import (
 from tests.helpers.generated.plays import perform
 from tests.helpers.plays import IN_ORDER, SEARCH, play
 from tests.helpers.stage import Stage, ask, chain, command, move, say, search
-from tests.invariants import check
 
 EVENT = 7
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from prima.invariants import check
 from tests.helpers.stage import Stage, ask, command, move, say
-from tests.invariants import check
 
 EVENT, LATER = 7, 8
 

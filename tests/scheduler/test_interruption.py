@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.invariants import check
 from prima.language.commands import PATIENCE_MS
 from prima.messages import (
     Command,
@@ -12,7 +13,6 @@ from prima.messages import (
 )
 from tests.helpers.generated.world import TABLE
 from tests.helpers.stage import Stage, ask, chain, command, move, restartable, say
-from tests.invariants import check
 
 EVENT = 7
 

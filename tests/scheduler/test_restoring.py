@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from prima.invariants import check
 from prima.messages import (
     Command,
     Group,
@@ -10,7 +11,6 @@ from prima.messages import (
 from tests.helpers.generated.scripts import Ask, Script, drive
 from tests.helpers.generated.world import World
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
-from tests.invariants import check
 
 EVENT = 7
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.invariants import check
 from prima.messages import (
     Occurred,
     Step,
@@ -15,7 +16,6 @@ from tests.helpers.generated.plays import Play, perform
 from tests.helpers.generated.world import World
 from tests.helpers.plays import HEAD, IN_ORDER, SEARCH, play
 from tests.helpers.stage import TRACK, Stage, ask, command, move, say
-from tests.invariants import check
 
 EVENT = 7
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
@@ -17,7 +18,6 @@ from prima.messages import (
 from tests.helpers.generated.scripts import Ask, Go, Open, Script, drive
 from tests.helpers.generated.world import World
 from tests.helpers.stage import Stage, ask, chain, command, move, say, search
-from tests.invariants import check
 
 EVENT = 7
 

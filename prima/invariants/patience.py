@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.invariants.model import AB, LINKED, WAITING, Record, base
-from tests.invariants.streams import Streams
+from prima.invariants.model import AB, LINKED, WAITING, Record, base
+from prima.invariants.streams import Streams
 
 SECONDS = 60
 """How long an application may keep another from the speaker, unless the run says otherwise."""

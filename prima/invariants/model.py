@@ -99,6 +99,7 @@ class AB:
 
     @property
     def shown(self) -> str:
+        """Its name, with the number of its loop."""
         return f"{self.name}.{self.loop}" if self.loop else self.name
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tests.invariants.channel import Channel
-from tests.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
+from prima.invariants.channel import Channel
+from prima.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
 
 
 class Floor(Channel):
@@ -133,12 +133,15 @@ class Floor(Channel):
         self.told_turns.append((tree, record["outcome"], record["rule"]))
 
     def note_suspend(self, record: Record) -> None:
+        """A stream is said to be suspended."""
         self.suspensions[record["tree"]] = record["by"]
 
     def note_resume(self, record: Record) -> None:
+        """A stream is said to be resumed."""
         self.resumptions[record["tree"]] = record["behavior"]
 
     def note_stop(self, record: Record) -> None:
+        """An AB that moves the robot is said to be stopped (F5)."""
         self.stops.add(base(record["behavior"]))
 
     def floor_told_rightly(self) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.invariants.leaving import Leaving
-from tests.invariants.model import Record, base
+from prima.invariants.leaving import Leaving
+from prima.invariants.model import Record, base
 
 ALONE = {
     "window": "C3",

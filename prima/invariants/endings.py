@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, base
-from tests.invariants.selection import Selection
+from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, base
+from prima.invariants.selection import Selection
 
 
 class Endings(Selection):
@@ -20,6 +20,7 @@ class Endings(Selection):
                     ab.silent = ab.silent or ab.phase == RUNNING
 
     def note_end(self, record: Record) -> None:
+        """An AB, or a loop of it, ends."""
         ab = self.running_one(record, "ends")
         if ab is None:
             return
@@ -53,6 +54,7 @@ class Endings(Selection):
             self.heard[ab.tree.name] += 1
 
     def note_fail(self, record: Record) -> None:
+        """A request or an AB fails (E1)."""
         if not record.get("behavior"):
             self.refused.add(record["app"])
             return  # E3: refused before it entered working memory
@@ -77,6 +79,7 @@ class Endings(Selection):
             self.halting[ab.name] = ab
 
     def note_cancel(self, record: Record) -> None:
+        """An AB is taken out of working memory."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase == GONE:
             self.report(3, "O2", f"{record['behavior']} is cancelled, but it is not there")

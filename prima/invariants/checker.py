@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
-from tests.invariants.table import contradictions
-from tests.invariants.telling import Telling
+from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
+from prima.invariants.table import contradictions
+from prima.invariants.telling import Telling
 
 
 class Checker(Telling):

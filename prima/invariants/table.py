@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tests.invariants.model import Record
+from prima.invariants.model import Record
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tests.invariants.endings import Endings
-from tests.invariants.model import AB, RUNNING, Record, Tree
+from prima.invariants.endings import Endings
+from prima.invariants.model import AB, RUNNING, Record, Tree
 
 
 class Leaving(Endings):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.invariants.extensions import Extensions
-from tests.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree
+from prima.invariants.extensions import Extensions
+from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree
 
 A_MOMENT_LATER = 0.0015
 """Seconds after a selection by which an application has heard of it."""

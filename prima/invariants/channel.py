@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.invariants.memory import Memory
-from tests.invariants.model import AB, Record, Tree
+from prima.invariants.memory import Memory
+from prima.invariants.model import AB, Record, Tree
 
 PATIENCE = 20
 """Seconds without a sight, word or touch of the user after which streams engage nobody (K1)."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.invariants.model import AB, RUNNING, WAITING, Record, base
-from tests.invariants.patience import Patience
+from prima.invariants.model import AB, RUNNING, WAITING, Record, base
+from prima.invariants.patience import Patience
 
 RULES = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
 MANY = 8
@@ -263,6 +263,7 @@ class Selection(Patience):
         return other.requested <= ab.requested
 
     def note_hold(self, record: Record) -> None:
+        """The mediator says why an AB waits."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase != WAITING:
             self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")

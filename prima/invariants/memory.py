@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 
-from tests.invariants.model import (
+from prima.invariants.model import (
     AB,
     COMPOSED,
     EXTENSIONS,

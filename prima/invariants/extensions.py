@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from tests.invariants.floor import Floor
-from tests.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
+from prima.invariants.floor import Floor
+from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
 """What X1 may put in, and the head's Command."""
@@ -162,9 +162,11 @@ class Extensions(Floor):
         return bool(ab.inserted) or spans or (ab.unit is not None and ab.unit.name in self.groups)
 
     def joined_now(self, tree: Tree) -> bool:
+        """Whether a stream was joined in this instant."""
         return tree.joined >= 0 and self.records[tree.joined]["time"] == self.now
 
     def note_held(self, record: Record) -> None:
+        """A stream is held open (X3)."""
         name, outcome = record["tree"], record["outcome"]
         tree = self.trees.get(name)
         if "x3" not in self.extensions or tree is None:

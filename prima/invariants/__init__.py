@@ -1,0 +1,103 @@
+"""What must hold in every run, recomputed from a transcript's records alone.
+
+Nothing of the mediator is used here: working memory, trees, floor, engagement
+and reactions are built again from requests, starts, ends, cancellations,
+failures, events and windows, by the numbered rules of the mediation. What the
+mediator says about its own view (``floor``, ``suspend``, ``resume``, ``hold``,
+``decision``, ``stop``, ``stream-end``) is not believed: it is a claim that is
+compared with what was built. So are the extensions' ``held``, ``interrupt`` and
+``inserted``, the rules of ``start``, ``decision`` and ``floor``, and the outcomes of ``floor``
+and ``cancel``.
+
+Believed is that a state was left of which nothing was there any more, if its application asks for
+nothing afterwards and does not end. Believed are the rule and outcome of ``unload``, and that an application has ended on its own:
+where that cancels nothing by E2, nothing else tells it, so a dropped ``unload`` is found only if
+something is cancelled, or the application was taken out of the robot. The rule of ``cancel`` is
+held to what justifies it, and where two rules do either is taken. An AB that
+follows one that failed (E1), or is in an interrupted unit (X2), may be told as linked or waiting
+when it is cancelled. Under a baseline policy a decision's
+rule is believed, and its start is held to it.
+
+Each file is a family of rules and stands on those before it: ``model``,
+``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``floor`` (F, C2),
+``extensions`` (X), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
+E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``checker``.
+
+The extensions relax some invariants, and each is held to what it relaxes:
+
+- X1, X4: an AB that the mediator put in starts before the one that it was put in
+  for (4), counts as its reaction's start (6), and is there only for a reason (11);
+- X2: only an AB marked so is interrupted, only for a reaction that starts in that
+  instant (2), and it starts again from its beginning (3); a reaction that finds
+  nothing else in its way does not wait (6);
+- X3: a held stream is open, so it keeps channel and floor (5, 7); it is held only as
+  long as was asked for, and no shorter (10);
+- X5: one free and one faithful motion share devices (1); a loop that only carries
+  what holds the floor may start beside it (7).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from prima.interpreter.elements import Document
+from prima.invariants.checker import Checker
+from prima.invariants.model import GONE, Record
+
+if TYPE_CHECKING:
+    from prima.session import AnyDocument
+
+__all__ = ["callers", "check", "numbers", "unfinished"]
+
+
+def check(
+    records: Iterable[Record],
+    policy: str = "prima",
+    declared: Sequence[str] = (),
+    patience: float | None = None,
+    calling: Collection[str] = (),
+) -> list[str]:
+    """Violations of all invariants but 8 and 9 in a run; of 1 to 5 under a baseline policy.
+
+    10: a held stream is held as long as was asked for (X3). 11: what the mediator puts in
+    itself has a reason, and takes the place of what it is put in for (X1, X4). 12: of all
+    that could start, what S2 puts first starts first. 13: what the records say of floor,
+    suspensions, decisions and reasons to wait is so. 14: who moves and is not moved on is
+    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them.
+
+    ``declared`` are the applications in the order of their declaration (S2f), where neither
+    the records nor the order of loading tells it; ``patience`` is E6's bound, in the records'
+    unit, where they do not tell it. ``calling`` are those that have subdialogs, or are VoiceXML:
+    a state of theirs need not have been left before another asks for something. Under ``none`` invariant 1 is expected to
+    fail: nothing keeps devices apart.
+    """
+    checker = Checker(records, policy, declared, calling)
+    if patience is not None:
+        checker.patience = patience
+    return checker.run()
+
+
+def callers(documents: Iterable[AnyDocument]) -> set[str]:
+    """Applications of which a state may go on while another asks: for ``calling``."""
+    return {
+        one.id
+        for one in documents
+        if not isinstance(one, Document) or any(n.tag == "subdialog" for n in one.node.walk())
+    }
+
+
+def unfinished(records: Iterable[Record], policy: str = "prima") -> list[str]:
+    """ABs that are still in working memory after the last record (for invariant 9)."""
+    checker = Checker(records, policy)
+    checker.run()
+    return [
+        f"invariant 9: {ab.shown} of {ab.tree.name} is {ab.phase} at the end"
+        for ab in checker.abs.values()
+        if ab.phase != GONE
+    ]
+
+
+def numbers(violations: Iterable[str]) -> set[int]:
+    """Which invariants are violated."""
+    return {int(text.split()[1].rstrip(":")) for text in violations}
