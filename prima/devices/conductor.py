@@ -12,14 +12,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from prima.devices.ear import Ear
+from prima.devices.ear import Ear, bounds_of
 from prima.devices.goals import (
     LISTEN,
+    RECORD,
     SAY,
     Accepted,
     Again,
     Back,
     Begin,
+    Bounds,
     Broke,
     Call,
     Cancel,
@@ -49,6 +51,8 @@ from prima.messages import (
     Presence,
 )
 
+NO_RESOURCE = "error.noresource"
+"""The end of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
 SEARCH = "active-sensing-human"
 """The Command that reports by itself whom it finds."""
 
@@ -96,10 +100,16 @@ class Task:
     """What the device told at the end."""
     failed: tuple[str, str] | None = None
     """Which device did not do it, and why."""
+    lacks: bool = False
+    """Whether its devices work, and the robot cannot do just this."""
     halting: bool = False
     """Whether it was interrupted, and its devices have still to say how much was done (X2)."""
     shares: list[float] = field(default_factory=list)
     """How much of its goals had been done then."""
+    timed: float | None = None
+    """How much of it had been done then by its times, if these tell."""
+    heard: int | None = None
+    """How many characters had been said of what was left of its text, if the device tells."""
 
     @property
     def id(self) -> str:
@@ -230,20 +240,23 @@ class Conductor:
         elif kind in ("speak", "q-and-a"):
             task.ends = self._now + 1
         if kind == "q-and-a":
-            self._goal(task, LISTEN, devices - {"speaker"})
+            records = task.command.cued("record")
+            self._goal(task, RECORD if records else LISTEN, devices - {"speaker"})
 
     def _goal(self, task: Task, kind: str, devices: frozenset[str]) -> None:
         self._serial += 1
         spoken = task.said.ends if task.said is not None else 0
+        says = task.said if kind == SAY else None
         begin = Begin(
             f"{task.name}/{self._serial}",
             kind,
-            task.command,
+            task.command if says is None else says.left(),
             devices,
             spoken,
             task.ends,
             self._loop(task.command),
             task.order.beside,
+            (bounds_of(task.command) if kind == RECORD else None) or Bounds(),
         )
         goal = Goal(begin, task)
         task.goals.append(goal)
@@ -277,6 +290,8 @@ class Conductor:
 
     def _cancel_goal(self, goal: Goal) -> None:
         if not goal.begun:
+            if goal.begin.kind == SAY:
+                goal.task.heard = 0
             self._over(goal)
         elif not goal.cancelled:
             goal.cancelled, goal.since = True, self._now
@@ -322,8 +337,7 @@ class Conductor:
             return
         self._over(goal)
         if goal.cancelled:  # however it has ended
-            if isinstance(report, Stopped) and report.share is not None:
-                task.shares.append(report.share)
+            self._note_end(task, goal.begin, report)
             if self.tasks.get(task.id) is not task and not task.goals:
                 self._tell_halted(task)
         elif isinstance(report, Done):
@@ -331,6 +345,7 @@ class Conductor:
         elif isinstance(report, Stopped):
             self._fail(task, min(goal.begin.devices, default="none"), "it stopped by itself")
         else:
+            task.lacks = report.lacks
             self._fail(task, report.device, report.reason)
 
     def _over(self, goal: Goal) -> None:
@@ -363,17 +378,28 @@ class Conductor:
         ends = max((time for time in known if time is not None), default=0)
         began = task.began - (said.skipped if said is not None else 0)
         if ends > task.began:
-            task.shares.append((self._now - began) / (ends - began))
+            task.timed = (self._now - began) / (ends - began)
+
+    @staticmethod
+    def _note_end(task: Task, goal: Begin, report: Done | Stopped | Broke) -> None:
+        """X2: how much of a goal had been done that was to stop, as its driver tells."""
+        if isinstance(report, Stopped) and report.share is not None:
+            task.shares.append(report.share)
+        if goal.kind == SAY and isinstance(report, Done):
+            task.heard = len(goal.command.text or "")
+        elif goal.kind == SAY and isinstance(report, Stopped):
+            task.heard = report.said
 
     def _tell_halted(self, task: Task) -> None:
         """X2: say how much had been done of an AB that was interrupted."""
         if not task.halting:
             return
-        data: dict[str, Json] = {
-            "done": round(min(max(min(task.shares, default=0.0), 0.0), 1.0), 3)
-        }
-        if task.said is not None:
-            data |= task.said.heard(self._now)
+        said = task.said
+        timed = task.timed if said is None or task.heard is None else said.share(task.heard)
+        shares = [*task.shares, *([] if timed is None else [timed])]
+        data: dict[str, Json] = {"done": round(min(max(min(shares, default=0.0), 0.0), 1.0), 3)}
+        if said is not None:
+            data |= said.heard(self._now, task.heard)
         elif task.command.text:
             data["heard"] = task.command.text.strip()
         self._inbound.append(Halted(task.id, data))
@@ -422,6 +448,9 @@ class Conductor:
         over = task.ends is None or task.ends <= self._now
         if task.failed is not None:
             self._leave(task)
+            if task.lacks:
+                lacking: Data = {"outcome": NO_RESOURCE, "message": task.failed[1]}
+                return [Ended(task.id, True, lacking)]
             return [Failed(task.id, *task.failed)]
         if task.command.type == "q-and-a":
             return self._ask(task, over)

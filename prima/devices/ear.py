@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.devices.goals import Bounds
 from prima.messages import Command, Ended, Inbound
 
 
@@ -25,6 +26,15 @@ class Question:
     """Whether its recogniser hangs."""
     lost: bool = False
     """Whether another Command has taken its recogniser (only without a mediator)."""
+
+
+def bounds_of(command: Command) -> Bounds | None:
+    """The bounds of the answer to a question, if that is recorded."""
+    if not command.cued("record"):
+        return None
+    kinds = ("record", "finalsilence")
+    values = {cue.kind: int(cue.value or 0) for cue in command.cues if cue.kind in kinds}
+    return Bounds(values["record"], values.get("finalsilence", 0))
 
 
 class Ear:
@@ -104,17 +114,10 @@ class Ear:
             if question.listens and question.until is None:
                 self._wait(now, question)
 
-    def recording(self) -> tuple[int, int] | None:
-        """The longest time and the final silence (ms) of an answer that is recorded.
-
-        As :class:`prima.messages.Cue` has them; 0 where there is no such bound. None if the
-        answer is not recorded.
-        """
+    def recording(self) -> Bounds | None:
+        """The bounds of an answer that is recorded; None if it is not recorded."""
         question = self.question
-        if question is None or not question.command.cued("record"):
-            return None
-        values = {cue.kind: int(cue.value or 0) for cue in question.command.cues if cue.at == 0}
-        return values["record"], values.get("finalsilence", 0)
+        return bounds_of(question.command) if question is not None else None
 
     # Time ---------------------------------------------------------------------------
 

@@ -11,6 +11,17 @@ SAY: Final = "say"
 """The goal of saying a Command's text."""
 LISTEN: Final = "listen"
 """The goal of hearing the answer to a question."""
+RECORD: Final = "record"
+"""The goal of recording the answer to a question: told by ``Heard`` as it is described there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """When a recording is over. Times are ms; 0 leaves them to the device."""
+
+    longest: int = 0
+    silence: int = 0
+    """How long the user has to be silent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +34,9 @@ class Begin:
     key: str
     """Its name, which is never used again."""
     kind: str
-    """:data:`SAY`, :data:`LISTEN`, or the Command's type."""
+    """:data:`SAY`, :data:`LISTEN`, :data:`RECORD`, or the Command's type."""
     command: Command
+    """The Command; of a text that was interrupted at a mark, what is left of it (X2)."""
     devices: frozenset[str]
     spoken: int = 0
     """Until when the robot is expected to speak in the same Command; 0 if it does not."""
@@ -34,6 +46,8 @@ class Begin:
     """How long (ms) each further loop takes."""
     beside: bool = False
     """Whether a motion is composed with another one that goes on (X5)."""
+    bounds: Bounds = Bounds()
+    """When what is to be recorded is over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +108,8 @@ class Stopped:
     key: str
     share: float | None = None
     """How much of it had been done, 0 to 1, if that is known."""
+    said: int | None = None
+    """Of a text: how many of its characters had been said, if that is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +119,8 @@ class Broke:
     key: str
     device: str
     reason: str
+    lacks: bool = False
+    """Of a recording: whether the robot cannot record it, though its devices work."""
 
 
 @dataclass(frozen=True, slots=True)

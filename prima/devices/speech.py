@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
 from prima.devices import voice
-from prima.messages import Command, Json, Order
+from prima.messages import Command, Cue, Json, Order
+
+ABOUT_ALL = ("earlier", "hotword", "record", "finalsilence", "longest")
+"""Cues that are of a question, not of a place in its text."""
 
 
 @dataclass(slots=True)
@@ -19,6 +23,8 @@ class Utterance:
     """When its letters and marks come, where it has cues."""
     skipped: int = 0
     """How much (ms) had been said before an interruption (X2)."""
+    marks: int = 0
+    """How many marks had been passed by then: it goes on from the last of these."""
 
     @classmethod
     def of(cls, now: int, order: Order, rates: dict[str, float]) -> Utterance | None:
@@ -38,9 +44,28 @@ class Utterance:
         if not command.cues:
             return cls(command, now, now + voice.duration(text, lang, rates))
         timeline = voice.timeline(text, lang, rates, command.cues)
-        skipped = round(timeline.marks[order.data["passed"] - 1][0]) if order.data else 0
+        marks = order.data["passed"] if order.data else 0
+        skipped = round(timeline.marks[marks - 1][0]) if marks else 0
         ends = now + max(timeline.total - skipped, 1)
-        return cls(command, now, ends, timeline, skipped)
+        return cls(command, now, ends, timeline, skipped, marks)
+
+    @property
+    def since(self) -> int:
+        """Behind how many characters of the text it goes on."""
+        return marks_of(self.command)[self.marks - 1].at if self.marks else 0
+
+    def left(self) -> Command:
+        """The Command with what is left to be said of its text."""
+        command, since = self.command, self.since
+        if not self.marks:
+            return command
+        mark = marks_of(command)[self.marks - 1]
+        index = next(at for at, cue in enumerate(command.cues) if cue is mark)
+        before = command.cues[:index]
+        rates = [replace(cue, at=0) for cue in before if cue.kind == "rate"]
+        cues = [cue for cue in before if cue.kind in ABOUT_ALL] + rates[-1:]
+        cues += [replace(cue, at=cue.at - since) for cue in closed(command.cues[index + 1 :])]
+        return replace(command, text=(command.text or "")[since:], cues=tuple(cues))
 
     def passed(self, now: int) -> tuple[int, str, int] | None:
         """How many marks have been passed, the last one's name, and the ms since then."""
@@ -51,8 +76,19 @@ class Utterance:
         time, name = self.timeline.marks[count - 1]
         return count, name, round(played - time)
 
-    def heard(self, now: int) -> dict[str, Json]:
-        """How much of it has been heard, as :class:`prima.messages.Halted` has it."""
+    def share(self, said: int) -> float:
+        """How much of the text has been said (0 to 1) behind characters of what was left of it."""
+        return min((self.since + said) / max(len(self.command.text or ""), 1), 1.0)
+
+    def heard(self, now: int, said: int | None = None) -> dict[str, Json]:
+        """How much of it has been heard, as :class:`prima.messages.Halted` has it.
+
+        Args:
+            now: the time, by which that is told where the device does not say.
+            said: how many characters of what was left have been said, if it does.
+        """
+        if said is not None:
+            return self._heard_to(self.since + said)
         if self.timeline is None:
             share = (now - self.began) / max(self.ends - self.began, 1)
             text = self.command.text or ""
@@ -62,6 +98,31 @@ class Utterance:
         if passed is not None:
             data["passed"], data["mark"] = passed[:2]
         return data
+
+    def _heard_to(self, count: int) -> dict[str, Json]:
+        """The same behind so many characters of the whole text."""
+        text = self.command.text or ""
+        data: dict[str, Json] = {"heard": voice.whole_words(text, count)} if text else {}
+        passed = [cue for cue in marks_of(self.command) if cue.at <= count]
+        if passed:
+            data["passed"], data["mark"] = len(passed), passed[-1].value
+        return data
+
+
+def marks_of(command: Command) -> list[Cue]:
+    """The marks of a text, in its order."""
+    return [cue for cue in command.cues if cue.kind == "mark"]
+
+
+def closed(cues: Iterable[Cue]) -> Iterator[Cue]:
+    """Cues without the ends of what has begun before them."""
+    inside = 0
+    for cue in cues:
+        inside += {"lasts": 1, "end": -1}.get(cue.kind, 0)
+        if inside < 0:
+            inside = 0
+        else:
+            yield cue
 
 
 class Marks:

@@ -1,4 +1,4 @@
-"""What a question of PRIMA's own language takes: options, grammars and a built-in type."""
+"""What a question or a link takes: options, grammars, and a built-in type of PRIMA's own language."""
 
 from __future__ import annotations
 

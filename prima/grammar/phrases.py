@@ -7,6 +7,7 @@ from itertools import islice
 
 from prima.grammar.answers import Answers
 from prima.grammar.model import (
+    BuiltIn,
     Choice,
     Part,
     Reference,
@@ -51,6 +52,8 @@ class _Phrases:
         match part:
             case Words(words):
                 yield words
+            case BuiltIn(name):
+                yield from TYPES.get(name, ())
             case Tag() | Special("NULL"):
                 yield ""
             case Reference(rule=rule) if rule is not None:

@@ -12,6 +12,7 @@ from prima.devices import voice
 from prima.devices.conductor import Conductor
 from prima.devices.goals import (
     LISTEN,
+    RECORD,
     SAY,
     Accepted,
     Again,
@@ -127,6 +128,8 @@ class LiveDevices:
         self._began: int | None = None
         """When the user began to speak."""
         self._heard = False
+        self._cut = False
+        """Whether what the user is saying has taken too long, and is over for the run."""
         self._carrying = False
 
     # The session's side ------------------------------------------------------------------
@@ -143,6 +146,7 @@ class LiveDevices:
             self._last + 1 if self._loads or self._entrances.unseen else None,
             told,
             self.conductor.due(self._sees.visible),
+            self._too_long(),
             self.services.due(),
             *(driver.due() for driver in self.drivers),
         ]
@@ -164,6 +168,7 @@ class LiveDevices:
         self._flooding.clear()
         for one in news:
             inbound += self._take(now, one)
+        inbound += self._cut_off(now)
         return inbound + self.services.collect(now)
 
     def order(self, now: int, order: Order) -> None:
@@ -233,12 +238,15 @@ class LiveDevices:
         conductor = self.conductor
         match news:
             case Speaks(begins=True):
-                self._began = now
+                self._began, self._cut = now, False
                 conductor.speech_begins(now)
                 self._carry_out()
                 return []
             case Speaks():
                 self._silent()
+                return []
+            case Heard() if self._cut:
+                self._cut = False
                 return []
             case Heard():
                 began, self._heard = self._began, True
@@ -263,6 +271,21 @@ class LiveDevices:
         read = self._read
         known = sensor in self.conductor.sensors.values
         return not known or read is None or sensor.partition(".")[0] in read
+
+    def _too_long(self) -> int | None:
+        """When the user will have spoken for longer than the question lets them (ms)."""
+        longest = self.conductor.longest_answer() if self._began is not None else 0
+        return self._began + longest if self._began is not None and longest else None
+
+    def _cut_off(self, now: int) -> list[Inbound]:
+        """End an answer that takes too long (VoiceXML 2.0, 6.3.2); what follows of it is not heard."""
+        over = self._too_long()
+        if over is None or over > now:
+            return []
+        passed = self.conductor.marks_passed(over)
+        self._cut = True
+        self._silent()
+        return [Heard("", {**passed, "toolong": True})]
 
     def _silent(self) -> None:
         """The user has fallen silent."""
@@ -308,7 +331,9 @@ class LiveDevices:
         driver = self.route(goal)
         now, device = self._now(), min(goal.devices, default="none")
         if driver is None:
-            self.conductor.report(now, Broke(goal.key, device, "no driver carries it out"))
+            lacks = goal.kind == RECORD
+            reason = "no driver records" if lacks else "no driver carries it out"
+            self.conductor.report(now, Broke(goal.key, device, reason, lacks))
             return
         self._routes[goal.key] = driver
         try:
@@ -331,7 +356,7 @@ class LiveDevices:
             return Limits()
         does = driver.does(goal)
         said = does.limits.over(driver.settings.limits) if does else driver.settings.limits
-        if goal.kind == LISTEN:
+        if goal.kind in (LISTEN, RECORD):
             return Limits(said.accept, None, said.cancel)
         if goal.kind == SAY and said.progress is None:
             command = goal.command

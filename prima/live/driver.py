@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from prima.devices.goals import (
+    RECORD,
     SAY,
     Accepted,
     Begin,
@@ -28,6 +29,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings, Limits, Pose
 from prima.errors import RunError
 from prima.grammar.answers import Answers
+from prima.live.recordings import Recordings
 from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
@@ -75,6 +77,8 @@ class Driver:
         self.site = site
         self.now: Callable[[], int] = lambda: 0
         """The run's time (ms)."""
+        self.recordings = Recordings()
+        """Where it keeps what it records."""
         self._tell: Tell = lambda _: None
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -199,6 +203,8 @@ class TaskDriver(Driver):
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._said: dict[str, int] = {}
+        """How many characters of their texts goals have said, as far as :meth:`perform` tells."""
 
     async def perform(self, goal: Begin) -> Data:
         """Carry out a goal to its end; gives what the device tells then.
@@ -208,6 +214,10 @@ class TaskDriver(Driver):
             Unreachable: it is not there any more.
         """
         raise NotImplementedError
+
+    def has_said(self, goal: Begin, characters: int) -> None:
+        """So much of a goal's text has been said: the run is told when it is cancelled (X2)."""
+        self._said[goal.key] = characters
 
     def accept(self, goal: Begin) -> None:
         """The robot has begun a goal."""
@@ -219,7 +229,8 @@ class TaskDriver(Driver):
 
     def start(self, goal: Begin) -> None:
         """Begin the coroutine of a goal."""
-        self._tasks[goal.key] = asyncio.ensure_future(self._run(goal))
+        task = self._tasks[goal.key] = asyncio.ensure_future(self._run(goal))
+        task.add_done_callback(lambda _: self._never_run(goal.key))
         if not self.confirms:
             self.accept(goal)
 
@@ -235,19 +246,26 @@ class TaskDriver(Driver):
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
+    def _never_run(self, key: str) -> None:
+        """Tell the end of a goal that was cancelled before its coroutine had its first turn."""
+        if self._tasks.pop(key, None) is not None:
+            self.tell(Stopped(key))
+
     async def _run(self, goal: Begin) -> None:
         try:
             report: Report = Done(goal.key, await self.perform(goal))
         except asyncio.CancelledError:
-            report = Stopped(goal.key)
+            report = Stopped(goal.key, said=self._said.get(goal.key))
         except Unreachable as error:
             self.lose(str(error))
             return
         except Exception as error:
             device = getattr(error, "device", "") or min(goal.devices, default="none")
-            report = Broke(goal.key, device, str(error) or type(error).__name__)
+            lacks = goal.kind == RECORD and isinstance(error, Refused)
+            report = Broke(goal.key, device, str(error) or type(error).__name__, lacks)
         finally:
             self._tasks.pop(goal.key, None)
+            self._said.pop(goal.key, None)
         self.tell(report)
 
 

@@ -19,10 +19,11 @@ from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
 from prima.live.journal import Broken, Journal, catch_up, going_on, known, redacted
+from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
 from prima.loading import Loaded, load_scenario, load_services, stage
-from prima.loading.files import in_place_of_files, read_file
+from prima.loading.files import Contents, in_place_of_files, read_file
 from prima.loading.heads import check_files, chosen_policy, run_record
 from prima.messages import Json, Record
 from prima.scheduler.policy import Policy
@@ -144,7 +145,7 @@ def reloaded(head: Record, name: str) -> Loaded:
     live, texts = head["data"]["live"], {}
     if chosen.robot and isinstance(live.get("document"), str):
         texts[Path(chosen.robot).resolve()] = live["document"].encode()
-    with in_place_of_files(texts):
+    with in_place_of_files(Contents(texts)):
         loaded = chosen.loaded()
     loaded.files.pop(STAGE, None)
     check_files(head, loaded, name)
@@ -210,7 +211,6 @@ class Visit:
                 self.journal.write(records)
             sink(records)
 
-        keep(self.missed if self.resumed else [self.head])
         self.loop.journal = keep
         try:
             asyncio.run(self._run(warn))
@@ -230,6 +230,8 @@ class Visit:
         for name in (signal.SIGINT, signal.SIGTERM):
             with suppress(NotImplementedError, ValueError, RuntimeError):
                 running.add_signal_handler(name, stop)
+        # Not before: once there is a journal, a signal has to end the run as it should.
+        self.loop.journal(self.missed if self.resumed else [self.head])
         try:
             await shell.run()
         finally:
@@ -262,6 +264,7 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
     patience = cast.scenario.patience if settings.patience is None else settings.patience
     head = run_record(loaded, name, settings.bound, patience, {"live": told})
     journal = Journal(output, settings.sync) if output is not None else None
+    _record_beside(loop, journal, settings)
     return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)
 
 
@@ -297,6 +300,7 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
     if settings.until is not None:
         loop.until = settings.until
     journal = Journal(broken.path, settings.sync, broken.kept)
+    _record_beside(loop, journal, settings)
     clock = Clock(settings.speed, start)
     return Visit(loop, clock, settings, head, loaded, journal, missed, resumed=True)
 
@@ -329,6 +333,15 @@ def _real(
     session = make_session(cast, policy, settings.bound, settings.isolate, settings.patience)
     devices.listening = session.listening
     return Loop(session, devices, FOREVER_MS, bounded=False)
+
+
+def _record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
+    """Let drivers keep what they record beside the journal, if anything of it is to be kept."""
+    kept = journal is not None and not settings.redact and os.path.isfile(journal.path)
+    recordings = Recordings(journal.path if journal is not None and kept else None)
+    if isinstance(loop.devices, LiveDevices):
+        for driver in loop.devices.drivers:
+            driver.recordings = recordings
 
 
 def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver]:

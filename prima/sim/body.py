@@ -168,7 +168,7 @@ class Body:
         begin = effort.begin
         args = begin.command.args
         match begin.kind:
-            case "listen":
+            case "listen" | "record":
                 pass  # whoever listens says when that is over
             case "turn" | "set-direction" | "turn-and-speak":
                 self._turn(now, effort)
@@ -231,13 +231,12 @@ class Body:
 
         Nobody waits for the end of what is said while the same Command still moves the body.
         """
-        moving = [one.begin.command for one in self.efforts.values() if one.turns_on]
+        moving = {_behavior(one.begin) for one in self.efforts.values() if one.turns_on}
         times = [
             time
             for one in self.efforts.values()
             for time in (one.ends, one.tick)
-            if time
-            and not (one.begin.kind == SAY and any(it is one.begin.command for it in moving))
+            if time and not (one.begin.kind == SAY and _behavior(one.begin) in moving)
         ]
         return min(times, default=None)
 
@@ -345,3 +344,8 @@ class Body:
         if "moving" in looked_at:
             now["moving"] = world.drive != STANDING
         return now
+
+
+def _behavior(begin: Begin) -> str:
+    """The AB that a goal belongs to."""
+    return begin.key.partition("/")[0]

@@ -229,7 +229,7 @@ class Person:
         said = self._timeline(text.rstrip(KEYS_THAT_END) if bounds is not None else text)
         script.lasts, silence = said.total, 0
         if bounds is not None:
-            longest, silence = bounds
+            longest, silence = bounds.longest, bounds.silence
             script.told = {"duration": script.lasts}
             if 0 < longest < script.lasts:
                 script.speaking, script.lasts, silence = _part(said, longest), longest, 0

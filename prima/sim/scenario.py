@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.devices.reading import Reader
+from prima.devices.reading import RENAME, Reader
 from prima.errors import DocumentError, Problem
 from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
@@ -91,6 +91,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         reader.problem(root, "missing-element", message, "", remedy)
     if person is not None:
         check_where(reader, person, "at", "a place to be at", needed=False)
+    _check_ids(reader)
     until, patience = reader.get(root, "until"), reader.get(root, "patience")
     scenario = Scenario(
         id=root.get("id"),
@@ -117,6 +118,17 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         node=root,
     )
     return scenario, reader.problems
+
+
+def _check_ids(reader: Reader) -> None:
+    """Note names of happenings and answers that are there twice."""
+    seen: set[str] = set()
+    for node in reader.root.all("when", "answer"):
+        name = node.get("id")
+        if name and name in seen:
+            message = f'The id "{name}" is there twice.'
+            reader.problem(node, "duplicate-id", message, "id", RENAME)
+        seen.add(name)
 
 
 def _only(reader: Reader, tag: str) -> Node | None:

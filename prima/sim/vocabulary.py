@@ -105,6 +105,7 @@ _ACTIONS = (
 _CONFIDENCE = attribute(
     "confidence", "number", "how sure the recogniser is of the words", default="1", low=0, high=1
 )
+_CALLED = attribute("id", "id", "its name, for experiments that vary it (prima sweep)")
 _TRIGGERS = (
     attribute("at", "duration", "a time of the run"),
     attribute("said", "text", "the robot has said something with these words"),
@@ -223,6 +224,7 @@ SCENARIO = Vocabulary(
             "answer",
             "What the user answers whenever the robot asks something with these words.",
             (
+                _CALLED,
                 attribute("to", "text", "words of the question", "required"),
                 attribute("after", "duration", "how long after it", default="1s"),
                 attribute(
@@ -237,6 +239,7 @@ SCENARIO = Vocabulary(
             "when",
             "What happens at a time, or when the robot has done something: in sequence.",
             (
+                _CALLED,
                 *_TRIGGERS,
                 _AFTER,
                 attribute("times", "integer", "how often at most", default="1", low=1, high=1000),

@@ -7,6 +7,7 @@ from collections.abc import Generator, Sequence
 from itertools import pairwise
 from pathlib import PurePath
 
+from prima.grammar.answers import Answers
 from prima.interpreter.bounds import Visit
 from prima.interpreter.places import source
 from prima.interpreter.protocol import Answer, App
@@ -202,6 +203,18 @@ class VoiceInterpreter(App[AnyEngine]):
         heard, found = self.heard, self.heard.interpretation
         value = found if found is not None else heard.utterance
         return Understood(value, heard.utterance, heard.confidence)
+
+    def answers(self, run: int) -> Answers | None:
+        """What can be said to the question of a run."""
+        context = self._machine.context
+        if context is None or run != self._run or self.over:
+            return None
+        return self._machine.inputs.words(context)
+
+    def open_during(self, command: Command) -> Answers | None:
+        """What can be said to the question behind a prompt while that is being said (4.1.5)."""
+        opened = any(one is command for one in self._open)
+        return self.answers(self._run) if opened else None
 
     def before(self, command: Command) -> Command | None:
         """Which of the Commands that are waited for comes before one of them, if any does."""

@@ -42,7 +42,7 @@ REMOTE = frozenset(["http", "https", "service"])
 Fetch = Callable[[str], bytes]
 """Gives the bytes of a file by its name in the application's folder."""
 
-Glance = Callable[[str, int], tuple[bytes, int]]
+Glance = Callable[[str], tuple[bytes, int]]
 """Gives a file's first bytes, at most so many, and its size; raises :class:`FetchError`."""
 
 
@@ -184,7 +184,7 @@ class VoiceDocument:
             if self.glance is None:
                 self.fetch(name)
             else:
-                self.glance(name, 0)
+                self.glance(name)
         except FetchError:
             return False
         return True

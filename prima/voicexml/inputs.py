@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from prima.grammar.answers import Answers
 from prima.grammar.builtin import TYPES
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
@@ -15,7 +16,7 @@ from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
-from prima.voicexml.matching import Found, Matcher, keys, matcher, phrase, ways
+from prima.voicexml.matching import Found, Listener, keys, listener, phrase, ways
 from prima.voicexml.state import Context, Heard
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ MOST_RESULTS = 100
 class Active:
     """A grammar that listens, and what it belongs to: an item, a form, a link or a choice."""
 
-    match: Matcher
+    listener: Listener
     owner: Node
     page: Page
     level: Node
@@ -44,12 +45,14 @@ class Inputs:
 
     def __init__(self, owner: Machine) -> None:
         self.owner = owner
-        self._loaded: dict[tuple[str, int, str], tuple[Page, Matcher]] = {}
+        self._loaded: dict[tuple[str, int, str], tuple[Page, Listener]] = {}
         """With the page that each is of: the next one of its URI may be another document."""
         self._budget = Budget()
         """What matching the utterance takes that is being heard."""
         self._active: list[Active] = []
         """What listens in the wait that there is."""
+        self._words: Answers | None = None
+        """What of that can be said."""
 
     # Hearing ------------------------------------------------------------------------
 
@@ -59,10 +62,21 @@ class Inputs:
         Raises:
             Thrown: for a grammar that cannot be used; ``error.semantic`` where none listens.
         """
-        self._active = list(self.active(context))
+        self._active, self._words = list(self.active(context)), None
         item = context.item
         if not self._active and item is not None and item.tag not in DEAF:
             raise Thrown.at(item, "error.semantic", "no grammar listens here")
+
+    def words(self, context: Context) -> Answers:
+        """What can be said now, for recognisers; the same object as long as that is the same."""
+        if self._words is None:
+            heard = self._active if "voice" in self.modes(context) else []
+            options: dict[str, Json] = {}
+            for one in reversed(heard):  # the most specific goes before
+                options |= one.listener.words.options
+            grammars = [made for one in heard for made in one.listener.words.grammars]
+            self._words = Answers(options, grammars)
+        return self._words
 
     def hear(self, context: Context, said: Sequence[Hypothesis]) -> Heard | None:
         """What the most specific grammars take of what was said, or None (3.1.4).
@@ -126,7 +140,7 @@ class Inputs:
         for active in self._active:
             if first is not None and active.level is not first.level:
                 continue
-            for one in active.match(said, mode, most) if len(results) < most else ():
+            for one in active.listener.match(said, mode, most) if len(results) < most else ():
                 found = replace(one, confidence=round(one.confidence * sure, 6))
                 if found.confidence >= least and found.means not in {r.means for r in results}:
                     results.append(found)
@@ -210,7 +224,7 @@ class Inputs:
 
     # Loading ---------------------------------------------------------------------------
 
-    def _built_in(self, node: Node, page: Page) -> Matcher:
+    def _built_in(self, node: Node, page: Page) -> Listener:
         name = node.get("type")
         known = name.partition("?")[0] in TYPES or name.startswith("builtin:")
         return self._load(node, page, name if known else f"builtin:grammar/{name}")
@@ -226,12 +240,12 @@ class Inputs:
             uri = page.resolve(uri, node)
         return Active(self._load(node, page, uri), owner, page, level)
 
-    def _load(self, node: Node, page: Page, uri: str) -> Matcher:
+    def _load(self, node: Node, page: Page, uri: str) -> Listener:
         key = (page.uri, node.index, uri)
         kept = self._loaded.get(key)
         if kept is not None and kept[0] is page:
             return kept[1]
-        made = matcher(
+        made = listener(
             node,
             page,
             uri,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, cast
 from urllib.parse import urldefrag
 
@@ -17,6 +17,7 @@ from prima.grammar import (
     UnsupportedLanguage,
     load,
 )
+from prima.grammar.answers import Answers
 from prima.grammar.text import fold
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
@@ -46,15 +47,23 @@ class Found:
         return json.dumps(self.interpretation, sort_keys=True, default=str)
 
 
-Matcher = Callable[[str, str, int], list[Found]]
-"""Gives the ways in which a grammar takes what was said in a mode, at most so many."""
+@dataclass(frozen=True, slots=True)
+class Listener:
+    """A grammar, the words of an option, or keys."""
+
+    match: Callable[[str, str, int], list[Found]]
+    """Gives the ways in which it takes what was said in a mode, at most so many."""
+    words: Answers = field(default_factory=Answers)
+    """What of it can be said, for recognisers."""
+
+
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
 """Why a grammar may not refer to another, by their URIs; nothing if it may."""
 Tell = Callable[[Node, str], None]
 
 
-def matcher(
+def listener(
     node: Node,
     page: Page,
     uri: str,
@@ -62,7 +71,7 @@ def matcher(
     refusal: Refusal,
     tell: Tell,
     budget: Callable[[], Budget],
-) -> Matcher:
+) -> Listener:
     """The grammar of an element, or of the URI that it names; ``budget`` is that of the utterance.
 
     Raises:
@@ -80,7 +89,7 @@ def matcher(
             found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
         return found[:most]
 
-    return match
+    return Listener(match, Answers(grammars=() if grammar.mode == "dtmf" else (grammar,)))
 
 
 def ways(text: str, end: str) -> list[tuple[str, str]]:
@@ -154,8 +163,8 @@ def _event(error: GrammarError) -> str:
     return "error.badfetch"  # it cannot be parsed, or its parameters conflict (Appendix P)
 
 
-def phrase(text: str, value: Json, approximate: bool) -> Matcher:
-    """A matcher of one phrase; approximately, of some of its words in their order (2.2.5)."""
+def phrase(text: str, value: Json, approximate: bool) -> Listener:
+    """A listener to one phrase; approximately, to some of its words in their order (2.2.5)."""
     wanted = fold(text).split()
 
     def match(said: str, mode: str, _most: int) -> list[Found]:
@@ -164,15 +173,16 @@ def phrase(text: str, value: Json, approximate: bool) -> Matcher:
         near = approximate and bool(words) and all(word in rest for word in words)
         return [Found(said, value)] if mode == "voice" and (words == wanted or near) else []
 
-    return match
+    parts = [text, *(text.split() if approximate else ())]
+    return Listener(match, Answers(dict.fromkeys(parts, value)))
 
 
-def keys(dtmf: str, value: Json) -> Matcher:
-    """A matcher of a sequence of keys."""
+def keys(dtmf: str, value: Json) -> Listener:
+    """A listener to a sequence of keys."""
     wanted = dtmf.replace(" ", "")
 
     def match(said: str, mode: str, _most: int) -> list[Found]:
         typed = mode == "dtmf" and said == wanted
         return [Found(wanted, value, 1.0, "dtmf")] if typed else []
 
-    return match
+    return Listener(match)

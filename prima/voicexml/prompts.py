@@ -366,7 +366,7 @@ class Speaker:
             ms = self.owner.items_of.recorder.lengths.get(name)
             if ms is not None:  # what a record has taken is played back as its words (2.3.6)
                 opened = speech.open(ms)
-                speech.parts.append(f" {name} ")
+                speech.parts += [Cue(0, "sound", name), f" {name} "]
                 speech.close(opened)
                 return
         ms = self.recording(context.page, speech.base, name, node)
@@ -404,7 +404,7 @@ class Speaker:
     def _look_at(self, uri: str) -> int | None:
         document = self.owner.document
         if document.glance is not None:
-            return length_ms(*document.glance(uri, HEADER_BYTES))
+            return length_ms(*document.glance(uri))
         whole = document.fetch(uri)
         return length_ms(whole[:HEADER_BYTES], len(whole))
 

@@ -78,7 +78,9 @@ class Questions:
             return
         if outcome == "nomatch":
             self._not_taken(context, item, resume.data)
-        raise Thrown("noinput" if outcome == "filled" else outcome, "", source(item))
+        told = resume.data.get("message")
+        message = f"{source(item)}: {told}" if told else ""
+        raise Thrown("noinput" if outcome == "filled" else outcome, message, source(item))
 
     def _not_taken(self, context: Context, item: Node, data: Data) -> None:
         """Set ``application.lastresult$`` for what no grammar takes (5.1.5).

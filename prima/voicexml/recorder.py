@@ -1,4 +1,4 @@
-"""Recordings of the user: in simulation, the words that he has said (VoiceXML 2.0, 2.3.6)."""
+"""Recordings of the user: the words that they have said, or the name of a file (VoiceXML 2.0, 2.3.6)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Data, Event, Json
+from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
 from prima.voicexml.state import Context, Flow, Heard
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
 """Formats that every platform records in (appendix E)."""
-BEEP, BEEP_MS = "[beep]", 500
+BEEP_MS = 500
 END_KEYS = "#*"
 """Keys that may end what is said in words; other keys would be taken for its last word."""
 MS_A_LETTER = 100
@@ -54,7 +54,9 @@ class Recordings:
         """Make a question ask for a recording: a beep at its end, and its bounds as cues."""
         if item.get("beep") == "true":
             said = f"{question.text} " if question.text else ""
-            beep = (Cue(len(said), "lasts", BEEP_MS), Cue(len(said) + len(BEEP), "end"))
+            at = len(said)
+            begins = (Cue(at, "lasts", BEEP_MS), Cue(at, "sound", BEEP))
+            beep = (*begins, Cue(at + len(BEEP), "end"))
             question.text = said + BEEP
             question.cues = (*question.cues, *beep)
         silence = milliseconds(item.get("finalsilence"), 0)
@@ -95,7 +97,8 @@ class Recordings:
         self, context: Context, item: Node, said: str, data: Data, more: dict[str, Json]
     ) -> None:
         ms = self.keep(said, data.get("duration"))
-        shadow = {"duration": ms, "size": len(said.encode()), **more}
+        size = data.get("size", len(said.encode()))
+        shadow = {"duration": ms, "size": size, **more}
         self.owner.items_of.fill(context, item, said, shadow)
 
 

@@ -19,10 +19,12 @@ from hypothesis import strategies as st
 from prima.devices.conductor import Conductor
 from prima.devices.goals import (
     LISTEN,
+    RECORD,
     SAY,
     Accepted,
     Back,
     Begin,
+    Bounds,
     Broke,
     Call,
     Cancel,
@@ -38,9 +40,12 @@ from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.devices.settings import Limits
 from prima.interpreter.reader import read_document
+from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
+    Cue,
+    Data,
     Delayed,
     Ended,
     Failed,
@@ -57,7 +62,6 @@ from prima.scheduler.policy import policy_named
 from prima.session import Session
 from tests.helpers.generated.plays import Play, plays
 from tests.helpers.generated.world import APPS
-from tests.invariants import check
 from tests.invariants.test_properties import examples
 
 LIMITS = Limits(accept=500, progress=None, cancel=2000)
@@ -217,13 +221,17 @@ class Desk:
             profile, lambda: {"x": 1.0, "y": 2.0, "heading": 0.0}, lambda _: limits
         )
         self.now = 0
+        self.resumes: Data | None = None
+        """From where what is started goes on after an interruption."""
 
     def order(self, verb: str, name: str, *command: object, loop: int = 0) -> list[Call]:
         made = command[0] if command else None
         assert made is None or isinstance(made, Command)
         row = TABLE_4_2[made.type] if made is not None else None
         devices = row.occupied(made.text) if row is not None and made is not None else frozenset()
-        self.conductor.order(self.now, Order(verb, name, made, devices, loop))  # type: ignore[arg-type]
+        order = Order(verb, name, made, devices, loop, self.resumes is not None)  # type: ignore[arg-type]
+        order.data = self.resumes
+        self.conductor.order(self.now, order)
         return self.conductor.drain()
 
     def report(self, report: Report) -> list[Call]:
@@ -263,7 +271,91 @@ def test_a_cancelled_start_that_was_held_back_never_begins() -> None:
     assert desk.report(Stopped(first.key)) == []  # type: ignore[union-attr]
     (halted,) = desk.at(1)
     assert isinstance(halted, Halted)
-    assert halted.data["done"] == 0.0
+    assert halted.data == {"done": 0.0, "heard": ""}
+
+
+TOLD = Command(
+    "speak",
+    {},
+    "One two. Three four. Five.",
+    lang="en",
+    cues=(
+        Cue(0, "rate", 0.5),
+        Cue(0, "mark", "a"),
+        Cue(3, "lasts", 2000),
+        Cue(8, "mark", "b"),
+        Cue(8, "pause", 700),
+        Cue(14, "end"),
+        Cue(20, "mark", "c"),
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (0, {"done": 0.0, "heard": "", "passed": 1, "mark": "a"}),
+        (11, {"done": 0.423, "heard": "One two.", "passed": 2, "mark": "b"}),
+        (26, {"done": 1.0, "heard": "One two. Three four. Five.", "passed": 3, "mark": "c"}),
+    ],
+)
+def test_x2_a_driver_tells_how_much_of_a_text_was_said(said: int, told: dict[str, object]) -> None:
+    desk = Desk()
+    (first,) = desk.order("start", "a#1", TOLD)
+    desk.order("interrupt", "a#1")
+    desk.report(Stopped(first.key, said=said))  # type: ignore[union-attr]
+    (halted,) = desk.at(400)
+    assert isinstance(halted, Halted)
+    assert halted.data == told
+
+
+def test_x2_a_text_goes_on_behind_its_mark_and_is_counted_from_its_beginning() -> None:
+    desk = Desk()
+    desk.resumes = {"passed": 2, "mark": "b"}
+    (again,) = desk.order("start", "a#1", TOLD)
+    assert isinstance(again, Begin)
+    assert again.command.text == " Three four. Five."
+    kept = (Cue(0, "rate", 0.5), Cue(0, "pause", 700), Cue(12, "mark", "c"))
+    assert again.command.cues == kept
+    desk.order("interrupt", "a#1")
+    desk.report(Stopped(again.key, said=7))
+    (halted,) = desk.at(400)
+    assert isinstance(halted, Halted)
+    assert (halted.data["heard"], halted.data["passed"]) == ("One two. Three", 2)
+
+
+def test_x2_what_was_said_to_its_end_before_it_could_stop_was_heard() -> None:
+    desk = Desk()
+    (first,) = desk.order("start", "a#1", SPEAK)
+    desk.order("interrupt", "a#1")
+    desk.report(Done(first.key))  # type: ignore[union-attr]
+    (halted,) = desk.at(400)
+    assert isinstance(halted, Halted)
+    assert halted.data == {"done": 1.0, "heard": "Hello there."}
+
+
+RECORDED = (Cue(0, "record", 8000), Cue(0, "finalsilence", 1500))
+
+
+def test_a_recording_is_a_goal_of_its_own_with_its_bounds() -> None:
+    desk = Desk()
+    question = Command("q-and-a", {"timeout": 5000}, "Speak.", lang="en", cues=RECORDED)
+    _, goal = desk.order("start", "a#1", question)
+    assert isinstance(goal, Begin)
+    assert (goal.kind, goal.bounds) == (RECORD, Bounds(8000, 1500))
+
+
+@pytest.mark.parametrize("lacks", [True, False])
+def test_what_cannot_be_recorded_ends_the_question(lacks: bool) -> None:
+    desk = Desk()
+    question = Command("q-and-a", {"timeout": 5000}, "Speak.", lang="en", cues=RECORDED)
+    said, recorded = desk.order("start", "a#1", question)
+    why = "no driver records"
+    report = Broke(recorded.key, "speech-recognition", why, lacks)  # type: ignore[union-attr]
+    assert desk.report(report) == [Cancel(said.key)]  # type: ignore[union-attr]
+    ended = Ended("a#1", True, {"outcome": "error.noresource", "message": why})
+    failed = Failed("a#1", "speech-recognition", why)
+    assert desk.at(1) == [ended if lacks else failed]
 
 
 def test_what_a_driver_says_of_a_goal_that_is_over_counts_for_nothing() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from prima.devices.ear import Ear
+from prima.devices.goals import Bounds
 from prima.devices.loop import Loop
 from prima.devices.senses import LOST_AFTER_MS, Sensors, Sight
 from prima.devices.speech import Marks, Utterance
@@ -87,7 +88,7 @@ def test_the_bounds_of_a_recording() -> None:
     assert ear.recording() is None
     ear.drop("a#1")
     ear.ask("a#2", question(Cue(0, "record", 8000), Cue(0, "finalsilence", 1500)))
-    assert ear.recording() == (8000, 1500)
+    assert ear.recording() == Bounds(8000, 1500)
 
 
 def test_sight_finds_at_once_and_loses_after_a_while() -> None:

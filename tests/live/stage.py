@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 from prima.devices.conductor import Conductor
-from prima.devices.goals import Speaks
+from prima.devices.goals import Bounds, Speaks
 from prima.devices.loop import Loop
 from prima.devices.settings import FOREVER, DriverSettings
 from prima.errors import Place
+from prima.grammar.answers import Answers
+from prima.grammar.phrases import phrases
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.drivers.sim import SimDriver
@@ -88,7 +90,7 @@ class Hearing:
     def speech_ends(self) -> None:
         """What was heard tells of it."""
 
-    def recording(self) -> tuple[int, int] | None:
+    def recording(self) -> Bounds | None:
         return self._conductor.ear.recording()
 
     def longest_answer(self) -> int:
@@ -121,6 +123,8 @@ class ScenarioDriver(SimDriver):
         self.cast = cast
         self._since = since
         """What the user does by then is left out."""
+        self.heard: list[tuple[int, list[str]]] = []
+        """What is listened for, and since when (ms)."""
         self.hearing: Callable[[], Conductor] = lambda: Conductor(cast.robot, dict)
 
     async def open(self) -> None:
@@ -139,6 +143,10 @@ class ScenarioDriver(SimDriver):
             self.world,
             Hearing(self, self.hearing()),  # type: ignore[arg-type]
         )
+
+    def hears(self, takes: Sequence[Answers]) -> None:
+        said = {phrase for one in takes for phrase in phrases(one)}
+        self.heard.append((self.world.time, sorted(said)))
 
     def report(self, reports: list[Any]) -> None:
         self._report(reports)
@@ -185,6 +193,7 @@ def live_loop(cast: Cast, policy: str = "prima", stopping: str = "0s", start: in
     )
     driver.hearing = lambda: devices.conductor
     session = make_session(cast, chosen, None, "none", None)
+    devices.listening = session.listening
     return Loop(session, devices, scenario.until)
 
 

@@ -78,7 +78,7 @@ class Harness:
         self.driver.start(Begin(key, SAY, command, SPEAKER))
 
     async def until(self, holds: Callable[[], bool]) -> None:
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(30):
             while not holds():
                 self.driver.sample(self.now())
                 await asyncio.sleep(0.005)
@@ -132,8 +132,8 @@ def test_what_is_cancelled_stops_at_once(capsys: pytest.CaptureFixture[str]) -> 
             one.say("b", "Once more.")
             await one.driver.safe()
             assert [told for told in one.told if isinstance(told, Stopped)] == [
-                Stopped("a"),
-                Stopped("b"),
+                Stopped("a", said=0),
+                Stopped("b", said=0),
             ]
             assert one.driver.due() is None
             one.driver.cancel("a")  # what is over has stopped as well

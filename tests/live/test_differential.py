@@ -7,13 +7,11 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.interpreter.elements import Document
+from prima.invariants import callers, check
 from prima.messages import Record
 from prima.scheduler.policy import policy_named
-from prima.session import AnyDocument
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.lines import finished
-from tests.invariants import check
 from tests.live.stage import carried_out, live_loop
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "documents" / "scenarios").glob("*.xml"))
@@ -42,13 +40,6 @@ def test_a_driver_gives_what_a_rehearsal_gives(path: Path) -> None:
     assert live == before
 
 
-def calls(document: AnyDocument) -> bool:
-    """Whether an application may have a state that goes on while another asks."""
-    return not isinstance(document, Document) or any(
-        node.tag == "subdialog" for node in document.node.walk()
-    )
-
-
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_invariants_hold_where_devices_take_time_to_stop(path: Path) -> None:
     loaded = api.load_scenario(path)
@@ -56,7 +47,7 @@ def test_invariants_hold_where_devices_take_time_to_stop(path: Path) -> None:
     live = carried_out(live_loop(loaded.cast, policy, stopping="60ms"))
     documents = loaded.cast.documents
     names = [doc.id for doc in documents]
-    assert check(live, policy, names, calling=[doc.id for doc in documents if calls(doc)]) == []
+    assert check(live, policy, names, calling=callers(documents)) == []
 
 
 def test_what_begins_on_a_device_that_still_stops_is_held_back_and_told() -> None:

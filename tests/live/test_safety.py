@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import pytest
 
 from prima import api
-from prima.devices.goals import Begin, Lost
+from prima.devices.goals import Accepted, Begin, Lost, Stopped
 from prima.devices.loop import Loop
 from prima.devices.settings import USUAL, DriverSettings, Limits
 from prima.errors import Place, RunError
@@ -19,7 +19,7 @@ from prima.live.devices import LiveDevices
 from prima.live.driver import TaskDriver, Unreachable
 from prima.live.shell import Shell
 from prima.live.visit import FOREVER_MS
-from prima.messages import Data, Emergency, Heard, Record
+from prima.messages import Command, Data, Emergency, Heard, Record
 from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import make_session
 from prima.sim.services import Services
@@ -36,6 +36,20 @@ TURNS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="turns" kind="fa
     <block><turn angle="10"/><turn angle="20"/><turn angle="30"/><exit/></block>
   </form>
 </prima>"""
+
+
+def test_a_goal_that_is_cancelled_before_its_first_turn_has_stopped() -> None:
+    told: list[object] = []
+
+    async def play() -> None:
+        robot = Robot(frozenset({"speaker"}))
+        robot.attach(told.append)
+        robot.start(Begin("a", "say", Command("speak", {}, "Hello."), frozenset({"speaker"})))
+        robot.cancel("a")
+        await asyncio.sleep(0.05)
+
+    asyncio.run(play())
+    assert told == [Accepted("a"), Stopped("a")]
 
 
 class Robot(TaskDriver):

@@ -9,19 +9,31 @@ from pathlib import Path
 
 import pytest
 
-from prima.devices.goals import News, Report, Speaks
+from prima.devices.goals import (
+    RECORD,
+    SAY,
+    Accepted,
+    Begin,
+    Bounds,
+    Broke,
+    News,
+    Report,
+    Speaks,
+    Stopped,
+)
 from prima.devices.profile import read_robot
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.grammar import load
 from prima.grammar.answers import Answers
 from prima.live.driver import Unreachable
-from prima.live.drivers.speech import SpeechDriver, heard, pieces, read_options
+from prima.live.drivers.speech import Piece, SpeechDriver, heard, pieces, read_options
 from prima.live.drivers.speech.jsgf import jsgf, spelt
 from prima.live.drivers.speech.nearest import hypotheses, likeness
 from prima.live.drivers.speech.segments import BEFORE_S, Segments
-from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, Pipes, seconds
+from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, Pipes, beep, seconds
 from prima.live.drivers.speech.sounds import arpabet
+from prima.live.recordings import Recordings
 from prima.messages import Command, Cue, Heard, Hypothesis
 from prima.sim.map import read_world
 
@@ -65,6 +77,8 @@ def written(abnf: str) -> str:
         ("$a = I'll go;", "i'll go"),
         ("$a = here | $a there;", "here | ( here ) there"),
         ("$a = go $NULL | $VOID away;", "go"),
+        ("$a = go | $<builtin:grammar/boolean>;", "go | ( yes | no )"),
+        ("$a = go | on $<builtin:grammar/date>;", "go"),
     ],
 )
 def test_a_grammar_is_written_for_the_recogniser(abnf: str, made: str) -> None:
@@ -171,7 +185,7 @@ def test_pipes_give_whole_chunks_and_play_in_real_time() -> None:
 
 def test_pauses_lie_between_the_pieces_of_a_text() -> None:
     command = Command("speak", {}, "One. Two.", cues=(Cue(4, "pause", 500), Cue(9, "mark", "m")))
-    assert list(pieces(command)) == [("One.", 500), ("Two.", 0)]
+    assert list(pieces(command)) == [Piece("One.", 500, 0), Piece("Two.", 0, 5)]
     assert list(pieces(Command("speak", {}, " "))) == []
 
 
@@ -243,6 +257,137 @@ def test_the_ear_is_closed_while_the_robot_speaks(duplex: str) -> None:
     asyncio.run(play())
     words = Speaks(False) if duplex == "half" else Heard("Yes.", {"confidence": 0.9})
     assert told == [Speaks(True), words]
+
+
+@pytest.mark.parametrize(("after", "said"), [(0.2, 0), (1.1, 8)])
+def test_x2_it_tells_how_much_of_a_text_was_played(after: float, said: int) -> None:
+    told: list[Report | News] = []
+    command = Command("speak", {}, "One. Two three.", lang="en", cues=(Cue(4, "pause", 100),))
+
+    async def play() -> None:
+        driver = await quick(told)
+        driver._voices = type("Slow", (), {"say": lambda *_: LOUD * 20})()
+        driver.start(Begin("a", SAY, command, frozenset({"speaker"})))
+        await asyncio.sleep(after)
+        driver.cancel("a")
+        await until(told, 2)
+        await driver.close()
+
+    asyncio.run(play())
+    assert told == [Accepted("a"), Stopped("a", said=said)]
+
+
+# Recordings ---------------------------------------------------------------------------------
+
+EAR = frozenset({"speech-recognition"})
+
+
+async def recorded(
+    told: list[Report | News], sound: bytes, bounds: Bounds, recordings: Recordings
+) -> None:
+    driver = await quick(told)
+    driver.recordings = recordings
+    command = Command("q-and-a", {"timeout": "5s"}, cues=(Cue(0, "record", 0),))
+    driver.start(Begin("a", RECORD, command, EAR, bounds=bounds))
+    await asyncio.sleep(0.01)
+    driver.pipes.put(sound)
+    await until(told, 3)
+    driver.cancel("a")
+    await until(told, 4)
+    driver.pipes.put(LOUD * 10 + QUIET * 10)
+    await until(told, 6)
+    await driver.close()
+
+
+def test_what_the_user_says_is_recorded_without_the_silence_behind_it(tmp_path: Path) -> None:
+    told: list[Report | News] = []
+    kept = Recordings(str(tmp_path / "visit.jsonl"))
+    sound = QUIET * 4 + LOUD * 20 + QUIET * 40
+    asyncio.run(recorded(told, sound, Bounds(silence=320), kept))
+    data = (tmp_path / "visit-1.wav").read_bytes()
+    facts = {"duration": 24 * 32, "size": len(data), "type": "audio/x-wav", "maxtime": False}
+    assert told[:4] == [Accepted("a"), Speaks(True), Heard("visit-1.wav", facts), Stopped("a")]
+    assert kept.samples("visit-1.wav") == QUIET * 4 + LOUD * 20
+    assert told[4:] == [Speaks(True), Heard("Yes.", {"confidence": 0.9})]
+
+
+def test_a_recording_is_cut_off_at_its_longest_time() -> None:
+    told: list[Report | News] = []
+    kept = Recordings()
+    asyncio.run(recorded(told, LOUD * 40, Bounds(longest=640), kept))
+    assert isinstance(told[2], Heard)
+    assert (told[2].text, told[2].data["maxtime"]) == ("recording-1.wav", True)
+    assert kept.samples("recording-1.wav") == LOUD * 20
+
+
+def test_a_recording_that_is_given_up_is_not_kept(tmp_path: Path) -> None:
+    told: list[Report | News] = []
+
+    async def play() -> None:
+        driver = await quick(told)
+        driver.recordings = Recordings(str(tmp_path / "visit.jsonl"))
+        driver.start(Begin("a", RECORD, Command("q-and-a"), EAR))
+        await asyncio.sleep(0.01)
+        driver.pipes.put(LOUD * 10)
+        driver.cancel("a")
+        await until(told, 4)
+        await driver.close()
+
+    asyncio.run(play())
+    assert told == [Accepted("a"), Speaks(True), Speaks(False), Stopped("a")]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_cannot_be_written_is_not_recorded(tmp_path: Path) -> None:
+    told: list[Report | News] = []
+
+    async def play() -> None:
+        driver = await quick(told)
+        driver.recordings = Recordings(str(tmp_path / "gone" / "visit.jsonl"))
+        driver.start(Begin("a", RECORD, Command("q-and-a"), EAR))
+        await asyncio.sleep(0.01)
+        driver.pipes.put(LOUD * 10 + QUIET * 80)
+        await until(told, 4)
+        await driver.close()
+
+    asyncio.run(play())
+    why = "the recording cannot be written: No such file or directory"
+    assert told[3] == Broke("a", "speech-recognition", why, lacks=True)
+
+
+def test_a_signal_and_a_recording_are_played_as_sounds() -> None:
+    kept = Recordings()
+    name = kept.keep(LOUD * 3, 16_000).text
+    text = f"You said: {name} Again [beep]"
+    cues = (Cue(9, "sound", name), Cue(25, "end"), Cue(32, "sound", "[beep]"), Cue(38, "end"))
+    made = list(pieces(Command("speak", {}, text, cues=cues)))
+    assert [(one.text, one.sound) for one in made] == [
+        ("You said:", ""),
+        (name, name),
+        ("Again", ""),
+        ("[beep]", "[beep]"),
+    ]
+
+    async def sounds() -> list[bytes]:
+        driver = await quick([])
+        driver.recordings = kept
+        found = [driver._sound_of(one, "en") for one in made]
+        await driver.close()
+        return found
+
+    voice, played, _, signal = asyncio.run(sounds())
+    assert (voice, played) == (LOUD * 10, LOUD * 3)
+    assert signal == beep() and seconds(signal) == 0.5 and set(signal) != {0}
+
+
+def test_recordings_of_other_folders_are_not_played(tmp_path: Path) -> None:
+    (tmp_path / "visits").mkdir()
+    kept = Recordings(str(tmp_path / "visits" / "visit.jsonl"))
+    assert kept.keep(LOUD, 16_000).text == "visit-1.wav"
+    (tmp_path / "visit-1.wav").write_bytes((tmp_path / "visits" / "visit-1.wav").read_bytes())
+    assert kept.samples("visit-../../visit-1.wav") is kept.samples("visit-2.wav") is None
+    again = Recordings(str(tmp_path / "visits" / "visit.jsonl"))
+    assert again.keep(LOUD, 16_000).text == "visit-2.wav", "nothing is written over"
 
 
 # Bad input ----------------------------------------------------------------------------------

@@ -6,9 +6,11 @@ memory are the sound card. What the user says is a scenario's answers.
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
+import wave
 from pathlib import Path
 from threading import Timer
 
@@ -86,6 +88,55 @@ def test_a_user_who_is_heard_takes_the_robot_along(python: str, tmp_path: Path) 
     again = prima(python, "replay", str(journal))
     told, _ = again.communicate(timeout=60)
     assert (again.returncode, told) == (0, "the same, byte for byte\n")
+
+
+def test_a_voicexml_form_is_filled_and_a_note_recorded_by_sound(
+    python: str, tmp_path: Path
+) -> None:
+    robot, journal = tmp_path / "robot.xml", tmp_path / "visit.jsonl"
+    heard = (ROOT / HERE / "heard.xml").read_text()
+    address = "documents/scenarios/follow-during-navigation.xml"
+    assert address in heard
+    robot.write_text(heard.replace(address, f"{HERE}/order.xml"))
+    running = prima(
+        python,
+        *("live", "--robot", str(robot), "--driver", f"{HERE}/user.py"),
+        *("--ea", f"{HERE}/order.vxml", "-o", str(journal)),
+    )
+    limit = Timer(LONGEST_S, running.kill)
+    limit.start()
+    told, _ = running.communicate()
+    limit.cancel()
+    assert running.returncode == 0, told
+    records = [json.loads(line) for line in journal.read_text().splitlines()]
+    (log,) = (one["message"] for one in records if one["phase"] == "log")
+    assert log.startswith("large,mushrooms and cheese,true,visit-1.wav,"), told
+    duration, cut = log.split(",")[4:]
+    assert 1000 < int(duration) < 5000 and cut == "false"
+    with wave.open(str(tmp_path / "visit-1.wav")) as recorded:
+        assert recorded.getnframes() / recorded.getframerate() == int(duration) / 1000
+    assert "parcel on my desk" in said(python, tmp_path / "visit-1.wav")
+    again = prima(python, "replay", str(journal))
+    told, _ = again.communicate(timeout=60)
+    assert (again.returncode, told) == (0, "the same, byte for byte\n")
+
+
+def said(python: str, path: Path) -> str:
+    """The words in a recording."""
+    code = (
+        "import sys, wave; from prima.live.drivers.speech.ears import OpenEar;"
+        "one = wave.open(sys.argv[1]); print(OpenEar().hear(one.readframes(one.getnframes())))"
+    )
+    done = subprocess.run(
+        [python, "-c", code, str(path)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=True,
+    )
+    return done.stdout.strip()
 
 
 SAYS = """

@@ -6,9 +6,10 @@ import asyncio
 import signal
 import sys
 from collections.abc import Callable
+from typing import NamedTuple
 
 from prima.devices import voice
-from prima.devices.goals import LISTEN, SAY, Accepted, Begin, Done, Sees, Speaks, Stopped
+from prima.devices.goals import LISTEN, RECORD, SAY, Accepted, Begin, Done, Sees, Speaks, Stopped
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
@@ -25,6 +26,18 @@ TICK_S = 0.02
 FASTEST = 1000.0
 
 
+class Saying(NamedTuple):
+    """A text that is being said. Times are ms of the run."""
+
+    timeline: voice.Timeline
+    began: int
+    ends: int
+
+    def said(self, ms: float) -> int:
+        """How many of its characters have been said after a time."""
+        return sum(1 for end in self.timeline.ends if end <= ms)
+
+
 class ConsoleDriver(Driver):
     """Speaker, speech recognition and human detection by standard error and standard input.
 
@@ -35,12 +48,12 @@ class ConsoleDriver(Driver):
 
     kind = "console"
     mapped = True
-    own = frozenset({SAY, LISTEN})
+    own = frozenset({SAY, LISTEN, RECORD})
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
-        self._saying: dict[str, int] = {}
-        """When the texts of goals have been said (ms of the run)."""
+        self._saying: dict[str, Saying] = {}
+        """What goals are saying."""
         self._listening: set[str] = set()
         self._heard: tuple[int, str] | None = None
         """What the user is saying, and when they have said it (ms of the run)."""
@@ -74,26 +87,25 @@ class ConsoleDriver(Driver):
     def start(self, goal: Begin) -> None:
         """Print what is to be said, or open the ear."""
         self.tell(Accepted(goal.key))
-        if goal.kind == LISTEN:
+        if goal.kind in (LISTEN, RECORD):
             self._listening.add(goal.key)
             return
         text, command = speaks(goal), goal.command
         rates = self.profile.voices
-        lasts = voice.timeline(command.text or "", command.lang, rates, command.cues).total
-        self._saying[goal.key] = self.now() + max(round(lasts / self._speed), 1)
+        timeline = voice.timeline(command.text or "", command.lang, rates, command.cues)
+        now, lasts = self.now(), max(round(timeline.total / self._speed), 1)
+        self._saying[goal.key] = Saying(timeline, now, now + lasts)
         if text:
             self._print(f"robot: {' '.join(visible(text).split())}")
 
     def cancel(self, key: str) -> None:
         """Stop at once."""
-        if key in self._saying:
+        said, saying = None, self._saying.pop(key, None)
+        if saying is not None:
             self._print("robot: (breaks off)")
-        self._end(key)
-
-    def _end(self, key: str) -> None:
-        self._saying.pop(key, None)
+            said = saying.said((self.now() - saying.began) * self._speed)
         self._listening.discard(key)
-        self.tell(Stopped(key))
+        self.tell(Stopped(key, said=said))
 
     async def safe(self) -> None:
         """Fall silent."""
@@ -111,11 +123,11 @@ class ConsoleDriver(Driver):
     def due(self) -> int | None:
         """When a text has been said, or the user's words."""
         heard = [self._heard[0]] if self._heard is not None else []
-        return min([*self._saying.values(), *heard], default=None)
+        return min([*(one.ends for one in self._saying.values()), *heard], default=None)
 
     def sample(self, now: int) -> None:
         """Tell what has been said by now."""
-        for key in [key for key, ends in self._saying.items() if ends <= now]:
+        for key in [key for key, one in self._saying.items() if one.ends <= now]:
             del self._saying[key]
             self.tell(Done(key))
         if self._heard is not None and self._heard[0] <= now:

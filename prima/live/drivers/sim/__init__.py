@@ -6,6 +6,7 @@ import math
 
 from prima.devices.goals import (
     LISTEN,
+    RECORD,
     Accepted,
     Again,
     At,
@@ -64,7 +65,7 @@ class SimDriver(Driver):
     def start(self, goal: Begin) -> None:
         """Begin a goal at the latest instant."""
         self.tell(Accepted(goal.key))
-        if goal.kind != LISTEN:
+        if goal.kind not in (LISTEN, RECORD):
             self._report(self.body.take(self.world.time, goal))
 
     def cancel(self, key: str) -> None:

