@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
-EXTRAS := dev export editor bench reachy
+EXTRAS := dev experiments cluster export editor bench reachy
 
 .PHONY: demo test test-live check mutants bench attack schemas build lock clean
 

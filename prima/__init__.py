@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         stage,
         validate,
     )
+    from prima.experiments.functions import explore, sweep
 
 __version__ = "1.0.0"
 
@@ -48,6 +49,7 @@ __all__ = [
     "documents_folder",
     "explain",
     "explain_row",
+    "explore",
     "export",
     "load",
     "load_scenario",
@@ -55,17 +57,22 @@ __all__ = [
     "rehearse",
     "replay",
     "stage",
+    "sweep",
     "validate",
 ]
 
 
+ELSEWHERE = {
+    "Difference": "prima.transcript.diff",
+    "explore": "prima.experiments.functions",
+    "sweep": "prima.experiments.functions",
+}
+"""Modules of names that are not in :mod:`prima.api`."""
+
+
 def __getattr__(name: str) -> Any:
     if name in __all__:
-        from prima import api
+        from importlib import import_module
 
-        if name == "Difference":
-            from prima.transcript.diff import Difference
-
-            return Difference
-        return getattr(api, name)
+        return getattr(import_module(ELSEWHERE.get(name, "prima.api")), name)
     raise AttributeError(f"module 'prima' has no attribute {name!r}")

@@ -154,6 +154,7 @@ def rehearse(
     isolate: str = "ea",
     patience: int | None = None,
     visits: bool = False,
+    rows: bool = False,
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -172,11 +173,14 @@ def rehearse(
         patience: rule E6's bound (ms) on how long an application may keep others from the
             speaker, 0 for no bound; by default the scenario's own.
         visits: whether to keep the elements that applications reach in their documents.
+        rows: whether to make the table's rows even if the records are not kept.
 
     Raises:
         DocumentError: documents have errors.
         UsageError: a policy or file is unknown, or a host is not a host name.
     """
+    from collections import deque
+
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
@@ -193,15 +197,24 @@ def rehearse(
     head = run_record(loaded, name, bound, patience)
     measure = Measure()
     made = Transcript([], cast.scenario.id, measure=measure)
-    for records in chain([[head]], rehearsal.run()):
-        for record in records:
-            measure.add(Entry(record, record["time"] / 1000))
-            if keep:
-                made.records.append(finished(record))
-            if sink is not None:
-                sink(line(record))
-        if visits:
-            made.visits += rehearsal.visits
+
+    def entries() -> Iterator[Entry]:
+        for records in chain([[head]], rehearsal.run()):
+            for record in records:
+                entry = Entry(record, record["time"] / 1000)
+                measure.add(entry)
+                yield entry
+                if keep:
+                    made.records.append(finished(record))
+                if sink is not None:
+                    sink(line(record))
+            if visits:
+                made.visits += rehearsal.visits
+
+    if rows:
+        made.made = _made_of(made.name, entries())
+    else:
+        deque(entries(), maxlen=0)
     made.failures = list(rehearsal.session.failures)
     made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 Json = Any
 Data = Mapping[str, Json]
@@ -29,6 +29,10 @@ def line_of(source: str) -> str | None:
     """The ``FILE:LINE`` of who asked, for a record, of a place with its column; none of nothing."""
     line = source.rpartition(":")[0]
     return line if line.rpartition(":")[2].isdigit() else source or None
+
+
+BEEP: Final = "[beep]"
+"""The signal before a recording, as it stands in a text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +57,11 @@ class Cue:
         "record",
         "finalsilence",
         "longest",
+        "sound",
     ]
     """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
-    ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
+    ``sound``: what stands before the next ``end`` is the sound ``value``, the signal ``[beep]`` or
+    a recording that the device has made. ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
     ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
     ``earlier``: marks of what the application said just before count for this question.
     ``hotword``: what the user says breaks off this question only if it is understood.
@@ -299,7 +305,8 @@ class Heard:
     not tell), and ``alternatives``, what else it may have been, each an object with ``text`` and
     ``confidence``. Of a question with marks: ``markname``, the last one passed when the user began to speak,
     or None, and ``marktime``, the ms that were played from there on. Of a recording:
-    ``duration``, its ms, and ``maxtime``, whether it was cut off. ``toolong``: it took longer than
+    ``duration``, its ms, and ``maxtime``, whether it was cut off; of one that is a file, which is
+    the text, also ``size``, its bytes, and ``type``, its media type. ``toolong``: it took longer than
     the question lets it (``longest``)."""
 
     @property

@@ -74,9 +74,24 @@ def spread(
     Raises:
         RunError: no process can be started.
     """
+    with staff(function, workers, begin, leave) as results:
+        yield from results(items)
+
+
+@contextmanager
+def staff(
+    function: Callable[[Item], Made],
+    workers: int,
+    begin: Callable[[], object] | None = None,
+    leave: Callable[[], object] | None = None,
+) -> Iterator[Callable[[Iterable[Item]], Iterator[tuple[Item, Made | Died]]]]:
+    """Processes for several lots of items; gives what makes the results of one lot, as `spread`.
+
+    The results of a lot are taken to their end before those of the next.
+    """
     crew = _Crew(function, begin, leave, workers)
     try:
-        yield from crew.results(items)
+        yield crew.results
     finally:
         crew.end()
 

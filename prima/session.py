@@ -378,15 +378,15 @@ class Session:
         return [app] if app is not None and name in self._loaded and not app.over else []
 
     def listening(self) -> list[Answers]:
-        """What is listened for: by the question that listens, and by links (V1).
-
-        What a VoiceXML document listens for is not among it.
-        """
-        found: list[Answers] = []
+        """What is listened for: by the question that listens or may be interrupted, and by links (V1)."""
+        asked: list[Answers | None] = []
         question = self.mediator.question()
         if question is not None and question.run is not None and self._hears(question):
-            answers = self.apps[question.app.name].answers(question.run.number)
-            found += [answers] if answers is not None else []
+            asked.append(self.apps[question.app.name].answers(question.run.number))
+        for ab in self.mediator.memory.running.values():
+            if ab.command is not None and not ab.silent:
+                asked.append(self.apps[ab.app.name].open_during(ab.command))
+        found = [answers for answers in asked if answers is not None]
         for app in self._in_order():
             found += app.listening()
         return found

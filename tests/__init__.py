@@ -8,6 +8,6 @@ from hypothesis import settings
 ROOT = Path(__file__).resolve().parent.parent
 """The checkout."""
 
-pytest.register_assert_rewrite("tests.helpers", "tests.invariants")
+pytest.register_assert_rewrite("tests.helpers")
 settings.register_profile("untimed", deadline=None)  # a busy machine is no fault
 settings.load_profile("untimed")

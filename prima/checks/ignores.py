@@ -30,6 +30,7 @@ from prima.errors.diagnoses.validation import (
     UNUSED_IGNORE,
 )
 from prima.markup.reader import decode
+from prima.markup.toml import parse_toml
 from prima.markup.tree import MARKUP, Source
 
 SETTINGS = "prima.toml"
@@ -314,13 +315,11 @@ def comments(text: str) -> Iterator[tuple[int, str, int]]:
 
 def read_settings(file: str) -> Settings:
     """Read a ``prima.toml``."""
-    import tomllib  # most projects have none
-
     settings = Settings(file)
     try:
         with open(file, encoding="utf-8") as stream:
             text = stream.read()
-        tree = tomllib.loads(text)
+        tree = parse_toml(text)
     except (OSError, ValueError) as error:
         settings.problems.append(NOT_TOML.at(Place(file), error=error))
         return settings

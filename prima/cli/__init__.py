@@ -33,6 +33,8 @@ COMMANDS = {
     "export": "Write a transcript for ELAN, Praat, a player, Foxglove, a table.",
     "explain": "Explain a rule, a problem's code, or a transcript's row.",
     "study": "Measure situations under every policy.",
+    "sweep": "Run scenarios over many values; write a tidy table.",
+    "explore": "Find every order of events that other timings bring.",
     "documents": "Copy the documents that come with PRIMA.",
     "schemas": "Copy the schemas of documents, for editors.",
     "lsp": "Serve an editor while documents are written.",

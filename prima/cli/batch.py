@@ -5,8 +5,6 @@ from __future__ import annotations
 import codecs
 import json
 import os
-import sys
-import time
 from collections import Counter
 from contextlib import closing
 
@@ -14,7 +12,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli import common
-from prima.cli.common import PROGRESS_SECONDS, clean, coloured, put, tell
+from prima.cli.common import Progress, clean, coloured, put, tell
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped
 from prima.experiments.batch import run_batch
@@ -65,7 +63,7 @@ def run_all(
     """
     warm_up()
     plan = Plan(paths, policies, output)
-    table, progress = _Table(plan, form), _Progress(len(plan))
+    table, progress = _Table(plan, form), Progress(len(plan))
     exits: Counter[int] = Counter()
     earlier = 0
     try:
@@ -112,42 +110,3 @@ class _Table:
         run = f"{row.scenario}, {row.policy}" if row.policy else row.scenario
         for message in row.messages:
             tell(f"prima: {message if message.startswith(row.scenario) else f'{run}: {message}'}")
-
-
-class _Progress:
-    """Shows the progress of a batch on a terminal."""
-
-    def __init__(self, total: int) -> None:
-        self.total = total
-        self.terminal = sys.stderr.isatty()
-        self.among_rows = sys.stdout.isatty()
-        self.shown = ""
-        self.last = self.began = 0.0
-        """When it was shown last, and when the first run was done."""
-
-    def show(self, done: int, bad: int) -> None:
-        """Show how many runs are done, and how many of them failed."""
-        now = time.monotonic()
-        self.began = self.began or now
-        seldom = not self.among_rows and now - self.last < PROGRESS_SECONDS
-        if not self.terminal or seldom:
-            return
-        self.last = now
-        wrong = f", {bad} not fine" if bad else ""
-        text = f"{done} of {self.total} runs{wrong}"
-        if done > 1:
-            left = (now - self.began) / (done - 1) * (self.total - done)
-            text += f"; about {left:.0f} s left"
-        click.echo(f"\r{text.ljust(len(self.shown))} ", err=True, nl=False)
-        self.shown = text
-
-    def make_room(self, messages: bool) -> None:
-        """Erase it where a row, or messages, would be printed over it."""
-        if messages or self.among_rows:
-            self.clear()
-
-    def clear(self) -> None:
-        """Erase it, so that something else can be printed."""
-        if self.shown:
-            click.echo(f"\r{' ' * len(self.shown)} \r", err=True, nl=False)
-        self.shown = ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from typing import IO, TYPE_CHECKING, Any
@@ -70,6 +71,20 @@ map_option = click.option(
 )
 MAPS = '--map works only with --fa and --ea. In a scenario write <application src="..." uri="https://..."/>.'
 """The error for ``--map`` with a scenario."""
+MOST_WORKERS = 256
+"""More processes than this are a typing error."""
+workers_option = click.option(
+    "-j",
+    "--workers",
+    type=click.IntRange(1, MOST_WORKERS),
+    help="Number of runs at once. By default the number of cores.",
+)
+on_option = click.option(
+    "--on",
+    "address",
+    metavar="tcp://HOST:PORT",
+    help="Make the runs on the workers of this scheduler of Dask.",
+)
 fa_option = click.option(
     "--fa",
     "fas",
@@ -323,8 +338,6 @@ def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:
 
 def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
     """Write lines, and show the progress of the run now and then."""
-    import time
-
     shown = time.monotonic()
     count = 0
 
@@ -338,3 +351,42 @@ def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
             click.echo(f"\r{seconds} s, {count} records ", err=True, nl=False)
 
     return note
+
+
+class Progress:
+    """Shows the progress of many runs on a terminal."""
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self.terminal = sys.stderr.isatty()
+        self.among_rows = sys.stdout.isatty()
+        self.shown = ""
+        self.last = self.began = 0.0
+        """When it was shown last, and when the first run was done."""
+
+    def show(self, done: int, bad: int) -> None:
+        """Show how many runs are done, and how many of them failed."""
+        now = time.monotonic()
+        self.began = self.began or now
+        seldom = not self.among_rows and now - self.last < PROGRESS_SECONDS
+        if not self.terminal or seldom:
+            return
+        self.last = now
+        wrong = f", {bad} not fine" if bad else ""
+        text = f"{done} of {self.total} runs{wrong}"
+        if done > 1:
+            left = (now - self.began) / (done - 1) * (self.total - done)
+            text += f"; about {left:.0f} s left"
+        click.echo(f"\r{text.ljust(len(self.shown))} ", err=True, nl=False)
+        self.shown = text
+
+    def make_room(self, messages: bool) -> None:
+        """Erase it where a row, or messages, would be printed over it."""
+        if messages or self.among_rows:
+            self.clear()
+
+    def clear(self) -> None:
+        """Erase it, so that something else can be printed."""
+        if self.shown:
+            click.echo(f"\r{' ' * len(self.shown)} \r", err=True, nl=False)
+        self.shown = ""

@@ -30,6 +30,7 @@ from prima.cli.common import (
     tell,
     tell_problems,
     why_option,
+    workers_option,
     write_for_programs,
 )
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
     from prima.experiments.plan import Options
     from prima.loading import Loaded
 
-MOST_WORKERS = 256
-"""More processes than this are a typing error."""
 FOLDER_ENDINGS = ("/", os.sep)
 
 
@@ -76,12 +75,7 @@ FOLDER_ENDINGS = ("/", os.sep)
     type=click.Path(),
     help="Run the scenarios listed in this file, one per line; - is standard input.",
 )
-@click.option(
-    "-j",
-    "--workers",
-    type=click.IntRange(1, MOST_WORKERS),
-    help="Number of runs at once. By default the number of cores.",
-)
+@workers_option
 @click.option("--resume", is_flag=True, help="Skip runs whose transcripts are up to date.")
 @map_option
 @limit_option

@@ -188,7 +188,6 @@ def _run(options: Options, job: Job) -> Row:
     inputs = Inputs(job.scenario)
     with in_place_of_files(inputs):
         loaded = api.load_scenario(job.scenario)
-        inputs.look_at_sounds(loaded)
         if not job.stem:
             made = _rehearse(options, loaded, job.policy, None)
             return _row(job, loaded, made)

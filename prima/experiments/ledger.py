@@ -6,16 +6,11 @@ import hashlib
 import json
 import os
 import stat
-from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from prima import __version__
 from prima.experiments.plan import LEDGER, TRANSCRIPT, Job, Options, Row
-
-if TYPE_CHECKING:
-    from prima.loading import Loaded
 
 MOST_LEDGER = 1_000_000
 """Maximum length of a ledger (characters)."""
@@ -29,47 +24,23 @@ KEPT = (
 """The fields of a row that a ledger keeps; the rest follows from the job."""
 
 
-class Inputs(Mapping[Path, bytes]):
+class Inputs:
     """Records the digest of every file that a run reads; provides none itself."""
+
+    folder = ""
 
     def __init__(self, scenario: str) -> None:
         self.digests: dict[str, str | None] = {}
         """By paths from the scenario's folder; None if there is no such file."""
-        self._folder = os.path.dirname(os.path.realpath(scenario))
+        self._beside = os.path.dirname(os.path.abspath(scenario))
 
-    def __bool__(self) -> bool:
-        return True
-
-    def __getitem__(self, path: Path) -> bytes:
-        name = os.path.relpath(path, self._folder)
+    def text(self, path: Path) -> None:
+        """Record a file that is read."""
+        name = os.path.relpath(path, self._beside)
         if name not in self.digests:
             self.digests[name] = file_digest(path)
-        raise KeyError(path)
 
-    def __iter__(self) -> Iterator[Path]:
-        return iter(())
-
-    def __len__(self) -> int:
-        return 0
-
-    def look_at_sounds(self, loaded: Loaded) -> None:
-        """Record audio files too, of which applications read only the beginning."""
-        from prima.interpreter.elements import Document
-
-        for document in loaded.cast.documents:
-            if not isinstance(document, Document) and document.glance is not None:
-                folder = Path(document.folder).resolve()
-                document.glance = partial(self._glance, document.glance, folder)
-
-    def _glance(
-        self, glance: Callable[[str, int], tuple[bytes, int]], folder: Path, uri: str, most: int
-    ) -> tuple[bytes, int]:
-        from urllib.parse import unquote, urlsplit
-
-        path = (folder / unquote(urlsplit(uri).path).lstrip("/")).resolve()
-        if folder in path.parents:
-            self.get(path)
-        return glance(uri, most)
+    head = text
 
 
 _digests: dict[tuple[str, int, int, int], str] = {}
@@ -111,7 +82,7 @@ def earlier_row(options: Options, job: Job) -> Row | None:
     try:
         with open(f"{job.stem}{LEDGER}", encoding="utf-8") as stream:
             ledger = json.loads(stream.read(MOST_LEDGER))
-        folder = os.path.dirname(os.path.realpath(job.scenario))
+        folder = os.path.dirname(os.path.abspath(job.scenario))
         inputs: dict[str, str | None] = ledger["inputs"]
         if (
             ledger["key"] != key_of(options, job)

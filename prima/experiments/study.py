@@ -10,6 +10,7 @@ from pathlib import Path
 
 from prima.api import Transcript, documents_folder, load_scenario, rehearse
 from prima.errors import UsageError
+from prima.errors.visible import visible
 from prima.messages import Json
 from prima.scheduler import policy as known
 from prima.transcript.criteria import Criteria
@@ -134,7 +135,7 @@ def format_csv(results: Iterable[Result]) -> str:
     )
     writer.writeheader()
     for result in results:
-        writer.writerow({**result_data(result), "failures": "; ".join(result.failures)})
+        writer.writerow({**result_data(result), "failures": visible("; ".join(result.failures))})
     return made.getvalue()
 
 

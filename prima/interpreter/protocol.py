@@ -95,12 +95,16 @@ class App(Bounds[Evaluator], ABC):
         return
 
     def answers(self, run: int) -> Answers | None:
-        """What the question of a run takes, if that can be listed."""
+        """What the question of a run takes; None if it is not this application's."""
         return None
 
     def listening(self) -> Sequence[Answers]:
-        """What its links take that listen all the time, as far as that can be listed."""
+        """What its links take that listen all the time."""
         return ()
+
+    def open_during(self, command: Command) -> Answers | None:
+        """What the question behind a Command takes while that is carried out, if it listens then."""
+        return None
 
     def go_on_entering(self, state: int) -> None:
         """The events raised on entering a state have been handled (C6)."""

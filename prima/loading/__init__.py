@@ -486,7 +486,39 @@ def load_scenario(path: str | Path, robot: str = "") -> Loaded:
         DocumentError: with the problems of all files, if any is an error.
         UsageError: the scenario's file cannot be read.
     """
-    return _without_ignored(_load(path_of(path), read_file(path), robot=robot))
+    return load_text(path, read_file(path), robot)
+
+
+def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:
+    """Load a scenario from memory; see :func:`load_scenario`.
+
+    Args:
+        path: the file whose folder its paths begin at; it is not read.
+        data: the scenario's text.
+        robot: the path of another robot than the scenario's.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+    """
+    return _without_ignored(_load(path_of(path), data, robot=robot))
+
+
+def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
+    """What was loaded, with another text of its scenario that names the same files.
+
+    Raises:
+        DocumentError: the text has errors.
+    """
+    from dataclasses import replace
+
+    from prima.sim.scenario import read_scenario
+
+    scenario = read_scenario(str(path), data)
+    for service, before in zip(scenario.services, loaded.cast.scenario.services, strict=True):
+        for reply, old in zip(service.replies, before.replies, strict=True):
+            reply.body = old.body
+    files = {**loaded.files, path_of(path).name: _digest(data)}
+    return Loaded(replace(loaded.cast, scenario=scenario), files, loaded.problems)
 
 
 def _without_ignored(loaded: Loaded) -> Loaded:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
-from os.path import exists, getsize, isfile
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from os.path import abspath, exists, getsize, isfile, join, normpath
+from typing import TYPE_CHECKING, Protocol
 
 from prima.errors import DocumentError, UsageError
 from prima.markup.limits import LIMITS
@@ -17,22 +17,52 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-_texts: ContextVar[Mapping[Path, bytes] | None] = ContextVar("texts", default=None)
-"""What counts in place of files on the disk, by resolved paths."""
+class Files(Protocol):
+    """What counts in place of files on the disk."""
+
+    @property
+    def folder(self) -> str:
+        """From where relative paths lead; empty for the current folder."""
+
+    def text(self, path: Path) -> bytes | None:
+        """The content of a file by its absolute path, or None to read it from the disk."""
+
+    def head(self, path: Path) -> tuple[bytes, int] | None:
+        """The first ``HEADER_BYTES`` of a file and its size, or None."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """Contents in place of files: documents of an editor, or of another machine."""
+
+    texts: Mapping[Path, bytes]
+    """By absolute paths."""
+    heads: Mapping[Path, tuple[bytes, int]] = field(default_factory=dict)
+    folder: str = ""
+
+    def text(self, path: Path) -> bytes | None:
+        """The content of a file; links on the disk count as the file that they lead to."""
+        if not self.texts:
+            return None
+        text = self.texts.get(path)
+        return self.texts.get(path.resolve()) if text is None else text
+
+    def head(self, path: Path) -> tuple[bytes, int] | None:
+        """The first bytes of a file and its size."""
+        return self.heads.get(path)
+
+
+_files: ContextVar[Files | None] = ContextVar("files", default=None)
 
 
 @contextmanager
-def in_place_of_files(texts: Mapping[Path, bytes]) -> Iterator[None]:
-    """Let the bytes of documents that lie open in an editor count in place of their files.
-
-    Args:
-        texts: the bytes by resolved paths.
-    """
-    token = _texts.set(texts)
+def in_place_of_files(files: Files) -> Iterator[None]:
+    """Let contents count in place of files on the disk."""
+    token = _files.set(files)
     try:
         yield
     finally:
-        _texts.reset(token)
+        _files.reset(token)
 
 
 def path_of(path: str | Path) -> Path:
@@ -42,13 +72,19 @@ def path_of(path: str | Path) -> Path:
     return Path(path)
 
 
+def _absolute(path: str | Path) -> Path:
+    """A path without links followed; relative paths lead from where the documents were."""
+    files = _files.get()
+    return path_of(abspath(join(files.folder if files else "", path)))
+
+
 def _open_text(path: str | Path) -> bytes | None:
     """What counts in place of a file, if anything does."""
-    texts = _texts.get()
-    if not texts:
+    files = _files.get()
+    if files is None:
         return None
     try:
-        return texts.get(path_of(path).resolve())
+        return files.text(_absolute(path))
     except (OSError, ValueError, RuntimeError):
         return None
 
@@ -79,6 +115,20 @@ def read_file(path: str | Path) -> bytes:
         raise UsageError(f"{path!r} is not a file's name.") from None
 
 
+def read_head(path: Path) -> tuple[bytes, int]:
+    """The first ``HEADER_BYTES`` of a file, and its size.
+
+    Raises:
+        OSError: there is no such file.
+    """
+    from prima.voicexml.recordings import HEADER_BYTES
+
+    if not path.is_file():
+        raise FileNotFoundError("there is no such file")
+    with path.open("rb") as stream:
+        return stream.read(HEADER_BYTES), path.stat().st_size
+
+
 @dataclass(frozen=True, slots=True)
 class Folder:
     """The folder of a VoiceXML application, which may name its files and no others."""
@@ -101,8 +151,8 @@ class Folder:
         except DocumentError as error:
             raise FetchError(error.problems[0].message) from None
 
-    def glance(self, uri: str, most: int) -> tuple[bytes, int]:
-        """The first bytes of a file, and how many it has.
+    def glance(self, uri: str) -> tuple[bytes, int]:
+        """The first ``HEADER_BYTES`` of a file, and how many it has.
 
         Raises:
             FetchError: there is no such file in the folder.
@@ -111,10 +161,8 @@ class Folder:
 
         try:
             target = self._inside(uri)
-            if not target.is_file():
-                raise FetchError("there is no such file")
-            with target.open("rb") as stream:
-                return stream.read(most), target.stat().st_size
+            files = _files.get()
+            return (files and files.head(target)) or read_head(target)
         except (OSError, ValueError) as error:
             raise FetchError(str(error)) from None
 
@@ -127,11 +175,12 @@ class Folder:
         parts = urlsplit(uri)
         if parts.scheme not in ("", "file"):
             raise FetchError(f"{parts.scheme}: is not fetched: no network is used")
-        root = path_of(self.path).resolve()
+        root = _absolute(self.path)
+        target = path_of(normpath(root / unquote(parts.path).lstrip("/")))
         try:
-            target = (root / unquote(parts.path).lstrip("/")).resolve()
+            inside = target.resolve().is_relative_to(root.resolve())
         except (OSError, ValueError, RuntimeError) as error:  # a NUL, links that lead round
             raise FetchError(f"it names no file: {error}") from None
-        if root != target and root not in target.parents:
+        if not inside or not target.is_relative_to(root):
             raise FetchError("it is outside the application's folder")
         return target

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, in_order
-from prima.loading.files import in_place_of_files
+from prima.loading.files import Contents, in_place_of_files
 from prima.lsp.scan import Page
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
 from prima.lsp.text import Lines
@@ -49,7 +49,7 @@ def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
     text = workspace.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with in_place_of_files(workspace.unsaved()):
+    with in_place_of_files(Contents(workspace.unsaved())):
         try:
             problems = loading.validate([path])
         except DocumentError as error:

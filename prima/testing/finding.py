@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -13,6 +12,7 @@ from prima.errors import DocumentError, UsageError, did_you_mean
 from prima.loading.files import read_file
 from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.toml import parse_toml
 from prima.testing.golden import golden_of
 
 SCENARIO = re.compile(rb"<(?:[\w.-]+:)?scenario\s[^<]*urn:prima:scenario:")
@@ -103,7 +103,7 @@ def _patterns(file: Path) -> list[str]:
     """
     shown = os.path.relpath(file)
     try:
-        settings = tomllib.loads(read_file(file).decode()).get("tool", {}).get("prima", {})
+        settings = parse_toml(read_file(file).decode()).get("tool", {}).get("prima", {})
     except (ValueError, AttributeError) as error:
         raise UsageError(f"{shown}: cannot be read: {error}.") from None
     if not isinstance(settings, dict):

@@ -50,7 +50,11 @@ class Measure:
 
     def summary(self) -> Summary:
         """The result so far."""
-        return _summary(self._last, self._observer.result(), self._collisions, self._starved)
+        return _summary(self._last, self.criteria(), self._collisions, self._starved)
+
+    def criteria(self) -> Criteria:
+        """The thesis's criteria so far."""
+        return self._observer.result()
 
 
 def summarize(run: Run) -> Summary:

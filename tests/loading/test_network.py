@@ -223,7 +223,7 @@ def test_what_a_host_sends_names_no_file_where_a_file_names_it(
 def test_a_file_that_a_page_of_a_host_plays_is_not_looked_at() -> None:
     looked: list[str] = []
 
-    def glance(uri: str, most: int) -> tuple[bytes, int]:
+    def glance(uri: str) -> tuple[bytes, int]:
         looked.append(uri)
         return b"", 0
 

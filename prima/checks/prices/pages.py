@@ -111,7 +111,7 @@ class Pages:
         try:
             uri = urldefrag(page.join(page.base(), name))[0]
             if self.document.glance is not None:
-                return length_ms(*self.document.glance(uri, HEADER_BYTES))
+                return length_ms(*self.document.glance(uri))
             whole = self.document.fetch(uri)
             return length_ms(whole[:HEADER_BYTES], len(whole))
         except (FetchError, ValueError):

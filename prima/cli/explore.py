@@ -1,0 +1,120 @@
+"""prima explore."""
+
+from __future__ import annotations
+
+import json
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import (
+    Progress,
+    duration_option,
+    format_option,
+    isolate_option,
+    limit_option,
+    on_option,
+    put,
+    raise_limits,
+    suggesting,
+    tell,
+    workers_option,
+    write_for_programs,
+)
+from prima.errors import UsageError, counted
+from prima.scheduler.policy import POLICIES
+
+
+@click.command()
+@click.argument("scenario", type=click.Path())
+@click.option(
+    "--move",
+    "moves",
+    metavar="PATH",
+    multiple=True,
+    help="A time of the scenario; may be repeated. By default that of each <when>.",
+)
+@duration_option("--within", "How far each is moved, to both sides; default 5s.")
+@click.option(
+    "--depth", type=click.IntRange(1, 4), default=2, help="How many are moved at once; default 2."
+)
+@duration_option("--step", "Try besides all times in steps of this.")
+@click.option("--runs", type=click.IntRange(1), default=20_000, help="Runs at most; default 20000.")
+@click.option(
+    "--policy", default="", shell_complete=suggesting(*POLICIES), help="Run under this policy."
+)
+@click.option("-o", "--output", type=click.Path(), help="A folder for the orders and problems.")
+@workers_option
+@on_option
+@click.option("--resume", is_flag=True, help="Use the runs that the folder has already.")
+@format_option
+@isolate_option
+@limit_option
+def explore(
+    scenario: str,
+    moves: tuple[str, ...],
+    within: int | None,
+    depth: int,
+    step: int | None,
+    runs: int,
+    policy: str,
+    output: str | None,
+    workers: int | None,
+    address: str | None,
+    resume: bool,
+    form: str,
+    isolate: str,
+    limits: tuple[str, ...],
+) -> None:
+    """Find every order of events that other timings bring, and those that break something.
+
+    Each time is moved to just before and at every instant of the run: ends, windows,
+    timeouts. In every run the scenario's expectations and the rules of mediation are
+    checked, and that it ends. Exit code 1 if something is broken.
+
+    \b
+    prima explore visit.xml
+    prima explore visit.xml --move touch --move "when[2]" --within 5s -o explored/
+    """
+    from prima.experiments.cluster import pool_of
+    from prima.experiments.explore import Exploration, Plan
+    from prima.experiments.explored import Explored, carried_out
+
+    raise_limits(limits)
+    if resume and output is None:
+        raise UsageError("--resume needs the folder: -o FOLDER.")
+    plan = Plan(
+        scenario,
+        moves,
+        5_000 if within is None else within,
+        depth,
+        step or 0,
+        runs,
+        policy,
+        isolate,
+    )
+    exploration = Exploration(plan)
+    progress = Progress(runs)
+    numbers = carried_out(exploration, pool_of(address, workers), output, resume)
+    try:
+        kept = next(numbers)
+        if resume:
+            tell(f"{counted(kept, 'run')} had been made before")
+        for number in numbers:
+            progress.show(number, 0)
+    except KeyboardInterrupt:
+        progress.clear()
+        if output is not None:
+            tell(f"{output}: the runs made so far are kept; --resume goes on.")
+        raise click.Abort from None
+    finally:
+        progress.clear()
+    explored = Explored(exploration)
+    if form == "json":
+        write_for_programs()
+        put(json.dumps(explored.data(), indent=1, ensure_ascii=False))
+    else:
+        for line in explored.text():
+            put(line)
+    if exploration.problems:
+        raise Exit(1)

@@ -1,0 +1,211 @@
+"""prima sweep."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+from click.exceptions import Exit
+
+from prima.cli.common import (
+    PATIENCE,
+    Choice,
+    Progress,
+    bound_option,
+    check_output,
+    duration_option,
+    isolate_option,
+    limit_option,
+    on_option,
+    put,
+    raise_limits,
+    suggesting,
+    tell,
+    workers_option,
+    write_for_programs,
+)
+from prima.errors import UsageError, counted
+from prima.scheduler.policy import POLICIES, USAGE
+
+if TYPE_CHECKING:
+    from prima.experiments.pools import Pool
+    from prima.experiments.sweep import Output, Sweep
+
+MANY = 100_000
+"""Runs of which it is told before how long they take."""
+
+
+@click.command()
+@click.argument("scenarios", metavar="SCENARIO...|STUDY.toml", nargs=-1, type=click.Path())
+@click.option(
+    "--vary",
+    "varied",
+    metavar="PATH=LEVELS",
+    multiple=True,
+    help="A value of the scenario and its levels; may be repeated.",
+)
+@click.option(
+    "--policy",
+    "policies",
+    multiple=True,
+    shell_complete=suggesting(*POLICIES),
+    help=f"Run under this policy; may be repeated: {USAGE}.",
+)
+@click.option("--seeds", type=click.IntRange(1), help="Runs of each combination. By default 1.")
+@click.option(
+    "--design",
+    type=Choice(["full", "random", "lhs"]),
+    help="All combinations (full), random ones, or a Latin hypercube (lhs).",
+)
+@click.option("--runs", type=click.IntRange(1), help="Number of runs, for random and lhs.")
+@click.option(
+    "-o", "--output", type=click.Path(), help="Write the table here: a .csv or .parquet file."
+)
+@workers_option
+@on_option
+@click.option("--resume", is_flag=True, help="Go on behind the rows that are there already.")
+@click.option("--plan", is_flag=True, help="Only tell how many runs these are, and how long.")
+@bound_option
+@duration_option("--patience", PATIENCE)
+@isolate_option
+@limit_option
+def sweep(
+    scenarios: tuple[str, ...],
+    varied: tuple[str, ...],
+    policies: tuple[str, ...],
+    seeds: int | None,
+    design: str | None,
+    runs: int | None,
+    output: str | None,
+    workers: int | None,
+    address: str | None,
+    resume: bool,
+    plan: bool,
+    bound: int | None,
+    patience: int | None,
+    isolate: str,
+    limits: tuple[str, ...],
+) -> None:
+    """Run scenarios over many values, and write one tidy table, a row for each run.
+
+    Levels are a list (Yes.|No.), a range (0s..20s/200ms), or a distribution by seed
+    (normal(5s,1s)). Without -o the table goes to stdout, as CSV. With it, a folder
+    beside the table holds one transcript for each order in which things happened.
+
+    \b
+    prima sweep visit.xml --vary "when[2].after=0s..20s/200ms" --policy prima --policy fifo -o sweep.csv
+    prima sweep visit.xml --vary "person.speed=normal(1,0.2)" --seeds 100 -o sweep.parquet
+    prima sweep study.toml -o sweep.parquet --resume
+    """
+    from prima.experiments.cluster import pool_of
+    from prima.experiments.studyfile import question_of
+    from prima.experiments.sweep import Output, Sweep
+
+    raise_limits(limits)
+    question = question_of(
+        scenarios,
+        _vary(varied),
+        policies=policies or None,
+        seeds=seeds,
+        design=design,
+        runs=runs,
+        bound=bound,
+        patience=patience,
+        isolate=None if isolate == "ea" else isolate,
+    )
+    if resume and output is None:
+        raise UsageError("--resume needs the table: -o sweep.csv.")
+    made = Sweep(question)
+    _tell_cost(made, workers, plan)
+    if plan:
+        return
+    pool = pool_of(address, workers)
+    if output is None or output == "-":
+        _print(made, pool)
+        return
+    check_output(output, "table", *scenarios, *question.scenarios)
+    _write(Output(made, output, pool), resume)
+
+
+def _vary(varied: tuple[str, ...]) -> dict[str, str]:
+    """Levels by paths.
+
+    Raises:
+        UsageError: an option is malformed, or there twice.
+    """
+    vary: dict[str, str] = {}
+    for text in varied:
+        path, equals, levels = text.partition("=")
+        if not equals or not path:
+            raise UsageError(f'--vary "{text}": write PATH=LEVELS, as "person.speed=0.5|1".')
+        if path in vary:
+            raise UsageError(f"--vary: {path} is there twice; join the levels with |.")
+        vary[path.strip()] = levels
+    return vary
+
+
+def _tell_cost(made: Sweep, workers: int | None, plan: bool) -> None:
+    """Tell how long a sweep takes, if it was asked for, or if it is long."""
+    from prima.experiments.sweep import estimate
+    from prima.pool import cores
+
+    if plan:
+        put(estimate(made, workers or cores()))
+    elif len(made) > MANY:
+        tell(estimate(made, workers or cores()))
+
+
+def _print(made: Sweep, pool: Pool) -> None:
+    """Print the table.
+
+    Raises:
+        Exit: a run was not fine.
+    """
+    from prima.experiments.table import line
+
+    write_for_programs()
+    head = [one.name for one in made.columns]
+    click.echo(line(head), nl=False)
+    worst, exit_column = 0, head.index("exit")
+    for row in made.results(pool):
+        code = row[exit_column]
+        worst = max(worst, code if isinstance(code, int) else 0)
+        click.echo(line(row), nl=False)
+    if worst:
+        raise Exit(worst)
+
+
+def _write(out: Output, resume: bool) -> None:
+    """Write the table, and tell what is in it.
+
+    Raises:
+        Exit: a run was not fine.
+    """
+    total, begun = len(out.sweep), -1
+    progress = Progress(total)
+    try:
+        for number in out.write(resume):
+            begun = number if begun < 0 else begun
+            progress.show(number, 0)
+    except KeyboardInterrupt:
+        progress.clear()
+        tell(f"{out.path}: the runs made so far are kept; --resume goes on.")
+        raise click.Abort from None
+    finally:
+        progress.clear()
+    if resume:
+        tell(f"{begun} of {counted(total, 'run')} had been made before")
+    orders: set[object] = set()
+    bad = worst = failed = 0
+    for row in out.read():
+        orders.add(row["order"])
+        code = row["exit"]
+        bad += bool(code)
+        failed += bool(row["expects_failed"])
+        worst = max(worst, code if isinstance(code, int) else 0)
+    told = [counted(total, "run"), counted(len(orders - {""}), "order")]
+    told += [f"{bad} not fine"] if bad else []
+    told += [f"{failed} with failed expectations"] if failed else []
+    put(f"{out.path}: {', '.join(told)}")
+    if worst:
+        raise Exit(worst)

@@ -1,0 +1,175 @@
+"""Runs on a cluster by Dask (https://distributed.dask.org), or else on this machine."""
+
+from __future__ import annotations
+
+import logging
+import re
+import sys
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from prima import __version__
+from prima.errors import RunError, UsageError
+from prima.errors.visible import escaped
+from prima.experiments.pools import Making, Pool, Result, Runs, local
+from prima.experiments.variants import Variant
+from prima.pool import Died
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+SECONDS = 10
+"""How long a scheduler and its first worker may take to answer."""
+AT_ONCE = 8
+"""Runs of one task, as a task takes about a millisecond of the scheduler."""
+AHEAD = 8
+"""Tasks for each worker that are sent ahead."""
+ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d{1,5})?")
+DIED = 1
+"""The code of a run of which the worker died each time; Dask tells no signal."""
+
+
+def pool_of(address: str | None, workers: int | None) -> Pool:
+    """The workers of a scheduler at an address, or else processes of this machine.
+
+    Raises:
+        UsageError: it is no address, or Dask is not installed.
+    """
+    if address is None:
+        return local(workers or 0)
+    if workers is not None:
+        raise UsageError("--workers is for this machine; a cluster has the workers it has.")
+    return cluster(address)
+
+
+def cluster(address: str) -> Pool:
+    """The workers of a scheduler of Dask.
+
+    Raises:
+        UsageError: it is no address, or Dask is not installed.
+    """
+    if ADDRESS.fullmatch(address) is None:
+        message = f'--on "{escaped(address)}": write the address of a scheduler of Dask'
+        raise UsageError(f"{message}, as tcp://127.0.0.1:8786.")
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        message = "a cluster needs Dask: pip install 'prima[cluster]'."
+        raise UsageError(f"--on {address}: {message}") from None
+
+    def pool(stage: Making[Result]) -> AbstractContextManager[Runs[Result]]:
+        return _staff(address, stage)
+
+    return pool
+
+
+@contextmanager
+def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
+    """Connect, send the content of all runs to all workers, and make runs there.
+
+    Raises:
+        UsageError: nobody answers, the workers are of another version, or there is too much
+            to send.
+    """
+    stage.pack()
+    client = _connected(address)
+    try:
+        _check(client, address)
+        # A task, as a worker that dies with data which no task makes would end them all.
+        sent = client.submit(_given, stage, pure=False)
+        yield lambda variants: _runs(client, sent, variants)
+    finally:
+        client.close(timeout=1)
+
+
+def _connected(address: str) -> Client:
+    from distributed import Client
+
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        client = Client(address, timeout=SECONDS, set_as_default=False)
+        client.wait_for_workers(1, timeout=SECONDS)
+    except (OSError, ValueError):
+        raise UsageError(
+            f"--on {address}: no scheduler with a worker answers within {SECONDS} s."
+            " Start them with: dask scheduler, and dask worker ADDRESS --nthreads 1."
+        ) from None
+    return client
+
+
+def _check(client: Client, address: str) -> None:
+    """See that all workers are of this version, and make one run at once.
+
+    Raises:
+        UsageError: they are not.
+    """
+    here = [__version__, list(sys.version_info[:2])]
+    try:
+        there = client.run(_versions)
+    except ImportError:
+        message = f"its workers do not have prima: pip install prima=={__version__} there."
+        raise UsageError(f"--on {address}: {message}") from None
+    for worker, version in there.items():
+        if version != here:
+            message = f"prima {version[0]} and Python {'.'.join(map(str, version[1]))}"
+            wanted = f"here are {here[0]} and {'.'.join(map(str, sys.version_info[:2]))}"
+            raise UsageError(f"--on {address}: the worker {worker} has {message}; {wanted}.")
+    for worker, threads in client.nthreads().items():
+        if threads != 1:
+            message = f"the worker {worker} has {threads} threads, and can make one run at once"
+            raise UsageError(f"--on {address}: {message}. Start it with --nthreads 1.")
+
+
+def _versions() -> list[Any]:
+    """What a worker is."""
+    return [__version__, list(sys.version_info[:2])]
+
+
+def _runs(
+    client: Client, sent: Future, variants: Iterable[Variant]
+) -> Iterator[tuple[Variant, Any]]:
+    """Results in the order of the variants; of a task whose workers died, one by one."""
+    from distributed import CancelledError, KilledWorker
+
+    left = iter(variants)
+    lots = iter(lambda: list(islice(left, AT_ONCE)), [])
+    most = AHEAD * max(len(client.nthreads()), 1)
+    tasks: deque[tuple[list[Variant], Future]] = deque()
+    while True:
+        for lot in islice(lots, most - len(tasks)):
+            tasks.append((lot, client.submit(_work, sent, lot, pure=False)))
+        if not tasks:
+            return
+        lot, task = tasks.popleft()
+        try:
+            yield from zip(lot, task.result(), strict=True)
+        except KilledWorker:
+            yield from _one_by_one(client, sent, lot)
+        except (CancelledError, OSError):
+            raise RunError("the scheduler of Dask has gone.") from None
+
+
+def _one_by_one(
+    client: Client, sent: Future, lot: Sequence[Variant]
+) -> Iterator[tuple[Variant, Any]]:
+    from distributed import KilledWorker
+
+    for variant in lot:
+        try:
+            (made,) = client.submit(_work, sent, [variant], pure=False).result()
+        except KilledWorker:
+            made = Died(DIED)
+        yield variant, made
+
+
+def _given(stage: Making[Result]) -> Making[Result]:
+    """Hold the content of all runs; on a worker."""
+    return stage
+
+
+def _work(stage: Making[Result], lot: Sequence[Variant]) -> list[Result]:
+    """Make the runs of a task; on a worker."""
+    return [stage.run(one) for one in lot]

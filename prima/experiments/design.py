@@ -1,0 +1,105 @@
+"""Designs of experiments: which combinations of levels are run, with which seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from random import Random
+
+from prima.errors import UsageError, one_of
+from prima.experiments.levels import Factor
+
+DESIGNS = ("full", "random", "lhs")
+MOST_RUNS = 100_000_000
+"""Runs of one sweep."""
+
+
+class Design:
+    """Values of factors, run by run.
+
+    ``full`` combines all levels, with each seed; what is drawn depends on the seed and the
+    factor alone, so that the same user meets every other level. ``random`` and ``lhs`` (Latin
+    hypercube) draw all factors, the levels of lists too, for a number of runs.
+    """
+
+    def __init__(self, kind: str, factors: Sequence[Factor], seeds: int, runs: int | None) -> None:
+        """Plan it.
+
+        Args:
+            kind: one of DESIGNS.
+            factors: what is varied.
+            seeds: for ``full``, the runs of each combination; else where drawing begins.
+            runs: for ``random`` and ``lhs``, how many.
+
+        Raises:
+            UsageError: these do not go together, or are too many.
+        """
+        self.kind = kind
+        self.factors = factors
+        self.seeds = seeds
+        if kind not in DESIGNS:
+            raise UsageError(f'There is no design "{kind}". Write {one_of(DESIGNS)}.')
+        if kind == "full":
+            if runs is not None:
+                raise UsageError("--runs is for --design random or lhs; full has --seeds.")
+            self.count = seeds
+            for factor in factors:
+                self.count *= len(factor.levels) or 1
+        else:
+            if runs is None:
+                raise UsageError(f"--design {kind} needs the number of runs: --runs 1000.")
+            if not factors:
+                raise UsageError(f"--design {kind} needs something to vary: --vary PATH=LEVELS.")
+            self.count = runs
+        if self.count > MOST_RUNS:
+            message = f"These are {self.count:,} runs; a sweep has at most {MOST_RUNS:,}."
+            raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __iter__(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        """Seeds, from 1, and values in the order of the factors."""
+        return self._full() if self.kind == "full" else self._drawn()
+
+    def _full(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        for levels in product(*(factor.levels or ("",) for factor in self.factors)):
+            for seed in range(1, self.seeds + 1):
+                pairs = zip(self.factors, levels, strict=True)
+                yield (
+                    seed,
+                    tuple(
+                        one.drawn(_share(seed, one.path)) if one.quantile else level
+                        for one, level in pairs
+                    ),
+                )
+
+    def _drawn(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        rows = _hypercube(len(self.factors), self.count, self.seeds) if self.kind == "lhs" else None
+        for number in range(1, self.count + 1):
+            seed = number + self.seeds - 1
+            shares = rows[number - 1] if rows else [_share(seed, one.path) for one in self.factors]
+            pairs = zip(self.factors, shares, strict=True)
+            yield number, tuple(one.drawn(share) for one, share in pairs)
+
+
+def _share(seed: int, path: str) -> float:
+    """A number from 0 to 1, as a function of a seed and a factor."""
+    return Random(f"{seed}/{path}").random()
+
+
+def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:
+    """The points of a Latin hypercube.
+
+    Raises:
+        UsageError: scipy is not installed.
+    """
+    try:
+        from scipy.stats import qmc
+    except ImportError:
+        message = "--design lhs needs scipy: pip install 'prima[experiments]'."
+        raise UsageError(message) from None
+    points: Sequence[Sequence[float]] = (
+        qmc.LatinHypercube(d=factors, rng=seed).random(runs).tolist()
+    )
+    return points

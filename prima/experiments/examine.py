@@ -1,0 +1,76 @@
+"""Runs looked at closely: when something happened, and what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from prima import api
+from prima.experiments.variants import Made, Stage, Variant, failed_expectations
+from prima.invariants import callers, check
+from prima.loading import Loaded
+
+OUTSIDE = ("user", "environment")
+"""Actors whose records tell what a scenario makes happen."""
+EXCLUSIVE = "invariant 1 "
+"""No device has two tasks: what the policy none does not keep."""
+
+
+class Finding(NamedTuple):
+    """Something wrong with a run: ``error``, ``expect``, ``invariant`` or ``endless``."""
+
+    kind: str
+    where: str
+    """What is the same in all runs that have it."""
+    text: str
+
+
+@dataclass(slots=True)
+class Seen(Made):
+    """What came of a run, and what an exploration needs of it."""
+
+    found: list[Finding] = field(default_factory=list)
+    times: list[int] = field(default_factory=list)
+    """The time of each record (ms)."""
+    outside: list[int] = field(default_factory=list)
+    """The places, among these, of records of what the scenario makes happen."""
+
+
+class Examiner(Stage):
+    """Makes runs and looks at them closely."""
+
+    def _run(self, variant: Variant) -> Seen:
+        loaded = self.loaded(variant)
+        transcript = self.rehearsed(variant, loaded, keep=True)
+        made = self.made(loaded, transcript)
+        records = transcript.records
+        return Seen(
+            made.exit,
+            made.ended,
+            made.failures,
+            made.expects_failed,
+            made.order,
+            {},
+            list(_findings(variant, loaded, transcript)),
+            [round(record["time"] * 1000) for record in records],
+            [
+                number
+                for number, record in enumerate(records)
+                if record.get("inbound") and record["actor"] in OUTSIDE
+            ],
+        )
+
+
+def _findings(variant: Variant, loaded: Loaded, transcript: api.Transcript) -> Iterator[Finding]:
+    policy = variant.policy or loaded.cast.scenario.policy
+    for told in transcript.failures:
+        yield Finding("error", told, told)
+    if transcript.outcome == "limit":
+        yield Finding("endless", "", "the run exceeds a limit")
+    for failed in failed_expectations(loaded, transcript):
+        where = f"{failed.place.file}:{failed.place.line}"
+        yield Finding("expect", where, f"{where}: {failed.message}")
+    for broken in check(transcript.records, policy, calling=callers(loaded.cast.documents)):
+        if not (policy == "none" and broken.startswith(EXCLUSIVE)):
+            yield Finding("invariant", broken.partition(" at ")[0], broken)

@@ -1,0 +1,147 @@
+"""Experiments as functions of Python."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from prima.errors import UsageError
+from prima.experiments.cluster import pool_of
+from prima.experiments.explore import Exploration, Plan
+from prima.experiments.explored import Explored, carried_out
+from prima.experiments.pools import Pool
+from prima.experiments.studyfile import Level, levels_text, question_of
+from prima.experiments.sweep import Output, Sweep
+from prima.experiments.table import arrow_table
+from prima.messages import Json
+
+if TYPE_CHECKING:
+    import pyarrow
+
+
+def sweep(
+    scenarios: str | Path | Iterable[str | Path],
+    vary: Mapping[str, str | Sequence[Level]] | None = None,
+    policies: Iterable[str] | None = None,
+    seeds: int | None = None,
+    design: str | None = None,
+    runs: int | None = None,
+    output: str | Path | None = None,
+    workers: int | None = None,
+    resume: bool = False,
+    bound: int | None = None,
+    patience: int | None = None,
+    isolate: str | None = None,
+    on: str | None = None,
+) -> pyarrow.Table:
+    """Run scenarios over many values (docs/experiments.md).
+
+    Args:
+        scenarios: a scenario, or several, or a study file (``.toml``); what is given beside a
+            study file comes before what it says.
+        vary: levels by paths: a list, or a text as on the command line, such as
+            ``{"when[2].after": "0s..20s/1s", "answer": ["Yes.", "No."]}``.
+        policies: policies; by default each scenario's own.
+        seeds: runs of each combination, each with other draws; by default 1.
+        design: ``full`` (the default), ``random`` or ``lhs``.
+        runs: their number, for ``random`` and ``lhs``.
+        output: a ``.csv`` or ``.parquet`` file for the table; a folder beside it gets a
+            transcript for each order.
+        workers: the number of processes; by default as many as there are cores.
+        resume: whether to go on behind the rows that ``output`` has already.
+        bound: rule E4's bound on loops of a feedback Command.
+        patience: rule E6's bound (ms); by default each scenario's own.
+        isolate: which scripts run in a process of their own, as for :func:`rehearse`.
+        on: the address of a scheduler of Dask, on whose workers the runs are made.
+
+    Returns:
+        A row for each run: ``.to_pandas()`` and ``polars.from_arrow()`` take it on.
+
+    Raises:
+        DocumentError: a scenario has errors.
+        UsageError: a factor, level, policy or file is wrong, or pyarrow is not installed.
+        RunError: no process can be started.
+    """
+    question = question_of(
+        _names(scenarios),
+        {path: levels_text(levels) for path, levels in (vary or {}).items()},
+        policies=None if policies is None else tuple(policies),
+        seeds=seeds,
+        design=design,
+        runs=runs,
+        bound=bound,
+        patience=patience,
+        isolate=isolate,
+    )
+    return _table(Sweep(question), output, pool_of(on, workers), resume)
+
+
+def explore(
+    scenario: str | Path,
+    moves: Iterable[str] = (),
+    within: int = 5_000,
+    depth: int = 2,
+    step: int = 0,
+    runs: int = 20_000,
+    policy: str = "",
+    output: str | Path | None = None,
+    workers: int | None = None,
+    resume: bool = False,
+    isolate: str = "ea",
+    on: str | None = None,
+) -> dict[str, Json]:
+    """Find every order of events that other timings bring (docs/experiments.md).
+
+    Args:
+        scenario: a scenario.
+        moves: paths of the times that are moved; by default that of each ``<when>``.
+        within: how far each is moved, to both sides (ms).
+        depth: how many are moved at once.
+        step: a grid (ms) of times that are tried besides; 0 for none.
+        runs: runs at most.
+        policy: a policy; by default the scenario's own.
+        output: a folder for the orders and problems, as scenarios with their transcripts.
+        workers: the number of processes; by default as many as there are cores.
+        resume: whether to use the runs that ``output`` has already.
+        isolate: which scripts run in a process of their own, as for :func:`rehearse`.
+        on: the address of a scheduler of Dask, on whose workers the runs are made.
+
+    Returns:
+        What ``prima explore --format json`` prints: orders, boundaries, problems.
+
+    Raises:
+        DocumentError: the scenario has errors.
+        UsageError: what is to be moved cannot be, or a file cannot be written.
+        RunError: no process can be started.
+    """
+    plan = Plan(os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate)
+    exploration = Exploration(plan)
+    if resume and output is None:
+        raise UsageError("resume needs the output that it goes on with.")
+    for _ in carried_out(exploration, pool_of(on, workers), output, resume):
+        pass
+    return Explored(exploration).data()
+
+
+def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:
+    if output is None:
+        if resume:
+            raise UsageError("resume needs the output that it goes on with.")
+        names = [one.name for one in made.columns]
+        return arrow_table((_named(names, row) for row in made.results(pool)), made.columns)
+    out = Output(made, os.fspath(output), pool)
+    for _ in out.write(resume):
+        pass
+    return arrow_table(out.read(), made.columns)
+
+
+def _named(names: Sequence[str], row: Sequence[Any]) -> dict[str, Any]:
+    return dict(zip(names, row, strict=True))
+
+
+def _names(scenarios: str | Path | Iterable[str | Path]) -> tuple[str, ...]:
+    if isinstance(scenarios, str | Path):
+        return (os.fspath(scenarios),)
+    return tuple(os.fspath(one) for one in scenarios)

@@ -1,0 +1,325 @@
+"""Sweeps: runs of scenarios over factors, in one tidy table (docs/experiments.md).
+
+The table grows in the order of the plan while runs are made, so what is there when a sweep is
+interrupted is its beginning, and ``resume`` goes on behind it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from errno import ENOSPC
+from itertools import islice
+from pathlib import Path
+
+from prima import __version__
+from prima.errors import UsageError, counted
+from prima.experiments.design import Design
+from prima.experiments.levels import Factor, cell, read_factor
+from prima.experiments.pools import Pool
+from prima.experiments.table import (
+    Column,
+    columns,
+    dictionary,
+    line,
+    read_rows,
+    write_parquet,
+)
+from prima.experiments.variants import Made, Settings, Stage, Variant
+from prima.loading.writing import write_whole
+from prima.messages import Json
+from prima.pool import Died
+
+MOST_CHECKED = 2_000
+"""Levels that are tried before the first run; of more factors only the first ones' are."""
+PLAN, ORDERS, ROWS = "plan.json", "orders", "rows.csv"
+"""Names in the folder beside a table."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a sweep is to find out: scenarios, what is varied in them, how, and how often."""
+
+    scenarios: tuple[str, ...]
+    vary: Mapping[str, str] = field(default_factory=dict)
+    """Levels by paths, as :mod:`prima.experiments.levels` has them."""
+    policies: tuple[str, ...] = ()
+    """Policies; each scenario's own if there is none."""
+    seeds: int = 1
+    design: str = "full"
+    runs: int | None = None
+    bound: int | None = None
+    patience: int | None = None
+    """Rule E6's bound (ms), if not the scenario's."""
+    isolate: str = "ea"
+    folder: str = ""
+    """Where files of values are."""
+
+
+class Sweep:
+    """The plan of a sweep, checked: all that its runs need has been read."""
+
+    def __init__(self, question: Question) -> None:
+        """Plan a sweep.
+
+        Raises:
+            DocumentError: a scenario has errors.
+            UsageError: a factor, level, policy or design is wrong.
+        """
+        self.question = question
+        if not question.scenarios:
+            raise UsageError("Name a scenario to run.")
+        settings = Settings(question.bound, question.patience, question.isolate)
+        paths = list(question.vary)
+        self.stage = Stage.of(question.scenarios, paths, settings)
+        self.factors = self._factors()
+        self._check_seeds()
+        self.design = Design(question.design, self.factors, question.seeds, question.runs)
+        self.policies = self._policies()
+        self.columns: list[Column] = columns(self.factors)
+        self._check_levels()
+
+    def __len__(self) -> int:
+        return len(self.design) * len(self.policies) * len(self.question.scenarios)
+
+    def __iter__(self) -> Iterator[Variant]:
+        number = 0
+        for scenario in range(len(self.question.scenarios)):
+            for policy in self.policies:
+                for seed, values in self.design:
+                    yield Variant(number, scenario, policy, seed, values)
+                    number += 1
+
+    def _factors(self) -> list[Factor]:
+        """The factors; every scenario has to have what is varied."""
+        made = []
+        for index, (path, levels) in enumerate(self.question.vary.items()):
+            if path == "policy":
+                raise UsageError("policy: write --policy prima --policy fifo.")
+            kinds = set()
+            for number in range(len(self.question.scenarios)):
+                target = self.stage.targets(number)[index]
+                kinds.add(target.kind)
+                factor = read_factor(target, levels, self.question.folder)
+            if len(kinds) > 1:
+                raise UsageError(f"{path}: it is of another kind in each scenario.")
+            made.append(factor)
+        return made
+
+    def _check_seeds(self) -> None:
+        if self.question.seeds < 1:
+            raise UsageError("--seeds: write a whole number from 1.")
+        drawn = [one.path for one in self.factors if one.quantile]
+        if drawn and self.question.design == "full" and self.question.seeds == 1:
+            message = f"{drawn[0]}: its values are drawn by seed: write how many, as --seeds 20"
+            raise UsageError(f"{message}, or levels: LOW..HIGH/STEP.")
+
+    def _policies(self) -> list[str]:
+        from prima.loading.heads import chosen_policy
+
+        policies = list(dict.fromkeys(self.question.policies))
+        for scenario in range(len(self.question.scenarios)):
+            written = tuple(one.written for one in self.stage.targets(scenario))
+            loaded = self.stage.loaded(Variant(0, scenario, "", 0, written))
+            for policy in policies:
+                chosen_policy(policy, loaded)
+        return policies or [""]
+
+    def _check_levels(self) -> None:
+        """Try each level once, beside what is written of the others.
+
+        Raises:
+            UsageError: the scenario does not allow one.
+        """
+        for scenario in range(len(self.question.scenarios)):
+            written = tuple(one.written for one in self.stage.targets(scenario))
+            for index, factor in enumerate(self.factors):
+                for level in factor.levels[: MOST_CHECKED // len(self.factors)]:
+                    values = (*written[:index], level, *written[index + 1 :])
+                    found = self.stage.problems(Variant(0, scenario, "", 0, values))
+                    if found:
+                        message = " ".join(filter(None, (found[0].message, found[0].remedy)))
+                        raise UsageError(f'{factor.path}: with "{level}": {message}')
+
+    def row(self, variant: Variant, made: Made | Died, folder: str) -> list[Json]:
+        """A row of the table."""
+        if isinstance(made, Died):
+            told = f"its process ended with code {made.code}"
+            made = Made(3, failures=told if made.code >= 0 else f"{told}: no memory left?")
+        script = self.stage.scripts[variant.scenario]
+        pairs = zip(self.factors, variant.values, strict=True)
+        varied = [cell(one.kind, value) for one, value in pairs]
+        transcript = f"{folder}/{ORDERS}/{made.order}.jsonl" if folder and made.order else ""
+        head: list[Json] = [variant.number, script.path, variant.policy or script.policy]
+        outcome: list[Json] = [made.exit, made.ended, made.failures, made.expects_failed]
+        names = [one.name for one in self.columns if one.role == "measure"]
+        measures = [made.measures.get(name) for name in names]
+        return [*head, variant.seed, *varied, *outcome, made.order, transcript, *measures]
+
+    def key(self) -> dict[str, Json]:
+        """What determines the table: for resuming."""
+        question = asdict(self.question)
+        del question["folder"]
+        return {
+            "prima": __version__,
+            "question": json.loads(json.dumps(question)),
+            "levels": [list(one.levels) for one in self.factors],
+            "files": self.stage.digests(),
+        }
+
+    def results(self, pool: Pool, begin: int = 0, folder: str = "") -> Iterator[list[Json]]:
+        """Make the runs from a number on; give their rows in order."""
+        with pool(self.stage) as runs:
+            for variant, made in runs(islice(self, begin, None)):
+                yield self.row(variant, made, folder)
+
+
+class Output:
+    """A sweep's table on the disk, and the folder beside it."""
+
+    def __init__(self, sweep: Sweep, path: str, pool: Pool) -> None:
+        """Choose where a table is written.
+
+        Args:
+            sweep: what is run.
+            path: a ``.csv`` or ``.parquet`` file.
+            pool: where runs are made.
+
+        Raises:
+            UsageError: it is neither.
+        """
+        self.sweep = sweep
+        self.path = Path(path)
+        self.pool = pool
+        if self.path.suffix not in (".csv", ".parquet"):
+            raise UsageError(f"{path}: name a table that ends with .csv or .parquet.")
+        self.parquet = self.path.suffix == ".parquet"
+        if self.parquet:
+            from prima.experiments.table import pyarrow_module
+
+            pyarrow_module()
+        self.folder = self.path.with_suffix("")
+        self.rows = self.folder / ROWS if self.parquet else self.path
+
+    def write(self, resume: bool = False) -> Iterator[int]:
+        """Make all runs; gives the number of rows each time one is written.
+
+        Whatever ends it early, the rows that were made are on the disk, the table too.
+
+        Raises:
+            UsageError: something cannot be written, or there is another sweep to be resumed.
+            RunError: no process can be started.
+        """
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            there = self._earlier() if resume else 0
+            if not there:
+                write_whole(self.rows, line([one.name for one in self.sweep.columns]))
+            write_whole(self.folder / PLAN, json.dumps(self.sweep.key(), indent=1) + "\n")
+            write_whole(
+                self.folder / "dictionary.json", dictionary(self.path.name, self.sweep.columns)
+            )
+            yield there
+            yield from self._append(there)
+        except OSError as error:
+            remedy = "; make room, then --resume" if error.errno == ENOSPC else ""
+            raise UsageError(f"{self.path}: cannot be written: {error.strerror}{remedy}.") from None
+        finally:
+            if self.parquet and self.rows.is_file():
+                write_parquet(self.rows, self.path, self.sweep.columns)
+        self._write_orders()
+
+    def _append(self, begin: int) -> Iterator[int]:
+        with self.rows.open("a", encoding="utf-8", newline="") as stream:
+            rows = self.sweep.results(self.pool, begin, self.folder.name)
+            for number, row in enumerate(rows, begin + 1):
+                stream.write(line(row))
+                stream.flush()
+                yield number
+
+    def _earlier(self) -> int:
+        """The number of rows that an earlier sweep has left; a last one cut in two is removed.
+
+        Raises:
+            UsageError: it was another sweep.
+        """
+        plan = self.folder / PLAN
+        if not plan.is_file() or not self.rows.is_file():
+            return 0
+        try:
+            read = json.loads(plan.read_text(encoding="utf-8"))
+        except (ValueError, RecursionError):
+            read = None
+        key = read if isinstance(read, dict) else {}
+        if key != self.sweep.key():
+            different = [one for one in self.sweep.key() if key.get(one) != self.sweep.key()[one]]
+            what = {"prima": "with another version of PRIMA", "files": "with other documents"}
+            why = what.get(different[0], "with other factors or options")
+            message = f"{self.path}: it was made {why}, so it cannot be resumed."
+            raise UsageError(f"{message} Begin anew without --resume, or name another file.")
+        return self._whole_rows()
+
+    def _whole_rows(self) -> int:
+        """The number of rows; what comes after the last whole one is cut off."""
+        end = 0
+        with self.rows.open("rb+") as stream:
+            for data in stream:
+                end += len(data) if data.endswith(b"\r\n") else 0
+            stream.truncate(end)
+        if not end:
+            return 0
+        with self.rows.open(encoding="utf-8", newline="") as text:
+            try:
+                count = sum(1 for _ in read_rows(text, self.sweep.columns))
+            except ValueError as error:
+                raise UsageError(f"{self.rows}: not the table of a sweep: {error}.") from None
+        return count
+
+    def read(self) -> Iterator[dict[str, Json]]:
+        """The rows of the table."""
+        with self.rows.open(encoding="utf-8", newline="") as stream:
+            yield from read_rows(stream, self.sweep.columns)
+
+    def _write_orders(self) -> None:
+        """Write the first run of each order: its scenario and its transcript."""
+        folder = self.folder / ORDERS
+        folder.mkdir(exist_ok=True)
+        firsts: dict[str, int] = {}
+        for row in self.read():
+            if row["order"]:
+                firsts.setdefault(str(row["order"]), int(str(row["run"])))
+        left = {number: order for order, number in firsts.items()}
+        left = {n: o for n, o in left.items() if not (folder / f"{o}.jsonl").is_file()}
+        if not left:
+            return
+        for variant in self.sweep:
+            order = left.pop(variant.number, None)
+            if order is None:
+                continue
+            data, text = self.sweep.stage.transcript(str(folder), order, variant)
+            with (folder / f"{order}.xml").open("wb") as scenario:
+                scenario.write(data)
+            write_whole(folder / f"{order}.jsonl", text)
+            if not left:
+                return
+
+
+def estimate(sweep: Sweep, workers: int, runs: int = 10) -> str:
+    """How long a sweep takes and how large its table is, from a few runs all over the plan."""
+    from time import perf_counter
+
+    every = max(len(sweep) // runs, 1)
+    chosen = list(islice(sweep, 0, every * runs if len(sweep) < 1_000_000 else runs, every))
+    begin = perf_counter()
+    size = sum(len(line(sweep.row(one, sweep.stage.run(one), "x"))) for one in chosen)
+    each = (perf_counter() - begin) / len(chosen)
+    seconds = each * len(sweep) / workers
+    megabytes = size / len(chosen) * len(sweep) / 1e6
+    time = f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+    time = time if seconds < 7200 else f"{seconds / 3600:.1f} h"
+    where = "1 process" if workers == 1 else f"{workers} processes"
+    return (
+        f"{counted(len(sweep), 'run')}: about {time} with {where}"
+        f" ({each * 1000:.0f} ms a run), a table of about {megabytes:.1f} MB"
+    )

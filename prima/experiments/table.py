@@ -1,0 +1,208 @@
+"""The table of an experiment: its columns, its data dictionary, CSV and Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from prima import __version__
+from prima.errors import UsageError
+from prima.experiments.levels import Factor
+from prima.experiments.variants import CRITERIA
+from prima.messages import Json
+
+if TYPE_CHECKING:
+    import pyarrow
+
+BATCH = 10_000
+"""Rows that are converted at once."""
+TYPES = {"duration": "number", "number": "number", "integer": "integer"}
+"""Types of columns by kinds of values; others are strings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: its type (``string``, ``integer`` or ``number``), role and unit."""
+
+    name: str
+    type: str
+    role: str
+    """``id``, ``factor``, ``outcome`` or ``measure``."""
+    description: str
+    unit: str = ""
+
+
+HEAD = (
+    Column("run", "integer", "id", "number of the run in the plan, from 0"),
+    Column("scenario", "string", "factor", "path of the scenario"),
+    Column("policy", "string", "factor", "the mediator's policy"),
+    Column("seed", "integer", "factor", "seed of what is drawn"),
+)
+OUTCOMES = (
+    Column("exit", "integer", "outcome", "exit code that the run alone would have; 0 is fine"),
+    Column("ended", "string", "outcome", "over, quiet, until or limit; empty if it did not end"),
+    Column("failures", "string", "outcome", "what went wrong"),
+    Column("expects_failed", "integer", "outcome", "expectations of the scenario that failed"),
+    Column("order", "string", "outcome", "signature of the rows without their times"),
+    Column("transcript", "string", "outcome", "transcript of the first run with this order"),
+)
+MEASURES = (
+    Column("seconds", "number", "measure", "duration of the run", "s"),
+    Column("records", "integer", "measure", "records of the transcript"),
+    Column("collisions", "integer", "measure", "displaced Commands (policy none)"),
+    Column("starved", "integer", "measure", "behaviors that waited too long (E4, E6)"),
+)
+MEANINGS = {
+    "units_cut": "behaviors that lost a device while they ran",
+    "restarts": "behaviors that gave way and started again (X2)",
+    "broken": "streams broken by no reaction",
+    "broken_waiting": "waits for a server that another application broke into",
+    "unfaced": "conversations begun without the channel",
+    "left": "conversations that the robot left",
+    "reactions": "events that an application answered with a Command",
+    "reaction_mean": "mean time from an event to the first Command",
+    "reaction_max": "longest time from an event to the first Command",
+    "responses": "reactions with a word or a movement towards the user",
+    "response_mean": "mean time from an event to that word or movement",
+    "response_max": "longest time from an event to that word or movement",
+}
+"""The criteria of docs/measures.md."""
+
+
+def columns(factors: Sequence[Factor]) -> list[Column]:
+    """The columns of a table."""
+    varied = [
+        Column(
+            one.path,
+            TYPES.get(one.kind, "string"),
+            "factor",
+            "value of the scenario",
+            "s" if one.kind == "duration" else "",
+        )
+        for one in factors
+    ]
+    return [*HEAD, *varied, *OUTCOMES, *MEASURES, *map(_criterion, CRITERIA)]
+
+
+def _criterion(name: str) -> Column:
+    timed = name.endswith(("_mean", "_max"))
+    kind, unit = ("number", "s") if timed else ("integer", "")
+    return Column(name, kind, "measure", MEANINGS[name], unit)
+
+
+def dictionary(path: str, made: Iterable[Column]) -> str:
+    """The data dictionary: a Frictionless Table Schema, with ``role`` and ``unit`` added."""
+    fields = [
+        {
+            "name": one.name,
+            "type": one.type,
+            "title": one.name.replace("_", " "),
+            "description": one.description,
+            "role": one.role,
+            "unit": one.unit,
+        }
+        for one in made
+    ]
+    data = {"prima": __version__, "path": path, "fields": fields, "missingValues": [""]}
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def line(cells: Iterable[Json]) -> str:
+    """A row of CSV (RFC 4180); None is an empty cell."""
+    made = io.StringIO()
+    csv.writer(made, lineterminator="\r\n").writerow(["" if one is None else one for one in cells])
+    return made.getvalue()
+
+
+def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Json]]:
+    """The rows of a table written by :func:`line`, its head first.
+
+    Raises:
+        ValueError: it is another table.
+    """
+    rows = csv.reader(stream)
+    if next(rows, []) != [one.name for one in made]:
+        raise ValueError("its columns are others")
+    for row in rows:
+        if len(row) != len(made):
+            raise ValueError(f"line {rows.line_num} has {len(row)} cells")
+        yield {one.name: _value(one.type, text) for one, text in zip(made, row, strict=True)}
+
+
+def _value(kind: str, text: str) -> Json:
+    if kind == "string":
+        return text
+    if not text:
+        return None
+    return int(text) if kind == "integer" else float(text)
+
+
+def arrow_schema(made: Sequence[Column]) -> pyarrow.Schema:
+    """The types of a table's columns for Arrow.
+
+    Raises:
+        UsageError: pyarrow is not installed.
+    """
+    arrow = pyarrow_module()
+    types = {"string": arrow.string(), "integer": arrow.int64(), "number": arrow.float64()}
+    return arrow.schema([(one.name, types[one.type]) for one in made])
+
+
+def pyarrow_module() -> Any:
+    """The library that writes Parquet.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    try:
+        import pyarrow as arrow
+    except ImportError:
+        message = "Parquet needs pyarrow: pip install 'prima[experiments]', or write a .csv."
+        raise UsageError(message) from None
+    return arrow
+
+
+def arrow_table(rows: Iterable[dict[str, Json]], made: Sequence[Column]) -> pyarrow.Table:
+    """A table in memory.
+
+    Raises:
+        UsageError: pyarrow is not installed.
+    """
+    schema = arrow_schema(made)
+    return pyarrow_module().Table.from_batches(_batches(rows, schema), schema)
+
+
+def write_parquet(source: Path, target: Path, made: Sequence[Column]) -> None:
+    """Write a table of CSV as Parquet, in pieces.
+
+    Raises:
+        UsageError: pyarrow is not installed, or nothing can be written.
+    """
+    schema = arrow_schema(made)
+    from pyarrow.parquet import ParquetWriter
+
+    from prima.loading.writing import whole
+
+    with (
+        source.open(encoding="utf-8", newline="") as stream,
+        whole(target) as out,
+        ParquetWriter(out, schema, compression="zstd") as writer,
+    ):
+        for batch in _batches(read_rows(stream, made), schema):
+            writer.write_batch(batch)
+
+
+def _batches(
+    rows: Iterable[dict[str, Json]], schema: pyarrow.Schema
+) -> Iterator[pyarrow.RecordBatch]:
+    from pyarrow import RecordBatch
+
+    left = iter(rows)
+    while batch := list(islice(left, BATCH)):
+        yield RecordBatch.from_pylist(batch, schema=schema)

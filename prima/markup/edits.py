@@ -1,0 +1,62 @@
+"""Changes to a document as it is written: values of attributes and texts of elements."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+from xml.sax.saxutils import escape
+
+from prima.markup.tree import MARKUP, NAME, Node
+
+DECLARATION = re.compile(r"\A<\?xml[^>]*\?>")
+
+
+class Edit(NamedTuple):
+    """Characters of a document's text, from one offset to another, and what replaces them."""
+
+    start: int
+    end: int
+    text: str
+
+
+def set_attribute(node: Node, name: str, value: str) -> Edit:
+    """Give an attribute a value; an empty one takes the attribute away."""
+    text, quoted = node.source.text, escape(value, {'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
+    if name not in node.attributes:
+        tag = NAME.match(text, node.source.tag(node.index))
+        assert tag is not None  # a node has a start tag
+        return Edit(tag.end(), tag.end(), f' {name}="{quoted}"' if value else "")
+    begin = node.source.offset(node.index, name)
+    inside = node.source.offset(node.index, name, value=True)
+    end = text.index(text[inside - 1], inside) + 1
+    return Edit(begin, end, f'{name}="{quoted}"' if value else "")
+
+
+def set_text(node: Node, value: str) -> Edit:
+    """Give an element that holds nothing but text another text; an empty one takes it away.
+
+    Raises:
+        ValueError: it holds elements.
+    """
+    if node.nodes:
+        raise ValueError(f"<{node.tag}> holds elements, so its text cannot be varied.")
+    text, begin = node.source.text, node.source.tag(node.index)
+    start = MARKUP.match(text, begin)
+    assert start is not None
+    close = node.source.closes.get(node.index)
+    if not value:
+        return Edit(begin, start.end() if close is None else text.index(">", close) + 1, "")
+    if close is None:
+        return Edit(start.end() - 2, start.end(), f">{escape(value)}</{node.tag}>")
+    return Edit(start.end(), close - 2, escape(value))
+
+
+def edited(text: str, edits: Iterable[Edit]) -> bytes:
+    """A document's text with edits that do not overlap, in UTF-8.
+
+    The declaration of XML goes, as it may name another encoding.
+    """
+    for edit in sorted(edits, reverse=True):
+        text = text[: edit.start] + edit.text + text[edit.end :]
+    return DECLARATION.sub("", text).encode()
