@@ -242,6 +242,10 @@ EXAMPLES: dict[str, Example] = {
     "X6": Example(
         "scenarios/navigate-by-laser.xml", "A robot without arms points with its laser.", "aser"
     ),
+    "X7": Example(
+        "scenarios/politeness/third-turn.xml",
+        "The library says its word to the answer before the robot reacts to the touch.",
+    ),
     "fifo": Example(
         TOUR, "The reaction waits for all that was asked for earlier.", "Yes, friend", "fifo"
     ),

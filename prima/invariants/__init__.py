@@ -19,7 +19,7 @@ when it is cancelled. Under a baseline policy a decision's
 rule is believed, and its start is held to it.
 
 Each file is a family of rules and stands on those before it: ``model``,
-``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``floor`` (F, C2),
+``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``turn`` (X7), ``floor`` (F, C2),
 ``extensions`` (X), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
 E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``checker``.
 
@@ -33,7 +33,9 @@ The extensions relax some invariants, and each is held to what it relaxes:
 - X3: a held stream is open, so it keeps channel and floor (5, 7); it is held only as
   long as was asked for, and no shorter (10);
 - X5: one free and one faithful motion share devices (1); a loop that only carries
-  what holds the floor may start beside it (7).
+  what holds the floor may start beside it (7);
+- X7: what an asker says to an answer starts though another has the floor (5), and before
+  reactions (6); nobody speaks before it (16).
 """
 
 from __future__ import annotations
@@ -64,7 +66,8 @@ def check(
     itself has a reason, and takes the place of what it is put in for (X1, X4). 12: of all
     that could start, what S2 puts first starts first. 13: what the records say of floor,
     suspensions, decisions and reasons to wait is so. 14: who moves and is not moved on is
-    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them.
+    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them. 16: who has just
+    answered hears the asker first (X7).
 
     ``declared`` are the applications in the order of their declaration (S2f), where neither
     the records nor the order of loading tells it; ``patience`` is E6's bound, in the records'

@@ -34,7 +34,7 @@ class Checker(Telling):
             "interrupt": self.note_interrupt,
             "held": self.note_held,
             "substitute": self.note_substitute,
-            "hold": self.note_hold,
+            "hold": self._hold,
             "floor": self.note_floor,
             "suspend": self.note_suspend,
             "resume": self.note_resume,
@@ -54,6 +54,7 @@ class Checker(Telling):
 
     def _end(self, record: Record) -> None:
         self.note_answer(record)
+        self.note_turn(record)
         self.note_end(record)
 
     def _until(self, time: float) -> None:
@@ -88,6 +89,11 @@ class Checker(Telling):
         if self.decision is not None and self.prima:
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
         self.decision = record
+        self.look_for_turn()
+
+    def _hold(self, record: Record) -> None:
+        self.look_for_turn()
+        self.note_hold(record)
 
     def _listening(self, record: Record) -> None:
         ab = self.running.get(base(record["behavior"]))
@@ -219,16 +225,19 @@ class Checker(Telling):
         if self.prima and ab.phase == WAITING:
             self.allowed(ab, shown)
             self.decided_rightly(ab, shown)
-        self.channel_connected(ab)
-        self.stands_right(ab)
+        if not self.third_turn(ab):
+            self.channel_connected(ab)
+            self.stands_right(ab)
         reaction = self._reaction_of(ab, record)
-        composed = self.carries_floor(ab)
+        aside = self.starts_aside(ab)
+        beside = aside or self.carries_floor(ab)
         self._run(ab)
-        self.resume(ab)
+        if not aside:
+            self.resume(ab)
         if not self.prima:
             ab.tree.suspended = False
             return
-        if reaction is not None or not composed:
+        if reaction is not None or not beside:
             self.take_floor(ab, reaction)
         self.floor_told_rightly()
 
@@ -244,6 +253,7 @@ class Checker(Telling):
 
     def _run(self, ab: AB) -> None:
         self.waiting.pop(ab.name, None)
+        self.turn = None if ab is self.turn else self.turn
         ab.phase = RUNNING
         ab.starts += 1
         ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
@@ -297,6 +307,7 @@ class Checker(Telling):
         self.note_keepers()
 
     def _look_back(self) -> None:
+        self.look_for_turn()
         self.close_trees()
         self.holds_rightly()
         self.interruptions()

@@ -1,4 +1,4 @@
-"""What the extensions X1 to X6 may do, and no more."""
+"""What the extensions may do, and no more."""
 
 from __future__ import annotations
 

@@ -50,6 +50,10 @@ class Memory:
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
+        self.answered_tree: Tree | None = None
+        """A stream with a question that was answered since the latest selection (X7)."""
+        self.turn: AB | None = None
+        """What the asker says to an answer, while it has not started (X7)."""
         self.trees: dict[str, Tree] = {}
         self.floor: list[Tree] = []
         self.turned: list[tuple[str, str, str]] = []

@@ -10,7 +10,7 @@ Record = Mapping[str, Any]
 
 LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
 BASELINES = ("fifo", "fair", "fixed", "none")
-EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6"))
+EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7"))
 COMPOSED = {"free", "faithful"}
 SEEKING = ("active-sensing-human", "tracking-human")
 """What searches or tracks, so that its stream engages whoever is away (K1)."""

@@ -49,7 +49,7 @@ class Patience(Streams):
         by = ab.said[1] if ab.said is not None else ""
         if by.replace("#", ":").partition(":")[0] in ("", ab.app):
             return False  # its own application keeps it
-        if self.refused_by_floor(ab) or self.refused_by_channel(ab):
+        if self.kept_by_floor(ab) or self.refused_by_channel(ab):
             return False
         speaks = [
             one for one in self.running.values() if one.unit is None and "speaker" in one.devices

@@ -241,6 +241,11 @@ class Behavior:
         return self.type is not None and self.type.engages
 
     @property
+    def asks(self) -> bool:
+        """Whether it is a question, or has one in it: it lasts as long as the user thinks."""
+        return "speech-recognition" in self.devices
+
+    @property
     def priority(self) -> int:
         """1 (high) or 0 (low), by K2."""
         return HIGH if self.type is None else self.type.priority

@@ -47,6 +47,8 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
         _note_effects(mediation, ab, data, ending)
     if not inbound and ab.type is not None and "speech-recognition" in ab.type.devices:
         ab.stream.answered = mediation.now
+        if outcome == "filled" and ab.unit is None:
+            mediation.memory.answered = ab.stream
     if ending:
         _finish(mediation, ab, data)
     else:

@@ -6,11 +6,12 @@ from prima.messages import Command
 from prima.scheduler.admission import link
 from prima.scheduler.behavior import Behavior, Stream
 from prima.scheduler.mediation import Mediation
+from prima.scheduler.rules import third_turn
 
 
 def prepare(mediation: Mediation, ab: Behavior) -> bool:
     """X1, X4: put in what has to come first; true if something was put in."""
-    if ab.inserted:
+    if ab.inserted or third_turn(ab, mediation.memory):
         return False
     return x1(mediation, ab) or x4(mediation, ab)
 
@@ -73,7 +74,7 @@ def join_ways_back(mediation: Mediation) -> None:
     for ab in list(mediation.memory.waiting.values()):
         way = None if ab.inserted else way_back(ab.stream)
         urgent = ab.command is not None and ab.command.now
-        if way is not None and not urgent:
+        if way is not None and not (urgent or third_turn(ab, mediation.memory)):
             put_behind(mediation, way, ab)
 
 

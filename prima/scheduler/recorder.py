@@ -17,7 +17,7 @@ class Recorder:
     def __init__(self) -> None:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
-        """Which of X1 to X6 are on: what they rest on is recorded with a request."""
+        """Which extensions are on: what they rest on is recorded with a request."""
         self.records: list[Record] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:

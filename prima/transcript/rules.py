@@ -37,5 +37,6 @@ RULES = {
     "X4": "the robot turns to the user before the first word",
     "X5": "a motion free in its path and one faithful to its own run together",
     "X6": "another Command takes the place of one that the robot lacks",
+    "X7": "nobody speaks between a user's answer and what the asker says to it",
 }
 """The rules by their numbers, as in a record's ``rule``."""

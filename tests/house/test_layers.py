@@ -44,7 +44,7 @@ INSIDE = {
         {"rules"},
         {"policy"},
         {"mediation"},
-        {"interruption", "preparation", "starvation", "streams"},
+        {"interruption", "preparation", "starvation", "streams", "thirdturn"},
         {"endings"},
         {"failures", "emergency", "requests", "selection"},
         {"mediator"},

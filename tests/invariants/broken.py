@@ -120,7 +120,7 @@ def floor_ignored(patch: pytest.MonkeyPatch) -> None:
 def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
     """S3 is gone."""
 
-    def holds_back(policy: Policy, ab: Behavior) -> bool:
+    def holds_back(policy: Policy, ab: Behavior, memory: Memory) -> bool:
         return False
 
     rebind(patch, Policy, "holds_back", holds_back)
@@ -355,6 +355,11 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
         return found
 
     rebind(patch, requests, "stream_of", apart)
+
+
+def spoken_between(patch: pytest.MonkeyPatch) -> None:
+    """X7: a reaction is said between an answer and what the asker says to it."""
+    rebind(patch, rules, "x7", lambda ab, memory: None)
 
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:

@@ -48,6 +48,7 @@ from tests.invariants.broken import (
     restored_for_nothing,
     run_twice,
     running_cut,
+    spoken_between,
     unmarked_interrupted,
 )
 
@@ -100,6 +101,14 @@ TAKEN_AWAY = Script(
 """The robot has gone somewhere to speak, when the other application drives it away."""
 
 
+ANSWERED = Script(
+    (((Ask(("move-head", "speak"), ((), (0,))),),), ()),
+    ((10, ((one("q-and-a"),), ())), (20, ((), (one("speak"),)))),
+    (),
+    World(),
+)
+"""A question is answered while a reaction waits to speak; the asker's word follows a movement."""
+
 TWO_BRANCHES = Ask(("turn", "speak", "turn", "speak", "turn"), ((), (), (0,), (1,), (2,)))
 MUTATIONS = (
     Mutation(1, devices_shared, at_events(("fa", one("speak")), ("ea", one("speak")))),
@@ -127,6 +136,7 @@ MUTATIONS = (
         floor_ignored,
         at_events(("ea", one("topological-move")), ("fa", one("speak", "move-head"))),
     ),
+    Mutation(16, spoken_between, ANSWERED, "prima+x7"),
     Mutation(
         1,
         anything_composed,

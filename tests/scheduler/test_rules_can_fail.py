@@ -29,6 +29,7 @@ from prima.scheduler import (
     selection,
     starvation,
     streams,
+    thirdturn,
 )
 from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
@@ -190,7 +191,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("s2f", "reversed", wrapped(rules, "s2f", lambda r: (-r[0], r[1]))),
     ("s2f", "by loading", loaded_order),
     ("s2", "all that wait have lost", any_loser),
-    ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab: False)),
+    ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab, memory: False)),
     ("f1", "no floor", put(streams, "take_floor", nothing)),
     ("f1", "nobody is suspended", put(streams, "suspend_others", nothing)),
     ("f2", "dropped", put(rules, "f2", nothing)),
@@ -299,6 +300,13 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         put(selection, "in_the_way", lambda mediation, ab: mediation.memory.conflicts(ab)),
     ),
     ("x6", "dropped", put(requests, "x6", nothing)),
+    ("x7", "dropped", put(thirdturn, "owe", nothing)),
+    ("x7", "others speak", put(rules, "x7", nothing)),
+    ("x7", "floors are kept", put(rules, "aside", lambda ab, memory: False)),
+    ("x7", "questions, too", reworded(thirdturn, "_soon_over", " or ab.asks", "")),
+    ("x7", "loops, too", reworded(thirdturn, "_soon_over", "ab.feedback or ", "")),
+    ("x7", "whatever comes before", put(rules, "before", lambda ab, memory: [])),
+    ("x7", "whatever was heard", reworded(endings, "u2", 'outcome == "filled" and ', "")),
 ]
 """Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""
 

@@ -116,7 +116,8 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
 }
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
 GROUPED = tuple(name for name in PIECES if name not in ("q-and-a", "stop-moving"))
-ALL = (*TABLE_4_2, *DANCES)
+ALL = (*TABLE_4_2, *DANCES, *("q-and-a", "speak") * 3)
+"""What is asked for; questions and words often, as much happens by their ends."""
 
 
 def command(name: str, now: bool = False, restartable: bool = False) -> Command:
