@@ -131,6 +131,8 @@ class Request:
     """How long (ms) its stream is kept open for an event afterwards (rule X3)."""
     connect: bool = False
     """Whether the robot has to face the user first (rule X4)."""
+    words: Command | None = None
+    """What is said first when its stream resumes after others have spoken (rule X9)."""
 
 
 @dataclass(slots=True)

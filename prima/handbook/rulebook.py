@@ -246,6 +246,11 @@ EXAMPLES: dict[str, Example] = {
         "scenarios/politeness/third-turn.xml",
         "The library says its word to the answer before the robot reacts to the touch.",
     ),
+    "X9": Example(
+        "scenarios/politeness/in-words.xml",
+        "The explanation says that it goes on.",
+        "[inserted, X9]",
+    ),
     "fifo": Example(
         TOUR, "The reaction waits for all that was asked for earlier.", "Yes, friend", "fifo"
     ),

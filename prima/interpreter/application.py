@@ -273,6 +273,7 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         asked.hold = frame.form.hold
         if frame.item is not None and frame.item.hold is not None:
             asked.hold = frame.item.hold
+        asked.words = self.words(frame.form)
         frame.asked = True
         asked.connect = self.connects(frame) and any(says(step) for step in steps)
         if asked.connect:
@@ -281,6 +282,13 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         self._waiting[number] = fiber
         fiber.waiting, fiber.began = number, self.now
         return number
+
+    def words(self, form: Form) -> Command | None:
+        """What the robot says first when the state's stream resumes (X9)."""
+        if not form.words:
+            return None
+        place = source(form.node)
+        return Command("speak", text=form.words, lang=self.document.lang, source=place)
 
     def take_cause(self) -> int | None:
         """The serial of the event that a request reacts to, which no further one does (C5)."""

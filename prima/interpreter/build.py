@@ -318,6 +318,7 @@ class Builder:
             node,
             self.hold(node),
             node.get("channel") == "connect",
+            " ".join(node.get("resume-text", "").split()),
         )
 
     @staticmethod

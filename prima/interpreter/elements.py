@@ -331,6 +331,8 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
+    words: str = ""
+    """What is said when its stream resumes after others have spoken (X9)."""
     takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
     """The handlers that take an event in it, as far as it has happened: by the event's name, or by
     the name of the item that was being visited and the event's."""

@@ -89,6 +89,12 @@ _CHANNEL = attribute(
     " (extension x4)",
     choices=("connect",),
 )
+_WORDS = attribute(
+    "resume-text",
+    "text",
+    "what the robot says first when the form's stream resumes after another application has"
+    " spoken (extension x9)",
+)
 _RESTARTABLE = attribute(
     "restartable",
     "boolean",
@@ -188,7 +194,7 @@ ELEMENTS = (
         "form",
         "A state of the application. Its items are visited in document order while their"
         " variables are undefined and their conditions true; then it waits for events.",
-        (attribute("id", "id", "its name, for goto", "required"), *_STREAM, _CHANNEL),
+        (attribute("id", "id", "its name, for goto", "required"), *_STREAM, _CHANNEL, _WORDS),
         (
             *("var", "script", "property", "block", "field", "subdialog", "iu-items"),
             *("filled", *HANDLERS, "link", "watch"),

@@ -195,6 +195,7 @@ class Checker(Telling):
             urgent=record.get("order") == "now",
             restartable=bool(record.get("restartable")),
             motion=record.get("motion") or "" if unit is None else "",
+            spans=bool(record.get("spans")),
             connect=bool(record.get("connect")),
             inserted=record.get("inserted") or "",
             put_before=base(record.get("before") or ""),
@@ -228,6 +229,7 @@ class Checker(Telling):
         if not self.third_turn(ab):
             self.channel_connected(ab)
             self.stands_right(ab)
+            self.words_said(ab)
         reaction = self._reaction_of(ab, record)
         aside = self.starts_aside(ab)
         beside = aside or self.carries_floor(ab)
@@ -239,6 +241,7 @@ class Checker(Telling):
             return
         if reaction is not None or not beside:
             self.take_floor(ab, reaction)
+        self.note_words(ab)
         self.floor_told_rightly()
 
     def _start_inside(self, ab: AB, record: Record) -> None:

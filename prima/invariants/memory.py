@@ -171,11 +171,11 @@ class Memory:
         self.running.pop(ab.name, None)
         ab.phase, ab.said = WAITING, None
         self.waiting[ab.name] = ab
-        self.join_ways_back(ab)
+        self.join_first(ab)
 
-    def join_ways_back(self, ab: AB) -> None:
-        """X1: what waits in a stream waits for its way back, but what is wanted now (O2)."""
-        ways = ab.tree.ways_back()
+    def join_first(self, ab: AB) -> None:
+        """X1, X9: what waits in a stream waits for what is put first, but what is wanted now (O2)."""
+        ways = ab.tree.put_first()
         if ways and not (ab.inserted or ab.urgent or ab.unit):
             ab.parents |= {way.name for way in ways}
             ab.phase = LINKED

@@ -103,6 +103,8 @@ class Recorder:
             restartable=ab.restartable or None if "x2" in self.extensions else None,
             hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
             connect=ab.connect or None if "x4" in self.extensions else None,
+            spans=ab.spans or None if "x7" in self.extensions else None,
+            words=ab.stream.words.text if ab.stream.words else None,
             motion=ab.motion or None if "x5" in self.extensions else None,
             source=line_of(command.source if command else ab.group.source if ab.group else ""),
         )

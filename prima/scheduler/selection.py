@@ -8,7 +8,7 @@ from prima.scheduler.behavior import WAITING, Behavior, Wait
 from prima.scheduler.interruption import Held, x2
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.policy import Ranked
-from prima.scheduler.preparation import join_ways_back, prepare
+from prima.scheduler.preparation import join_first, note_words, prepare
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.starvation import count_waits, e4, note_waits
 from prima.scheduler.streams import f1, note_turns, resume
@@ -38,7 +38,7 @@ def s4(mediation: Mediation) -> bool:
     All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
     """
     policy, memory = mediation.policy, mediation.memory
-    join_ways_back(mediation)
+    join_first(mediation)
     ranked = policy.ranked(memory.waiting.values(), memory, mediation.now)
     held: Held = {}
     before = len(mediation.started)
@@ -152,6 +152,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, aside)
     changed = f1(mediation, ab, reaction, beside)
+    note_words(mediation, ab)
     losers = _outdone(mediation, rivals, ab, lower, held)
     rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])

@@ -38,5 +38,6 @@ RULES = {
     "X5": "a motion free in its path and one faithful to its own run together",
     "X6": "another Command takes the place of one that the robot lacks",
     "X7": "nobody speaks between a user's answer and what the asker says to it",
+    "X9": "a topic that resumes after others have spoken says so first",
 }
 """The rules by their numbers, as in a record's ``rule``."""

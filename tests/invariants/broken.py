@@ -357,6 +357,11 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
     rebind(patch, requests, "stream_of", apart)
 
 
+def resumed_silently(patch: pytest.MonkeyPatch) -> None:
+    """X9: a topic goes on as if nobody had spoken meanwhile."""
+    rebind(patch, preparation, "x9", lambda mediation, ab: False)
+
+
 def spoken_between(patch: pytest.MonkeyPatch) -> None:
     """X7: a reaction is said between an answer and what the asker says to it."""
     rebind(patch, rules, "x7", lambda ab, memory: None)

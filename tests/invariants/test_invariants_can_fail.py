@@ -46,6 +46,7 @@ from tests.invariants.broken import (
     restarted_as_new,
     restarted_in_part,
     restored_for_nothing,
+    resumed_silently,
     run_twice,
     running_cut,
     spoken_between,
@@ -137,6 +138,12 @@ MUTATIONS = (
         at_events(("ea", one("topological-move")), ("fa", one("speak", "move-head"))),
     ),
     Mutation(16, spoken_between, ANSWERED, "prima+x7"),
+    Mutation(
+        16,
+        resumed_silently,
+        at_events(("ea", replace(one("speak", "speak"), words=True)), ("fa", one("speak"))),
+        "prima+x9",
+    ),
     Mutation(
         1,
         anything_composed,

@@ -129,7 +129,7 @@ HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}
 THROWN = "thrown.here"
 TURNS = ("suspended", "resumed")
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
-HINTS = re.compile(r' (stream|hold-for|channel|restartable)="[^"]*"')
+HINTS = re.compile(r' (stream|hold-for|channel|restartable|resume-text)="[^"]*"')
 
 
 def without_hints(play: Play) -> Play:
@@ -180,7 +180,7 @@ class Author:
             self.handler(index, self.one((*EVENTS, *TURNS, "own", "end", "cancel", "error")))
             for _ in range(self.some(0, 2))
         )
-        hints = self.hold(4) + self.connect(4)
+        hints = self.hold(4) + self.connect(4) + self.words(2)
         watch = self.watch(index) if self.chance(8) else ""
         return f'<form id="{self.forms[index]}"{hints}>{watch}{items}{handlers}</form>'
 
@@ -197,6 +197,10 @@ class Author:
     def hold(self, of: int) -> str:
         """X3: now and then the hint that the stream be kept open."""
         return f' stream="hold" hold-for="{self.some(1, 6000)}ms"' if self.chance(of) else ""
+
+    def words(self, of: int) -> str:
+        """X9: now and then what is said when the form's stream resumes."""
+        return ' resume-text="As I was saying."' if self.chance(of) else ""
 
     def connect(self, of: int) -> str:
         """X4: now and then the hint that the robot turn to the user first."""

@@ -54,6 +54,7 @@ class Ask:
     hold: int | None = None
     connect: bool = False
     restartable: bool = False
+    words: bool = False
 
 
 @dataclass(frozen=True)
@@ -155,6 +156,7 @@ class Requester:
                     asked = Request(
                         number, steps, self.state, cause, self.unit, deed.hold, deed.connect
                     )
+                    asked.words = command("speak") if deed.words else None
                     mediator.request(self.name, asked)
                     self._asked, cause = True, None
                 case Open() if self.unit is None:
@@ -319,6 +321,7 @@ def _asks(draw: Any) -> Ask:
         draw(st.integers(1, 6)) == 6,
         draw(st.integers(1, 6000)) if draw(st.integers(1, 4)) == 4 else None,
         draw(st.integers(1, 4)) == 4,
+        draw(st.integers(1, 3)) == 3,
         draw(st.integers(1, 3)) == 3,
     )
 
