@@ -404,6 +404,7 @@ class Builder:
                     content,
                     child,
                     self._runs > runs,
+                    self.value(child, "fresh-for", "duration", None),
                 )
             )
         return tuple(found)

@@ -221,6 +221,8 @@ class Handler:
     node: Node
     waits: bool = False
     """Whether there is a Command in it, whose end is waited for."""
+    fresh: int | None = None
+    """For how long (ms) the reaction is worth starting (X8)."""
 
 
 @dataclass(slots=True, eq=False)

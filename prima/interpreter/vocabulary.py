@@ -386,6 +386,13 @@ ELEMENTS = (
             _COND,
             _COUNT,
             _REACTIVE,
+            attribute(
+                "fresh-for",
+                "duration",
+                "for how long the reaction is worth starting: later it is given up (extension x8)",
+                low=1,
+                high=600000,
+            ),
         ),
         CONTENT,
         source="VoiceXML 5.2.2; thesis 4.4",

@@ -29,7 +29,7 @@ class Checker(Telling):
             "starve": self.note_starve,
             "fail": self.note_fail,
             "cancel": self.note_cancel,
-            "event": self.note_event,
+            "event": self._event,
             "transferred": self.note_serial,
             "interrupt": self.note_interrupt,
             "held": self.note_held,
@@ -55,6 +55,7 @@ class Checker(Telling):
     def _end(self, record: Record) -> None:
         self.note_answer(record)
         self.note_turn(record)
+        self.note_lapse(record)
         self.note_end(record)
 
     def _until(self, time: float) -> None:
@@ -90,6 +91,10 @@ class Checker(Telling):
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
         self.decision = record
         self.look_for_turn()
+
+    def _event(self, record: Record) -> None:
+        self.note_speech(record)
+        self.note_event(record)
 
     def _hold(self, record: Record) -> None:
         self.look_for_turn()
@@ -195,6 +200,7 @@ class Checker(Telling):
             urgent=record.get("order") == "now",
             restartable=bool(record.get("restartable")),
             motion=record.get("motion") or "" if unit is None else "",
+            fresh_until=self.now + record["fresh"] * self.second if record.get("fresh") else None,
             spans=bool(record.get("spans")),
             connect=bool(record.get("connect")),
             inserted=record.get("inserted") or "",
@@ -261,7 +267,7 @@ class Checker(Telling):
         ab.starts += 1
         ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
         ab.loop += 1 if ab.feedback else 0
-        ab.cause = None
+        ab.cause = ab.fresh_until = None
         ab.listening = False
         self.running[ab.name] = ab
         self.driven = self.driven or "locomotion" in ab.devices
@@ -330,6 +336,7 @@ class Checker(Telling):
                 self.report(2, "E5", f"{ab.shown} runs during the emergency stop")
             return
         for ab in self.waiting.values():
+            self.fresh(ab)
             self.waits_rightly(ab)
             if self.in_view:
                 self.seen.add(ab.name)

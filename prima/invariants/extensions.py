@@ -38,7 +38,8 @@ class Extensions(Floor):
             self.report(11, rule, f"{shown}, but {before.shown} is {before.phase}")
         if ab.cause != (before.cause if first else None):
             self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
-        before.cause = None
+        ab.fresh_until = before.fresh_until if first else None
+        before.cause = before.fresh_until = None
         # It takes the other's place in the order of S2.
         ab.requested, ab.place = before.requested, before.place
         ab.followed_at = before.followed_at

@@ -50,6 +50,13 @@ class Memory:
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
+        self.lapsed: tuple[str, float] | None = None
+        """Whose question was not answered in time last, and when (X10)."""
+        self.late_app = ""
+        """Who has asked what the user has just answered too late (X10)."""
+        self.speech: int | None = None
+        """The number of what the user said last, and when that was."""
+        self.speech_at: float = -1
         self.answered_tree: Tree | None = None
         """A stream with a question that was answered since the latest selection (X7)."""
         self.turn: AB | None = None

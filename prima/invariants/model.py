@@ -10,7 +10,7 @@ Record = Mapping[str, Any]
 
 LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
 BASELINES = ("fifo", "fair", "fixed", "none")
-EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x9"))
+EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10"))
 COMPOSED = {"free", "faithful"}
 SEEKING = ("active-sensing-human", "tracking-human")
 """What searches or tracks, so that its stream engages whoever is away (K1)."""
@@ -42,6 +42,8 @@ class AB:
     """Whether it is wanted now, and never linked (O2)."""
     restartable: bool = False
     motion: str = ""
+    fresh_until: float | None = None
+    """Until when the reaction is worth starting (X8)."""
     spans: bool = False
     """Whether it is a unit that spans questions and states (U5), as far as X7 asks."""
     connect: bool = False

@@ -79,6 +79,12 @@ class Patience(Streams):
         if ab is not None and asks and not record.get("inbound"):
             self._answered[ab.tree.name] = self.now
 
+    def answered_now(self, ab: AB) -> None:
+        """X8, X10: a question was answered before it was asked."""
+        self._answered[ab.tree.name] = self.now
+        if ab.unit is None:
+            self.answered_tree = ab.tree
+
     def note_starve(self, record: Record) -> None:
         """Who is said to starve waits; by E6 for as long as that takes."""
         ab = self.abs.get(base(record["behavior"]))

@@ -126,6 +126,8 @@ class Run:
     number: int
     app: Application
     left: int
+    begun: bool = False
+    """Whether any of them has started."""
 
 
 @dataclass(slots=True)
@@ -187,6 +189,8 @@ class Behavior:
     state: State = WAITING
     reaction: int | None = None
     """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
+    stale: int | None = None
+    """From when (ms) on a reaction that has not started is not worth starting (X8)."""
     parent: str | None = None
     waits_for: set[str] = field(default_factory=set)
     children: list[Behavior] = field(default_factory=list)

@@ -158,8 +158,8 @@ USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
 """How policies are written, for the help of the command line."""
 BASELINES = tuple(name for name in POLICIES if name != "prima")
 """The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
-EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x9")
-"""The extensions of ``prima`` (rules X1-X7), each written behind a plus: ``prima+x1+x3``."""
+EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10")
+"""The extensions of ``prima`` (rules X1-X10), each written behind a plus: ``prima+x1+x3``."""
 
 
 class UnknownPolicy(UsageError):

@@ -70,7 +70,7 @@ def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: st
             made.devices |= ab.devices
         if before is None:
             made.parent, made.reaction, made.freed = ab.parent, ab.reaction, ab.freed
-            ab.reaction = None
+            made.stale, ab.reaction, ab.stale = ab.stale, None, None
         else:
             link(before, made)
         mediation.memory.add(made)

@@ -104,6 +104,7 @@ class Recorder:
             hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
             connect=ab.connect or None if "x4" in self.extensions else None,
             spans=ab.spans or None if "x7" in self.extensions else None,
+            fresh=(ab.stale - self.now) / 1000 if ab.stale is not None else None,
             words=ab.stream.words.text if ab.stream.words else None,
             motion=ab.motion or None if "x5" in self.extensions else None,
             source=line_of(command.source if command else ab.group.source if ab.group else ""),

@@ -57,6 +57,8 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
         if not ab.waits_for:
             _root(mediation, ab, parent, reaction)
             ab.connect = asked.connect and unit is None
+            if asked.fresh is not None and ab.reaction is not None and mediation.has("x8"):
+                ab.stale = mediation.now + asked.fresh
         if unit is not None and unit.inside is not None:
             unit.inside.members[ab.name] = unit.inside.latest = ab
         mediation.memory.add(ab)

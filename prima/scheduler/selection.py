@@ -146,7 +146,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     rivals = able(mediation, lower, held)
     composed = mediation.has("x5") and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
-    reaction, ab.reaction = ab.reaction, None
+    reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = -1 if reaction is None else reaction
     aside = rules.aside(ab, memory)
     beside = composed or aside or not rules.f3(ab, memory)
@@ -194,6 +194,8 @@ def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
     ab.restarting = False
     ab.wait = Wait()
+    if ab.run is not None:
+        ab.run.begun = True
     if ab.feedback:
         ab.next_loop()
     mediation.started.append(ab)

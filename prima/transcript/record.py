@@ -59,8 +59,8 @@ PHASES = {
         "an AB enters working memory",
         "`behavior`, `tree`, `command`, `text`, `args`, `extra`, `parent`, `parents`, "
         "`devices`, `priority`, `reactive`, `cause`, `feedback`, `leaves`, `engages`, `order`, "
-        "`state`, `unit`, `inserted`, `before`, `restartable`, `hold`, `connect`, `spans`, `words`, "
-        "`motion`, `source`",
+        "`state`, `unit`, `inserted`, `before`, `restartable`, `hold`, `connect`, `fresh`, `spans`, "
+        "`words`, `motion`, `source`",
         ("behavior", "command", "app", "tree", "priority"),
     ),
     "decision": Phase(
@@ -286,6 +286,7 @@ class Entry:
         False
     )
     hold: Annotated[float, "How long (s) its stream is held for an event afterwards (X3)."] = 0.0
+    fresh: Annotated[float, "For how long (s) the reaction is worth starting (X8)."] = 0.0
     spans: Annotated[bool, "Whether it is a unit that spans questions and states (U5; for X7)."] = (
         False
     )

@@ -90,11 +90,12 @@ class Stage:
         hold: int | None = None,
         connect: bool = False,
         words: Command | None = None,
+        fresh: int | None = None,
     ) -> int:
         """Ask for Commands; nothing is selected before :meth:`select`."""
         self.runs += 1
         asked = Request(self.runs, steps or chain(*whats), state, cause, unit, hold, connect)
-        asked.words = words
+        asked.words, asked.fresh = words, fresh
         self.mediator.request(app, asked)
         return self.runs
 

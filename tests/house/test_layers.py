@@ -47,6 +47,7 @@ INSIDE = {
         {"interruption", "preparation", "starvation", "streams", "thirdturn"},
         {"endings"},
         {"failures", "emergency", "requests", "selection"},
+        {"freshness"},
         {"mediator"},
         {"__init__"},
     ],

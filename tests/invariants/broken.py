@@ -7,6 +7,7 @@ import pytest
 from prima.messages import Command, Data
 from prima.scheduler import (
     endings,
+    freshness,
     interruption,
     preparation,
     requests,
@@ -355,6 +356,11 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
         return found
 
     rebind(patch, requests, "stream_of", apart)
+
+
+def never_too_late(patch: pytest.MonkeyPatch) -> None:
+    """X8: a reaction waits as long as it takes."""
+    rebind(patch, freshness, "x8", lambda mediation: False)
 
 
 def resumed_silently(patch: pytest.MonkeyPatch) -> None:

@@ -36,6 +36,7 @@ from tests.invariants.broken import (
     held_without_floor,
     inserted_beside,
     never_resumed,
+    never_too_late,
     not_held,
     nothing_held_back,
     nothing_interrupted,
@@ -136,6 +137,12 @@ MUTATIONS = (
         7,
         floor_ignored,
         at_events(("ea", one("topological-move")), ("fa", one("speak", "move-head"))),
+    ),
+    Mutation(
+        16,
+        never_too_late,
+        at_events(("ea", one("speak")), ("fa", replace(one("speak"), fresh=1))),
+        "prima+x8",
     ),
     Mutation(16, spoken_between, ANSWERED, "prima+x7"),
     Mutation(

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from prima import session
 from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
 from prima.language.commands import CommandType
@@ -22,6 +23,7 @@ from prima.scheduler import (
     emergency,
     endings,
     failures,
+    freshness,
     interruption,
     preparation,
     requests,
@@ -300,6 +302,18 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         put(selection, "in_the_way", lambda mediation, ab: mediation.memory.conflicts(ab)),
     ),
     ("x6", "dropped", put(requests, "x6", nothing)),
+    ("x8", "dropped", put(freshness, "x8", lambda mediation: False)),
+    ("x8", "never shrinks", reworded(freshness, "_give_up", "not kept or ", "True or ")),
+    ("x8", "whatever keeps it", reworded(freshness, "_give_up", "not kept or ", "")),
+    ("x8", "what follows stays", put(freshness, "followers", lambda root: [root])),
+    ("x8", "the last instant", reworded(freshness, "x8", "if ab in may_start", "if False")),
+    ("x8", "what has begun is abandoned", reworded(freshness, "_tell", " and not run.begun", "")),
+    ("x8", "nothing is offered", put(freshness, "offered", nothing)),
+    ("x8", "what comes before is lost", reworded(endings, "answered", "in ab.waits_for", "in ()")),
+    ("x10", "dropped", put(Session, "_late_for", nothing)),
+    ("x10", "for ever", put(session, "LATE_MS", 10**9)),
+    ("x10", "not at once", put(session, "LATE_MS", 0)),
+    ("x10", "links alone", put(Mediator, "coming_question", nothing)),
     ("x9", "dropped", put(preparation, "x9", lambda *given: False)),
     ("x9", "whoever resumes", reworded(preparation, "note_words", " and stream.spoken", "")),
     (

@@ -55,6 +55,7 @@ class Ask:
     connect: bool = False
     restartable: bool = False
     words: bool = False
+    fresh: int | None = None
 
 
 @dataclass(frozen=True)
@@ -156,6 +157,7 @@ class Requester:
                     asked = Request(
                         number, steps, self.state, cause, self.unit, deed.hold, deed.connect
                     )
+                    asked.fresh = deed.fresh
                     asked.words = command("speak") if deed.words else None
                     mediator.request(self.name, asked)
                     self._asked, cause = True, None
@@ -323,6 +325,7 @@ def _asks(draw: Any) -> Ask:
         draw(st.integers(1, 4)) == 4,
         draw(st.integers(1, 3)) == 3,
         draw(st.integers(1, 3)) == 3,
+        draw(st.sampled_from((1, 700, 3000))) if draw(st.integers(1, 3)) == 3 else None,
     )
 
 
