@@ -141,7 +141,11 @@ MUTATIONS = (
     Mutation(
         16,
         never_too_late,
-        at_events(("ea", one("speak")), ("fa", replace(one("speak"), fresh=1))),
+        at_events(
+            ("ea", one("speak")),
+            ("fa", replace(one("speak"), fresh=1)),
+            ("ea", one("move-head")),
+        ),
         "prima+x8",
     ),
     Mutation(16, spoken_between, ANSWERED, "prima+x7"),
