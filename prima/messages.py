@@ -16,8 +16,8 @@ Json = Any
 Data = Mapping[str, Json]
 Record = dict[str, Json]
 """One line of the transcript while it is still being made: field name to value."""
-Fate = Literal["ended", "done", "cancelled", "failed", "interrupted", "unit-timeout"]
-"""What an application may be told of its Commands."""
+Fate = Literal["ended", "done", "cancelled", "expired", "failed", "interrupted", "unit-timeout"]
+"""What an application may be told of its Commands; ``expired``: a part of a run came too late (X8)."""
 Verb = Literal["start", "abort", "interrupt", "stop", "send"]
 """What devices may be told to do."""
 PROMOTED = -1
@@ -131,6 +131,10 @@ class Request:
     """How long (ms) its stream is kept open for an event afterwards (rule X3)."""
     connect: bool = False
     """Whether the robot has to face the user first (rule X4)."""
+    words: Command | None = None
+    """What is said first when its stream resumes after others have spoken (rule X9)."""
+    fresh: int | None = None
+    """For how long (ms) a reaction is worth starting (rule X8)."""
 
 
 @dataclass(slots=True)
@@ -308,6 +312,8 @@ class Heard:
     ``duration``, its ms, and ``maxtime``, whether it was cut off; of one that is a file, which is
     the text, also ``size``, its bytes, and ``type``, its media type. ``toolong``: it took longer than
     the question lets it (``longest``)."""
+    lasted: int = 0
+    """How long (ms) it took to say, where that is known: the user began so long ago (X10)."""
 
     @property
     def hypotheses(self) -> list[Hypothesis]:

@@ -21,7 +21,7 @@ from prima.interpreter.bounds import Visit
 from prima.interpreter.elements import Document
 from prima.interpreter.protocol import App
 from prima.interpreter.transfers import GoOut
-from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
+from prima.language.commands import ABSENCE_MS, LATE_MS, PATIENCE_MS, CommandType
 from prima.language.values import moment
 from prima.messages import (
     PROMOTED,
@@ -106,6 +106,7 @@ class Session:
         self.apps = {name: self._made(one) for name, one in self.documents.items()}
         self.order = {name: index for index, name in enumerate(self.apps)}
         self.recorder = Recorder()
+        self._late_answers = policy.has("x10")
         self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
         self.failures: list[str] = []
         self.unheard = ""
@@ -122,6 +123,8 @@ class Session:
         self._due: dict[str, int] = {}
         """When applications want to be called, by name."""
         self._sensors: dict[str, Json] = {}
+        self._lapsed: tuple[str, int] | None = None
+        """Whose question nobody answered in time last, and when that was (X10)."""
         self._sends: list[Order] = []
         self._turns: list[tuple[str, Stream]] = []
         """Streams that wait ``suspended`` or have ``resumed`` by the latest selection, with which:
@@ -243,6 +246,7 @@ class Session:
     def _take(self, value: Inbound) -> None:
         match value:
             case Ended():
+                self._lapse(value)
                 self.mediator.ended(value.behavior, value.goal, value.data)
                 self._settle()
             case Listening():
@@ -396,17 +400,24 @@ class Session:
         self.mediator.senses_user()
         self._serial += 1
         told, said = dict(value.data), value.hypotheses
-        self._record(
-            "event",
-            "user",
-            event="speech",
-            text=value.text,
-            data=told or None,
-            serial=self._serial,
-        )
         question = self.mediator.question()
         if question is not None and not self._hears(question):
             question = None
+        late = self._late_for(value, question)
+        lasted = {"lasted": value.lasted / 1000} if value.lasted and self._late_answers else {}
+        self._record(
+            "event",
+            "user",
+            app=late.name if late is not None else None,
+            event="speech",
+            text=value.text,
+            data={**told, **lasted} or None,
+            rule="X10" if late is not None else None,
+            serial=self._serial,
+        )
+        if late is not None:
+            self._answer_late(late, value, said)
+            return
         asked = question.command if question is not None else None
         if question is not None and told.get("toolong") and asked and asked.cued("longest"):
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
@@ -431,8 +442,70 @@ class Session:
         if question is None or question.silent:
             self.unheard = value.text
             return
+        if self._offer(value, said):
+            return
         if asked is None or not asked.cued("hotword"):
             self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text, **told})
+
+    def _lapse(self, value: Ended) -> None:
+        """X10: note the question that nobody has answered in time."""
+        if not self._late_answers or value.data.get("outcome") != "noinput":
+            return
+        question = self.mediator.running(value.behavior)
+        if question is not None and not question.silent:
+            self._lapsed = question.app.name, self.recorder.now
+
+    def _late_for(self, value: Heard, question: Behavior | None) -> AnyApp | None:
+        """X10: whose question the user answers too late, unless it asks again and listens."""
+        if self._lapsed is None:
+            return None
+        name, when = self._lapsed
+        app = self.apps[name]
+        if app.over or self.recorder.now - value.lasted - when > LATE_MS:
+            self._lapsed = None
+            return None
+        return None if question is not None and question.app.name == name else app
+
+    def _answer_late(self, app: AnyApp, value: Heard, said: list[Hypothesis]) -> None:
+        """X10: to its next question, else to its links, else as its event ``late``."""
+        question, answer, link = self.mediator.coming_question(app.name), None, None
+        if question is not None and question.run is not None:
+            with self._contained(app):
+                answer = app.answer(question.run.number, said)
+        if question is not None and answer is not None:
+            self._answer_early(question, value.filled(answer), "X10")
+            return
+        data: dict[str, Json] = {"text": value.text}
+        with self._contained(app):
+            link = app.listens_to(said)
+            if link is not None:
+                app.follow(self.recorder.now, link, Event("speech", self._serial, data))
+            elif app.takes("late"):
+                app.event(self.recorder.now, Event("late", self._serial, data))
+            else:
+                self.unheard = value.text
+        self._act(app)
+
+    def _offer(self, value: Heard, said: list[Hypothesis]) -> bool:
+        """X8: what a question refuses may answer the first one of a reaction that waits."""
+        question, answer = self.mediator.offered(), None
+        if question is None or question.run is None:
+            return False
+        app = self.apps[question.app.name]
+        with self._contained(app):
+            answer = app.answer(question.run.number, said)
+        if answer is not None:
+            self._answer_early(question, value.filled(answer), "X8")
+        self._act(app)
+        return answer is not None
+
+    def _answer_early(self, question: Behavior, data: dict[str, Json], rule: str) -> None:
+        """X8, X10: a question is answered that is still to be asked, or is being asked."""
+        if self.mediator.running(question.id) is not None:
+            self._conclude(question.id, data)
+            return
+        self.mediator.answered(question, data, rule, self._serial)
+        self._settle()
 
     @staticmethod
     def _hears(question: Behavior) -> bool:

@@ -242,6 +242,25 @@ EXAMPLES: dict[str, Example] = {
     "X6": Example(
         "scenarios/navigate-by-laser.xml", "A robot without arms points with its laser.", "aser"
     ),
+    "X7": Example(
+        "scenarios/politeness/third-turn.xml",
+        "The library says its word to the answer before the robot reacts to the touch.",
+    ),
+    "X8": Example(
+        "scenarios/politeness/fresh-reaction.xml",
+        "The words are given up after three seconds, and the robot nods at once.",
+        "Gesture",
+    ),
+    "X9": Example(
+        "scenarios/politeness/in-words.xml",
+        "The explanation says that it goes on.",
+        "[inserted, X9]",
+    ),
+    "X10": Example(
+        "scenarios/politeness/late-answer.xml",
+        "The answer goes to the library, which has asked, and not to the dancer, which is asking.",
+        '"Yes."',
+    ),
     "fifo": Example(
         TOUR, "The reaction waits for all that was asked for earlier.", "Yes, friend", "fifo"
     ),

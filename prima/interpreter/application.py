@@ -103,6 +103,8 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         self.reported: dict[str, int] = {}
         """Which of the reports was the latest, by the first part of a sensor's name."""
         self.cause: int | str | None = None
+        self.fresh: tuple[int | str, int] | None = None
+        """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
         """What is requested next reacts to this event: its serial, or the name of an own one (C5)."""
         self._timed = "session" in document.node.source.text
         """Whether the document looks at the clock at all."""
@@ -140,7 +142,7 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
             return
         if notice.what == "unit-timeout":
             self._guard(self.handling.unit_timeout, notice)
-        elif notice.what in ("ended", "interrupted"):
+        elif notice.what in ("ended", "interrupted", "expired"):
             kind = "end" if notice.what == "ended" else notice.what
             self._guard(self.handling.command_event, notice, kind)
         else:
@@ -153,7 +155,7 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
                 self._guard(self._resume, fiber, notice)
                 self.cause = None
             if notice.what == "cancelled":
-                self._guard(self.handling.command_event, notice, "cancel")
+                self._guard(self.handling.command_event, notice, notice.event.partition(".")[0])
 
     @staticmethod
     def _going_on_at(fiber: Fiber) -> Node:
@@ -269,10 +271,12 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self.runs)
         frame = fiber.frame
-        asked = Request(number, steps, frame.state, self.take_cause(), fiber.unit)
+        fresh = self.fresh[1] if self.fresh and self.fresh[0] == self.cause else None
+        asked = Request(number, steps, frame.state, self.take_cause(), fiber.unit, fresh=fresh)
         asked.hold = frame.form.hold
         if frame.item is not None and frame.item.hold is not None:
             asked.hold = frame.item.hold
+        asked.words = self.words(frame.form)
         frame.asked = True
         asked.connect = self.connects(frame) and any(says(step) for step in steps)
         if asked.connect:
@@ -281,6 +285,13 @@ class Interpreter(App["AnyEngine | PlainEngine"]):
         self._waiting[number] = fiber
         fiber.waiting, fiber.began = number, self.now
         return number
+
+    def words(self, form: Form) -> Command | None:
+        """What the robot says first when the state's stream resumes (X9)."""
+        if not form.words:
+            return None
+        place = source(form.node)
+        return Command("speak", text=form.words, lang=self.document.lang, source=place)
 
     def take_cause(self) -> int | None:
         """The serial of the event that a request reacts to, which no further one does (C5)."""

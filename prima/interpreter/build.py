@@ -318,6 +318,7 @@ class Builder:
             node,
             self.hold(node),
             node.get("channel") == "connect",
+            " ".join(node.get("resume-text", "").split()),
         )
 
     @staticmethod
@@ -403,6 +404,7 @@ class Builder:
                     content,
                     child,
                     self._runs > runs,
+                    self.value(child, "fresh-for", "duration", None),
                 )
             )
         return tuple(found)

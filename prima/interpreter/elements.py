@@ -221,6 +221,8 @@ class Handler:
     node: Node
     waits: bool = False
     """Whether there is a Command in it, whose end is waited for."""
+    fresh: int | None = None
+    """For how long (ms) the reaction is worth starting (X8)."""
 
 
 @dataclass(slots=True, eq=False)
@@ -331,6 +333,8 @@ class Form:
     node: Node
     hold: int | None = None
     connect: bool = False
+    words: str = ""
+    """What is said when its stream resumes after others have spoken (X9)."""
     takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
     """The handlers that take an event in it, as far as it has happened: by the event's name, or by
     the name of the item that was being visited and the event's."""

@@ -41,7 +41,7 @@ STANDARD = frozenset(
         *("suspended", "resumed", "emergency.stop", "emergency.release"),
         *("connection.disconnect.hangup", "error"),
         *("error.semantic", "error.badfetch", "error.unsupported", "error.unit.timeout"),
-        *("error.service", "end", "cancel", "interrupted", "reply"),
+        *("error.service", "end", "cancel", "interrupted", "expired", "late", "reply"),
         *(f"error.device.{device}" for device in DEVICES),
     ]
 )
@@ -69,7 +69,7 @@ NEAR = 0.8
 """How alike names are of which one is taken for a slip of the other."""
 FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
 """How the names of standard events begin."""
-OWN = ("end", "cancel", "interrupted")
+OWN = ("end", "cancel", "interrupted", "expired")
 """What begins an event of the application's own Commands."""
 
 

@@ -61,7 +61,7 @@ class Handling:
             if event.name in REPROMPTED:
                 frame.reprompt = True
                 return
-            if event.name.startswith(("cancel.", "end.")):
+            if event.name.startswith(("cancel.", "end.", "expired.")):
                 return
             thrown.sought = True
             raise thrown
@@ -199,6 +199,7 @@ class Handling:
             owner.cause = None
         elif event.serial or owner.cause is None:
             owner.cause = event.serial or event.name
+            owner.fresh = (owner.cause, handler.fresh) if handler.fresh else None
 
     def event_scope(self, event: Event) -> Scope:
         """The scope of an event's handler, if any code of the document may look at the event."""

@@ -81,6 +81,8 @@ class Owner(Protocol):
     """The form that is visited, if any."""
     cause: int | str | None
     """The event that is reacted to next (C5)."""
+    fresh: tuple[int | str, int] | None
+    """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
     untold: bool
     """Whether the variable ``sensor`` has old values."""
 

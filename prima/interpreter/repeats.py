@@ -41,7 +41,10 @@ SAID_AGAIN = TOLD_TWICE.says(
     'If "{event}" comes while the {form} {asks} this ({line}), it {told} told twice: {why}'
 )
 
-OWN = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error", "emergency")
+OWN = (
+    *("noinput", "nomatch", "help", "end", "cancel", "interrupted", "expired", "exit", "error"),
+    "emergency",
+)
 """What begins an event that comes of what the application itself does, or ends everything."""
 MOST_FOUND = 5_000
 """Of which something may be told: a list of problems ends long before."""

@@ -89,6 +89,12 @@ _CHANNEL = attribute(
     " (extension x4)",
     choices=("connect",),
 )
+_WORDS = attribute(
+    "resume-text",
+    "text",
+    "what the robot says first when the form's stream resumes after another application has"
+    " spoken (extension x9)",
+)
 _RESTARTABLE = attribute(
     "restartable",
     "boolean",
@@ -188,7 +194,7 @@ ELEMENTS = (
         "form",
         "A state of the application. Its items are visited in document order while their"
         " variables are undefined and their conditions true; then it waits for events.",
-        (attribute("id", "id", "its name, for goto", "required"), *_STREAM, _CHANNEL),
+        (attribute("id", "id", "its name, for goto", "required"), *_STREAM, _CHANNEL, _WORDS),
         (
             *("var", "script", "property", "block", "field", "subdialog", "iu-items"),
             *("filled", *HANDLERS, "link", "watch"),
@@ -380,6 +386,13 @@ ELEMENTS = (
             _COND,
             _COUNT,
             _REACTIVE,
+            attribute(
+                "fresh-for",
+                "duration",
+                "for how long the reaction is worth starting: later it is given up (extension x8)",
+                low=1,
+                high=600000,
+            ),
         ),
         CONTENT,
         source="VoiceXML 5.2.2; thesis 4.4",

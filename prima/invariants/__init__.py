@@ -19,13 +19,13 @@ when it is cancelled. Under a baseline policy a decision's
 rule is believed, and its start is held to it.
 
 Each file is a family of rules and stands on those before it: ``model``,
-``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``floor`` (F, C2),
-``extensions`` (X), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
+``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``turn`` (X7), ``floor`` (F, C2),
+``extensions`` (X), ``late`` (X8, X10), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
 E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``checker``.
 
 The extensions relax some invariants, and each is held to what it relaxes:
 
-- X1, X4: an AB that the mediator put in starts before the one that it was put in
+- X1, X4, X9: an AB that the mediator put in starts before the one that it was put in
   for (4), counts as its reaction's start (6), and is there only for a reason (11);
 - X2: only an AB marked so is interrupted, only for a reaction that starts in that
   instant (2), and it starts again from its beginning (3); a reaction that finds
@@ -33,7 +33,12 @@ The extensions relax some invariants, and each is held to what it relaxes:
 - X3: a held stream is open, so it keeps channel and floor (5, 7); it is held only as
   long as was asked for, and no shorter (10);
 - X5: one free and one faithful motion share devices (1); a loop that only carries
-  what holds the floor may start beside it (7).
+  what holds the floor may start beside it (7);
+- X8: a reaction that has a time goes when that is over, and a question may be answered before
+  it is asked (3, 16); X10: no other application's question takes a late answer (16);
+- X9: the words are said once after each break in which others have spoken (11, 16);
+- X7: what an asker says to an answer starts though another has the floor (5), and before
+  reactions (6); nobody speaks before it (16).
 """
 
 from __future__ import annotations
@@ -64,7 +69,9 @@ def check(
     itself has a reason, and takes the place of what it is put in for (X1, X4). 12: of all
     that could start, what S2 puts first starts first. 13: what the records say of floor,
     suspensions, decisions and reasons to wait is so. 14: who moves and is not moved on is
-    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them.
+    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them. 16: who has just
+    answered hears the asker first (X7), and who hears a topic again its words (X9); no reaction waits
+    beyond its time (X8), and nobody else takes a late answer (X10).
 
     ``declared`` are the applications in the order of their declaration (S2f), where neither
     the records nor the order of loading tells it; ``patience`` is E6's bound, in the records'

@@ -29,12 +29,12 @@ class Checker(Telling):
             "starve": self.note_starve,
             "fail": self.note_fail,
             "cancel": self.note_cancel,
-            "event": self.note_event,
+            "event": self._event,
             "transferred": self.note_serial,
             "interrupt": self.note_interrupt,
             "held": self.note_held,
             "substitute": self.note_substitute,
-            "hold": self.note_hold,
+            "hold": self._hold,
             "floor": self.note_floor,
             "suspend": self.note_suspend,
             "resume": self.note_resume,
@@ -54,6 +54,8 @@ class Checker(Telling):
 
     def _end(self, record: Record) -> None:
         self.note_answer(record)
+        self.note_turn(record)
+        self.note_lapse(record)
         self.note_end(record)
 
     def _until(self, time: float) -> None:
@@ -88,6 +90,15 @@ class Checker(Telling):
         if self.decision is not None and self.prima:
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
         self.decision = record
+        self.look_for_turn()
+
+    def _event(self, record: Record) -> None:
+        self.note_speech(record)
+        self.note_event(record)
+
+    def _hold(self, record: Record) -> None:
+        self.look_for_turn()
+        self.note_hold(record)
 
     def _listening(self, record: Record) -> None:
         ab = self.running.get(base(record["behavior"]))
@@ -189,6 +200,8 @@ class Checker(Telling):
             urgent=record.get("order") == "now",
             restartable=bool(record.get("restartable")),
             motion=record.get("motion") or "" if unit is None else "",
+            fresh_until=self.now + record["fresh"] * self.second if record.get("fresh") else None,
+            spans=bool(record.get("spans")),
             connect=bool(record.get("connect")),
             inserted=record.get("inserted") or "",
             put_before=base(record.get("before") or ""),
@@ -219,17 +232,22 @@ class Checker(Telling):
         if self.prima and ab.phase == WAITING:
             self.allowed(ab, shown)
             self.decided_rightly(ab, shown)
-        self.channel_connected(ab)
-        self.stands_right(ab)
+        if not self.third_turn(ab):
+            self.channel_connected(ab)
+            self.stands_right(ab)
+            self.words_said(ab)
         reaction = self._reaction_of(ab, record)
-        composed = self.carries_floor(ab)
+        aside = self.starts_aside(ab)
+        beside = aside or self.carries_floor(ab)
         self._run(ab)
-        self.resume(ab)
+        if not aside:
+            self.resume(ab)
         if not self.prima:
             ab.tree.suspended = False
             return
-        if reaction is not None or not composed:
+        if reaction is not None or not beside:
             self.take_floor(ab, reaction)
+        self.note_words(ab)
         self.floor_told_rightly()
 
     def _start_inside(self, ab: AB, record: Record) -> None:
@@ -244,11 +262,12 @@ class Checker(Telling):
 
     def _run(self, ab: AB) -> None:
         self.waiting.pop(ab.name, None)
+        self.turn = None if ab is self.turn else self.turn
         ab.phase = RUNNING
         ab.starts += 1
         ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
         ab.loop += 1 if ab.feedback else 0
-        ab.cause = None
+        ab.cause = ab.fresh_until = None
         ab.listening = False
         self.running[ab.name] = ab
         self.driven = self.driven or "locomotion" in ab.devices
@@ -297,6 +316,7 @@ class Checker(Telling):
         self.note_keepers()
 
     def _look_back(self) -> None:
+        self.look_for_turn()
         self.close_trees()
         self.holds_rightly()
         self.interruptions()
@@ -316,6 +336,7 @@ class Checker(Telling):
                 self.report(2, "E5", f"{ab.shown} runs during the emergency stop")
             return
         for ab in self.waiting.values():
+            self.fresh(ab)
             self.waits_rightly(ab)
             if self.in_view:
                 self.seen.add(ab.name)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from prima.invariants.late import Late
 from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, base
-from prima.invariants.selection import Selection
 
 
-class Endings(Selection):
+class Endings(Late):
     """What becomes of ABs that run, and why others are taken out."""
 
     def maybe_silence(self, urgent: AB) -> None:
@@ -38,20 +38,10 @@ class Endings(Selection):
                 return
             if not (self.has_left(ab) or ab.silent or ab.app in self.gone_apps):
                 self.report(3, "U2", f"{ab.shown} ends before its goal, but its state goes on")
-        self._hears_of(ab)
+        self.hears_of(ab)
         if not (ab.silent or ab.inserted or ab.command == "iu" or ab.unit):
-            self._hears_surely(ab)
+            self.hears_surely(ab)
         self.remove(ab)
-
-    def _hears_surely(self, ab: AB) -> None:
-        """C3: nothing can have made the mediator deaf for its end, as a unit that is left can."""
-        if not (self.has_left(ab) or ab.app in self.gone_apps):
-            self.owed[ab.tree.name] += 1
-
-    def _hears_of(self, ab: AB) -> None:
-        """C3, O3, E2: an end opens a window, but not of what was given up before."""
-        if not (self.has_left(ab) or ab.app in self.gone_apps):
-            self.heard[ab.tree.name] += 1
 
     def note_fail(self, record: Record) -> None:
         """A request or an AB fails (E1)."""
@@ -63,7 +53,7 @@ class Endings(Selection):
         ab = self.running_one(record, "fails") if ab is not None else None
         if ab is None:
             return
-        self._hears_of(ab)
+        self.hears_of(ab)
         if record["rule"] == "U5":
             for inner in self.running.values():
                 inner.silent = inner.silent or inner is ab or inner.inside(ab)
@@ -85,6 +75,9 @@ class Endings(Selection):
             self.report(3, "O2", f"{record['behavior']} is cancelled, but it is not there")
             return
         was, rule = ab.phase, record["rule"]
+        if record["outcome"] == "answered":
+            self.answered_early(ab, record)
+            return
         if record["outcome"] == "halted":
             if was != RUNNING:
                 self.report(3, "E5", f"{ab.shown} is halted, but it is {was}")
@@ -108,7 +101,11 @@ class Endings(Selection):
         self.cuts.append(Cut(ab, was, rule, self.place, devices))
         if was == RUNNING:
             self._loop_over(ab)
+        late = self.reaction_of(ab) if rule == "X8" else None
+        waited = [one for one in ab.tree.members.values() if ab.name in one.parents]
         self.remove(ab, ended=was == RUNNING)  # what ran has ended, cut short as it is
+        if rule == "X8":
+            self.comes_too_late(ab, was, late, waited)
 
     def justified(self, cut: Cut) -> None:
         """Invariants 2 and 3: why an AB was taken out of working memory."""
@@ -151,6 +148,8 @@ class Endings(Selection):
             case "E5":
                 if not (self.released or self.halted):
                     self.report(number, "E5", f"{shown} without an emergency")
+            case "X8":
+                pass  # looked at when it was cancelled
             case rule:
                 self.report(number, str(rule), f"{shown} by a rule that cancels nothing")
 

@@ -1,4 +1,4 @@
-"""What the extensions X1 to X6 may do, and no more."""
+"""What the extensions may do, and no more."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Extensions(Floor):
     """Each extension is held to what it relaxes; its records are claims to be justified."""
 
     def put_in(self, ab: AB, before: AB | None, record: Record) -> None:
-        """X1, X4: the mediator itself puts an AB in before another."""
+        """X1, X4, X9: the mediator itself puts an AB in before another."""
         rule, shown = ab.inserted, f"{ab.name} is put in"
-        if rule not in ("X1", "X4") or rule.lower() not in self.extensions:
+        if rule not in ("X1", "X4", "X9") or rule.lower() not in self.extensions:
             self.report(11, rule, f"{shown} by a rule that is not on")
         if before is None or before.tree is not ab.tree or before.inserted or before.unit:
             self.report(11, rule, f"{shown} before something that it cannot stand before")
@@ -38,20 +38,23 @@ class Extensions(Floor):
             self.report(11, rule, f"{shown}, but {before.shown} is {before.phase}")
         if ab.cause != (before.cause if first else None):
             self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
-        before.cause = None
+        ab.fresh_until = before.fresh_until if first else None
+        before.cause = before.fresh_until = None
         # It takes the other's place in the order of S2.
         ab.requested, ab.place = before.requested, before.place
         ab.followed_at = before.followed_at
         if rule == "X1":
             self._restores(ab, record)
+        elif rule == "X9":
+            self._says_so(ab, before, record)
         else:
             self._connects(ab, before, record)
         before.parents.add(ab.name)
         before.phase = LINKED
         self.waiting.pop(before.name, None)
-        if rule == "X1":
+        if rule != "X4":
             for other in [one for one in self.waiting.values() if one.tree is ab.tree]:
-                self.join_ways_back(other)
+                self.join_first(other)
 
     def _restores(self, ab: AB, record: Record) -> None:
         """X1: only what a suspended stream relies on is restored."""
@@ -62,6 +65,30 @@ class Extensions(Floor):
         for other in ab.tree.members.values():
             if other is not ab and other.inserted == "X1" and other.command == ab.command:
                 self.report(11, "X1", f"{ab.name} restores what {other.shown} restores already")
+
+    def _says_so(self, ab: AB, before: AB, record: Record) -> None:
+        """X9: its stream's words, once after others have spoken into its pause."""
+        tree = ab.tree
+        if not tree.words_due or record.get("text") != tree.words or ab.command != "speak":
+            self.report(11, "X9", f"{ab.name} is put in, but {tree.name} has not to say it")
+        if before.urgent:
+            self.report(11, "X9", f"{ab.name} is put in before {before.shown}, which is wanted now")
+        tree.words_due = False
+
+    def words_said(self, ab: AB) -> None:
+        """X9: a stream that resumes has said its words, if others have spoken meanwhile."""
+        goes_on = not (ab.inserted or ab.urgent) and ab.cause is None
+        if "x9" in self.extensions and goes_on and ab.tree.words_due and ab.tree.words:
+            self.report(16, "X9", f"{ab.shown} resumes {ab.tree.name}, which has not said so")
+
+    def note_words(self, ab: AB) -> None:
+        """X9: after a start: who speaks into the pause of which stream."""
+        if "speaker" in ab.devices:
+            for tree in self.trees.values():
+                if tree.app != ab.app and tree.suspended and tree.spoken:
+                    tree.words_due = True
+        if not (ab.inserted or ab.tree.suspended):
+            ab.tree.words_due = False
 
     def stands_right(self, ab: AB) -> None:
         """X1: a suspended stream goes on where the robot stood for it."""
@@ -144,6 +171,7 @@ class Extensions(Floor):
         if hold != tree.hold or not self._says_nothing_of_holds(ab):
             tree.hold, tree.hold_state = hold, ab.state
         tree.requested = self.place
+        tree.words = record.get("words") or ""
         if ab.parents or ab.unit is not None or ab.inserted:
             return
         if any(one.app == ab.app for one in self.windows):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.invariants.channel import Channel
 from prima.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
+from prima.invariants.turn import Turn
 
 
-class Floor(Channel):
+class Floor(Turn):
     """F1 to F6, with the suspensions and stops that follow from them."""
 
     # Who may start ----------------------------------------------------------------
@@ -22,6 +22,14 @@ class Floor(Channel):
         )
 
     def refused_by_floor(self, ab: AB, surely: bool = False) -> Tree | None:
+        """F2, X7: the stream that keeps the AB from starting, or that may keep it."""
+        return None if self.third_turn(ab) else self.kept_by_floor(ab, surely)
+
+    def starts_aside(self, ab: AB) -> bool:
+        """X7: whether it starts although another has the floor, which it neither takes nor ends."""
+        return self.third_turn(ab) and self.kept_by_floor(ab) is not None
+
+    def kept_by_floor(self, ab: AB, surely: bool = False) -> Tree | None:
         """F2: the stream that keeps the AB from starting, or that may keep it.
 
         "Another event" is left open by F2 where the floor's stream goes on from one
@@ -47,10 +55,20 @@ class Floor(Channel):
         """F6: the stream into which the AB would speak."""
         if "speaker" not in ab.devices or ab.cause is not None or self.holder is ab.tree:
             return None
+        return None if self.third_turn(ab) else self._topic_kept(ab)
+
+    def _topic_kept(self, ab: AB) -> Tree | None:
         for other in self.running.values():
             if self.keeps_topic(other, ab):
                 return other.tree
         return None
+
+    def kept_otherwise(self, ab: AB) -> bool:
+        """Whether F2 or F6 would keep it, but for X7."""
+        if self.kept_by_floor(ab) is not None:
+            return True
+        speaks = "speaker" in ab.devices and self.holder is not ab.tree
+        return speaks and self._topic_kept(ab) is not None
 
     def keeps_topic(self, other: AB, ab: AB) -> bool:
         """F6: whether one that runs comes between two utterances of another application's topic."""

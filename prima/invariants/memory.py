@@ -50,6 +50,17 @@ class Memory:
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
+        self.lapsed: tuple[str, float] | None = None
+        """Whose question was not answered in time last, and when (X10)."""
+        self.late_app = ""
+        """Who has asked what the user has just answered too late (X10)."""
+        self.speech: int | None = None
+        """The number of what the user said last, and when that was."""
+        self.speech_at: float = -1
+        self.answered_tree: Tree | None = None
+        """A stream with a question that was answered since the latest selection (X7)."""
+        self.turn: AB | None = None
+        """What the asker says to an answer, while it has not started (X7)."""
         self.trees: dict[str, Tree] = {}
         self.floor: list[Tree] = []
         self.turned: list[tuple[str, str, str]] = []
@@ -167,11 +178,11 @@ class Memory:
         self.running.pop(ab.name, None)
         ab.phase, ab.said = WAITING, None
         self.waiting[ab.name] = ab
-        self.join_ways_back(ab)
+        self.join_first(ab)
 
-    def join_ways_back(self, ab: AB) -> None:
-        """X1: what waits in a stream waits for its way back, but what is wanted now (O2)."""
-        ways = ab.tree.ways_back()
+    def join_first(self, ab: AB) -> None:
+        """X1, X9: what waits in a stream waits for what is put first, but what is wanted now (O2)."""
+        ways = ab.tree.put_first()
         if ways and not (ab.inserted or ab.urgent or ab.unit):
             ab.parents |= {way.name for way in ways}
             ab.phase = LINKED

@@ -10,7 +10,7 @@ Record = Mapping[str, Any]
 
 LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
 BASELINES = ("fifo", "fair", "fixed", "none")
-EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6"))
+EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10"))
 COMPOSED = {"free", "faithful"}
 SEEKING = ("active-sensing-human", "tracking-human")
 """What searches or tracks, so that its stream engages whoever is away (K1)."""
@@ -42,6 +42,10 @@ class AB:
     """Whether it is wanted now, and never linked (O2)."""
     restartable: bool = False
     motion: str = ""
+    fresh_until: float | None = None
+    """Until when the reaction is worth starting (X8)."""
+    spans: bool = False
+    """Whether it is a unit that spans questions and states (U5), as far as X7 asks."""
     connect: bool = False
     """Whether the robot has to see the user, or turn to them, before it starts (X4)."""
     inserted: str = ""
@@ -132,6 +136,10 @@ class Tree:
     """Whether another application has kept an AB of it waiting since it was suspended."""
     rank: int = 0
     """The index of the start that suspended it: the later goes first (S2d)."""
+    words: str = ""
+    """What is said when it resumes, by its latest request (X9)."""
+    words_due: bool = False
+    """Whether another application has spoken since it was suspended (X9)."""
     place: tuple[float, float] | None = None
     """Where the robot has gone for it, so that what follows relies on standing there (X1)."""
 
@@ -150,15 +158,15 @@ class Tree:
         return [one for ab in self.members.values() if ab.contends for one in self.meant(ab)]
 
     def meant(self, ab: AB) -> list[AB]:
-        """What an AB that was put in was put in for (X1, X4), while that is there; else itself."""
+        """What an AB that was put in was put in for (X1, X4, X9), while that is there; else itself."""
         if not ab.inserted:
             return [ab]
         behind = [one for one in self.members.values() if ab.name in one.parents]
         return [meant for one in behind for meant in self.meant(one)] or [ab]
 
-    def ways_back(self) -> list[AB]:
-        """X1: what is put in before all that waits in the stream."""
-        return [ab for ab in self.members.values() if ab.inserted == "X1"]
+    def put_first(self) -> list[AB]:
+        """X1, X9: what is put in before all that waits in the stream."""
+        return [ab for ab in self.members.values() if ab.inserted in ("X1", "X9")]
 
     def seeks(self) -> bool:
         """K1: whether it searches for the user, or tracks them."""

@@ -49,7 +49,7 @@ class Patience(Streams):
         by = ab.said[1] if ab.said is not None else ""
         if by.replace("#", ":").partition(":")[0] in ("", ab.app):
             return False  # its own application keeps it
-        if self.refused_by_floor(ab) or self.refused_by_channel(ab):
+        if self.kept_by_floor(ab) or self.refused_by_channel(ab):
             return False
         speaks = [
             one for one in self.running.values() if one.unit is None and "speaker" in one.devices
@@ -78,6 +78,12 @@ class Patience(Streams):
         asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
         if ab is not None and asks and not record.get("inbound"):
             self._answered[ab.tree.name] = self.now
+
+    def answered_now(self, ab: AB) -> None:
+        """X8, X10: a question was answered before it was asked."""
+        self._answered[ab.tree.name] = self.now
+        if ab.unit is None:
+            self.answered_tree = ab.tree
 
     def note_starve(self, record: Record) -> None:
         """Who is said to starve waits; by E6 for as long as that takes."""

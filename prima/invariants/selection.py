@@ -7,7 +7,7 @@ from typing import Any
 from prima.invariants.model import AB, RUNNING, WAITING, Record, base
 from prima.invariants.patience import Patience
 
-RULES = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
+RULES = ("S2a", "X7", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
 MANY = 8
 """Of more that wait, not all need to be looked at."""
 
@@ -29,6 +29,7 @@ class Selection(Patience):
             reaction = (0, -ab.cause, ab.app != self.active_app())
         return (
             not ab.high,
+            not self.third_turn(ab),
             reaction,
             not self.its_turn(ab),
             ab.followed_at != self.now,
@@ -59,9 +60,13 @@ class Selection(Patience):
         return sorted(others, key=self.key)
 
     def free_to_go(self, ab: AB) -> bool:
-        """Whether F2, F6 and K1 are certain to let a waiting AB start."""
+        """Whether F2, F6, K1 and X7 are certain to let a waiting AB start."""
         kept = self.refused_by_floor(ab) or self.refused_by_topic(ab) or self.refused_by_channel(ab)
-        return kept is None
+        return kept is None and self.refused_by_turn(ab) is None
+
+    def keeps_devices(self, ab: AB) -> bool:
+        """S3: whether it holds its devices back from what it outranks, while it waits."""
+        return ab.cause is not None or self.overdue(ab) or self.third_turn(ab)
 
     def held_back(self, ab: AB, winner: AB | None = None, surely: bool = True) -> bool:
         """S3: whether a reaction that outranks it wants one of its devices, and may start.
@@ -71,9 +76,10 @@ class Selection(Patience):
         """
         return any(
             other is not winner
-            and (other.cause is not None or self.overdue(other))
+            and self.keeps_devices(other)
             and other.devices & ab.devices
             and self.outranks(other, ab)
+            and self.refused_by_turn(other) is None
             and self.refused_by_floor(other, surely) is None
             and self.refused_by_channel(other) is None
             for other in self.competing(ab)
@@ -106,6 +112,9 @@ class Selection(Patience):
         if holder is not None:
             number = 7 if ab.leaves else 5
             self.report(number, "F2", f"{shown} starts while {holder.name} holds the floor")
+        turn = self.refused_by_turn(ab)
+        if turn is not None:
+            self.report(16, "X7", f"{shown} speaks between an answer and {turn.shown}")
         topic = self.refused_by_topic(ab)
         if topic is not None:
             self.report(5, "F6", f"{shown} speaks into the topic of {topic.name}")
@@ -118,7 +127,7 @@ class Selection(Patience):
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
         """S2, S3: what outranks the AB that starts must be unable to start in its place."""
         rule = self.rule_between(other, ab)
-        if (other.cause is not None or self.overdue(other)) and other.devices & ab.devices:
+        if self.keeps_devices(other) and other.devices & ab.devices:
             # S3: whether or not its other devices are free, it holds this one back.
             number = 5 if other.leaves else 6
             self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
@@ -131,6 +140,8 @@ class Selection(Patience):
         holder = self.holder
         if self.carries_floor(ab):
             return "X5"
+        if self.third_turn(ab) and self.kept_otherwise(ab):
+            return "X7"
         if holder is not None and holder.app != ab.app:
             return "F2"
         return "S4" if self.running else "S1"
@@ -238,8 +249,9 @@ class Selection(Patience):
         if rule == "S3":
             if other is None or other.phase != WAITING:
                 return False
-            waits = other.cause is not None or self.overdue(other)
-            return waits and bool(other.devices & ab.devices)
+            return self.keeps_devices(other) and bool(other.devices & ab.devices)
+        if rule == "X7":
+            return other is not None and other is self.refused_by_turn(ab)
         if rule == "F6":
             return other is not None and self.keeps_topic(other, ab)
         if rule == "F2":

@@ -41,6 +41,8 @@ LETTER_MS = 50
 PATIENCE_MS = 60_000
 """How long an application may keep another from the speaker (rule E6), unless the run says
 otherwise."""
+LATE_MS = 2_000
+"""How long after a question's timeout the user may begin to answer it still (rule X10)."""
 LOOP_MS = 500
 """How long one loop of a feedback Command lasts unless the profile says otherwise."""
 

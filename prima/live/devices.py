@@ -251,8 +251,9 @@ class LiveDevices:
             case Heard():
                 began, self._heard = self._began, True
                 self._silent()
-                passed = conductor.marks_passed(now if began is None else began)
-                return [Heard(news.text, {**passed, **news.data})]
+                began = now if began is None else began
+                passed = conductor.marks_passed(began)
+                return [Heard(news.text, {**passed, **news.data}, now - began)]
             case Sensed():
                 values = {name: value for name, value in news.values.items() if self._matters(name)}
                 return conductor.sensors.take(values)

@@ -73,6 +73,8 @@ EVENTS = {
     "end": "A Command of this application has ended.",
     "cancel": "A Command of this application has been cancelled.",
     "interrupted": "A restartable Command gave way to a reaction (extension x2).",
+    "expired": "A reaction of this application was given up, as it came too late (extension x8).",
+    "late": "The user answers a question after its time is over (extension x10); event.data.text.",
     "suspended": "Another application keeps the application's suspended stream waiting.",
     "resumed": "The application's stream, which had to wait suspended, has resumed.",
     "emergency.stop": "The emergency stop is pressed.",

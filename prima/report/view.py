@@ -139,8 +139,11 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
         ("Waiting", str(found.broken_waiting), "waits for a server that were broken"),
         ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
         ("Left", str(found.left), "conversations that the robot left"),
+        ("Stolen", str(found.third_turns), "third turns: answers to which another spoke first"),
+        ("Astray", str(found.misanswered), "late answers that another application took"),
         *([("Starved", str(starved), waiting)] if starved else []),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
+        ("Late", str(found.late_reactions), "reactions more than 3 s after their event"),
         ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
         (
             "Response time",

@@ -61,6 +61,10 @@ class Stream:
     """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
     hold_state: int = 0
     """The document's state whose hint that is."""
+    words: Command | None = None
+    """What is said when the stream resumes, by its latest request (X9)."""
+    words_due: bool = False
+    """Whether another application has spoken since the stream was suspended (X9)."""
     held_until: int | None = None
     """Until when it is held (ms); None while it is not."""
 
@@ -122,6 +126,8 @@ class Run:
     number: int
     app: Application
     left: int
+    begun: bool = False
+    """Whether any of them has started."""
 
 
 @dataclass(slots=True)
@@ -183,6 +189,8 @@ class Behavior:
     state: State = WAITING
     reaction: int | None = None
     """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
+    stale: int | None = None
+    """From when (ms) on a reaction that has not started is not worth starting (X8)."""
     parent: str | None = None
     waits_for: set[str] = field(default_factory=set)
     children: list[Behavior] = field(default_factory=list)
@@ -203,7 +211,7 @@ class Behavior:
     connect: bool = False
     """Whether the robot has to face the user before it starts (X4)."""
     inserted: str = ""
-    """The rule by which the mediator itself put the AB in (X1, X4)."""
+    """The rule by which the mediator itself put the AB in (X1, X4, X9)."""
     reacted: int = -1
     """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
     restarting: bool = False
@@ -239,6 +247,11 @@ class Behavior:
     def engages(self) -> bool:
         """Whether the AB engages the user (K1)."""
         return self.type is not None and self.type.engages
+
+    @property
+    def asks(self) -> bool:
+        """Whether it is a question, or has one in it: it lasts as long as the user thinks."""
+        return "speech-recognition" in self.devices
 
     @property
     def priority(self) -> int:
@@ -283,7 +296,7 @@ class Behavior:
         self.loop += 1
 
     def meant(self) -> list[Behavior]:
-        """The AB itself; of one that was put in (X1, X4) what it was put in for, while that is there."""
+        """The AB itself; of one that was put in (X1, X4, X9) what it was put in for, while that is there."""
         if not self.inserted:
             return [self]
         behind = [

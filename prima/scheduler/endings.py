@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Data, Notice
+from prima.scheduler.admission import link
 from prima.scheduler.behavior import (
     GONE,
     LINKED,
@@ -47,6 +48,8 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
         _note_effects(mediation, ab, data, ending)
     if not inbound and ab.type is not None and "speech-recognition" in ab.type.devices:
         ab.stream.answered = mediation.now
+        if outcome == "filled" and ab.unit is None:
+            mediation.memory.answered = ab.stream
     if ending:
         _finish(mediation, ab, data)
     else:
@@ -70,7 +73,8 @@ def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) 
         ab.stream.effects.add(ab.type, ab.command, data, mediation.robot)
 
 
-def _finish(mediation: Mediation, ab: Behavior, data: Data) -> None:
+def _finish(mediation: Mediation, ab: Behavior, data: Data, cause: int | None = None) -> None:
+    """Take an AB out that has ended, and tell its application, which may react to ``cause``."""
     run = ab.run
     remove(mediation, ab)
     if ab.silent or ab.app.gone or run is None:
@@ -80,8 +84,28 @@ def _finish(mediation: Mediation, ab: Behavior, data: Data) -> None:
     if ab.command is not None:
         notices.append(Notice("ended", run.number, ab.command, data))
     if run.left == 0:
-        notices.append(Notice("done", run.number, ab.command, data))
+        done = Notice("done", run.number, ab.command, data)
+        done.cause = cause
+        notices.append(done)
     mediation.tell(ab.app, ab.stream, *notices)
+
+
+def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: int) -> None:
+    """X8, X10: the user has answered a question that is still to be asked.
+
+    Where it is a reaction, what follows it is one to what the user has said, whose event has the
+    number ``serial``.
+    """
+    mediation.recorder.behavior("cancel", ab, rule=rule, outcome="answered", data=dict(data))
+    ab.stream.answered = mediation.now
+    if ab.unit is None:
+        mediation.memory.answered = ab.stream
+    for child in ab.children:
+        for name in ab.waits_for:  # what was to come before the question comes before the rest
+            link(mediation.memory.behaviors[name], child)
+        if ab.reaction is not None and child.waits_for == {ab.name}:
+            child.reaction = serial
+    _finish(mediation, ab, data, None if ab.reaction is None else serial)
 
 
 def settle(mediation: Mediation, unit: Behavior) -> None:

@@ -70,6 +70,8 @@ def deadline(mediation: Mediation) -> int | None:
         late.append(lapse)
     if mediation.starving is not None and not mediation.halted:
         late.append(mediation.starving)
+    if mediation.has("x8") and not mediation.halted:
+        late += [ab.stale for ab in mediation.memory.waiting.values() if ab.stale is not None]
     return min((*late, *mediation.holds.values()), default=None)
 
 

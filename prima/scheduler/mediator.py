@@ -18,6 +18,7 @@ from prima.scheduler import (
     emergency,
     endings,
     failures,
+    freshness,
     interruption,
     requests,
     selection,
@@ -122,6 +123,25 @@ class Mediator:
         self._all.changed = True
         interruption.interrupted(self._all, behavior, data)
 
+    def answered(self, ab: Behavior, data: Data, rule: str, serial: int) -> None:
+        """X8, X10: the user's words, the event ``serial``, answer a question before it is asked."""
+        self._all.changed = True
+        endings.answered(self._all, ab, data, rule, serial)
+
+    def offered(self) -> Behavior | None:
+        """X8: the question to which is offered what the one that listens refuses, if any."""
+        return freshness.offered(self._all) if self._all.has("x8") else None
+
+    def coming_question(self, name: str) -> Behavior | None:
+        """X10: the question of an application that is asked next, or is being asked."""
+        members = self.memory.apps[name].members.values()
+        asking = (one for one in members if one.command and one.command.type == "q-and-a")
+        return next((one for one in asking if one.run is not None and not one.silent), None)
+
+    def has(self, extension: str) -> bool:
+        """Whether an extension is on."""
+        return self._all.has(extension)
+
     def failed(self, behavior: str, device: str, reason: str) -> None:
         """E1: a device fails."""
         ab = self.running(behavior)
@@ -152,12 +172,13 @@ class Mediator:
         return failures.deadline(self._all)
 
     def expire(self) -> bool:
-        """U5, E1: end what has run longer than it may; tells whether there was any such."""
+        """U5, E1, X8: end what takes longer than it may; tells whether there was any such."""
         due = self.deadline()
         if due is None or due > self._all.now:
             return False
         self._all.changed = True
         failures.expire(self._all)
+        freshness.x8(self._all)
         return True
 
     def select(self) -> None:

@@ -27,6 +27,10 @@ class Memory:
         self.engaged: dict[str, Stream] = {}
         """Those of the streams in which an AB has engaged the user (K1)."""
         self.floor: list[Stream] = []
+        self.answered: Stream | None = None
+        """A stream with a question that the user has answered since the latest selection (X7)."""
+        self.owed: Behavior | None = None
+        """What the asker says to an answer, while it has not started (X7)."""
         self._turns = 0
         self.in_view = False
         """Whether the camera sees the user, as far as it has told (V4)."""

@@ -30,7 +30,7 @@ class Policy:
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
     """Whether an AB waits for its devices (S1); only ``none`` does without."""
-    rules: tuple[str, ...] = ("S2a", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
+    rules: tuple[str, ...] = ("S2a", "X7", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
     """The name of the rule behind each place of a rank."""
     turning: bool = False
     """Whether a start changes how other ABs rank."""
@@ -45,6 +45,7 @@ class Policy:
         """Where a waiting AB ranks: the smallest goes first (S2)."""
         return (
             rules.s2a(ab),
+            0 if memory.owed is not None and rules.third_turn(ab, memory) else 1,
             rules.s2b(ab, memory),
             rules.e6(ab, memory, now),
             rules.s2c(ab, now),
@@ -64,14 +65,19 @@ class Policy:
         return next(found, self.rules[-1])
 
     def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
-        """What else than a device keeps the AB from starting (F2, F6, K1)."""
+        """What else than a device keeps the AB from starting (F2, F6, K1, X7)."""
+        if memory.owed is not None:
+            if rules.third_turn(ab, memory):
+                return None
+            if (kept := rules.x7(ab, memory)) is not None:
+                return kept
         if self.extensions and self.has("x5") and rules.x5(ab, memory):
             return rules.k1(ab, memory)
         return rules.refusal(ab, memory)
 
-    def holds_back(self, ab: Behavior) -> bool:
-        """S3, E6: whether a waiting AB keeps its devices from those it outranks."""
-        return ab.reaction is not None or ab.wait.overdue
+    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
+        """S3, E6, X7: whether a waiting AB keeps its devices from those it outranks."""
+        return ab.reaction is not None or ab.wait.overdue or rules.third_turn(ab, memory)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +96,7 @@ class Fifo(Policy):
         """Nothing but devices keeps an AB from starting."""
         return None
 
-    def holds_back(self, ab: Behavior) -> bool:
+    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
         """Every waiting AB holds its devices back from later ones."""
         return True
 
@@ -130,7 +136,7 @@ class Unmediated(Fifo):
     exclusive: bool = False
     rules: tuple[str, ...] = ("none", "S2f")
 
-    def holds_back(self, ab: Behavior) -> bool:
+    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
         """Nothing is ever held back."""
         return False
 
@@ -152,8 +158,8 @@ USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
 """How policies are written, for the help of the command line."""
 BASELINES = tuple(name for name in POLICIES if name != "prima")
 """The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
-EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6")
-"""The extensions of ``prima`` (rules X1-X6), each written behind a plus: ``prima+x1+x3``."""
+EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10")
+"""The extensions of ``prima`` (rules X1-X10), each written behind a plus: ``prima+x1+x3``."""
 
 
 class UnknownPolicy(UsageError):

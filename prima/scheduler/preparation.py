@@ -1,23 +1,26 @@
-"""What the mediator itself puts in before an AB: a way back (X1), or facing the user (X4)."""
+"""What the mediator itself puts in before an AB: a way back (X1), facing the user (X4), words (X9)."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from prima.messages import Command
 from prima.scheduler.admission import link
 from prima.scheduler.behavior import Behavior, Stream
 from prima.scheduler.mediation import Mediation
+from prima.scheduler.rules import third_turn
 
 
 def prepare(mediation: Mediation, ab: Behavior) -> bool:
-    """X1, X4: put in what has to come first; true if something was put in."""
-    if ab.inserted:
+    """X1, X4, X9: put in what has to come first; true if something was put in."""
+    if ab.inserted or third_turn(ab, mediation.memory):
         return False
-    return x1(mediation, ab) or x4(mediation, ab)
+    return x1(mediation, ab) or x9(mediation, ab) or x4(mediation, ab)
 
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
     """X1: bring the robot's state back on which a suspended stream relies."""
-    if not (ab.stream.suspended and mediation.has("x1")) or way_back(ab.stream) is not None:
+    if not (ab.stream.suspended and mediation.has("x1")) or first_of(ab.stream) is not None:
         return False
     own = ab.type.effects if ab.type is not None else frozenset()
     return insert(mediation, ab, ab.stream.effects.missing(own, mediation.robot), "X1")
@@ -31,6 +34,28 @@ def x4(mediation: Mediation, ab: Behavior) -> bool:
     return not mediation.memory.in_view and insert(mediation, ab, [Command("face-human")], "X4")
 
 
+def x9(mediation: Mediation, ab: Behavior) -> bool:
+    """X9: a topic that resumes after others have spoken says so first.
+
+    A reaction and what is wanted ``now`` do not resume it: they begin something else.
+    """
+    stream, words = ab.stream, ab.stream.words
+    if not stream.words_due or words is None or ab.reaction is not None or wanted_now(ab):
+        return False
+    stream.words_due = False
+    return insert(mediation, ab, [replace(words)], "X9")
+
+
+def note_words(mediation: Mediation, ab: Behavior) -> None:
+    """X9: what has started speaks into the pause of every suspended topic, or goes on with one."""
+    if "speaker" in ab.devices:
+        for stream in mediation.memory.streams.values():
+            if stream.app is not ab.app and stream.suspended and stream.spoken:
+                stream.words_due = True
+    if not (ab.inserted or ab.stream.suspended):
+        ab.stream.words_due = False
+
+
 def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: str) -> bool:
     """Put Commands between an AB and what it follows, in its stream and in its place."""
     table, maker = mediation.table, mediation.maker
@@ -38,14 +63,14 @@ def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: st
     for command in commands:
         if command.type not in table or table[command.type].substitute:
             continue
-        command.source = ab.command.source if ab.command else ""
+        command.source = command.source or (ab.command.source if ab.command else "")
         made = maker.behavior(ab.app, ab.stream, command, mediation.now, ab.document_state)
         made.inserted, made.requested, made.serial = rule, ab.requested, ab.serial
         if rule == "X4":  # the first word follows at once, so its devices are taken along
             made.devices |= ab.devices
         if before is None:
             made.parent, made.reaction, made.freed = ab.parent, ab.reaction, ab.freed
-            ab.reaction = None
+            made.stale, ab.reaction, ab.stale = ab.stale, None, None
         else:
             link(before, made)
         mediation.memory.add(made)
@@ -63,21 +88,25 @@ def put_behind(mediation: Mediation, before: Behavior, ab: Behavior) -> None:
     mediation.memory.unwait(ab)
 
 
-def join_ways_back(mediation: Mediation) -> None:
-    """X1: whatever waits in a stream waits for the way back that is put in, if one is.
+def join_first(mediation: Mediation) -> None:
+    """X1, X9: whatever waits in a stream waits for the way back or the words put in, if any are.
 
     What is wanted ``now`` does not: it waits for nothing of its own application (O2).
     """
-    if not mediation.has("x1"):
+    if not (mediation.has("x1") or mediation.has("x9")):
         return
     for ab in list(mediation.memory.waiting.values()):
-        way = None if ab.inserted else way_back(ab.stream)
-        urgent = ab.command is not None and ab.command.now
-        if way is not None and not urgent:
-            put_behind(mediation, way, ab)
+        first = None if ab.inserted else first_of(ab.stream)
+        if first is not None and not (wanted_now(ab) or third_turn(ab, mediation.memory)):
+            put_behind(mediation, first, ab)
 
 
-def way_back(stream: Stream) -> Behavior | None:
-    """X1: the last part of the way back that was put in for a stream, while it is there."""
+def wanted_now(ab: Behavior) -> bool:
+    """O2: whether it waits for nothing of its own application."""
+    return ab.command is not None and ab.command.now
+
+
+def first_of(stream: Stream) -> Behavior | None:
+    """X1, X9: the last of what was put in for a stream to resume with, while it is there."""
     members = reversed(stream.members.values())
-    return next((one for one in members if one.inserted == "X1"), None)
+    return next((one for one in members if one.inserted in ("X1", "X9")), None)

@@ -17,7 +17,7 @@ class Recorder:
     def __init__(self) -> None:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
-        """Which of X1 to X6 are on: what they rest on is recorded with a request."""
+        """Which extensions are on: what they rest on is recorded with a request."""
         self.records: list[Record] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
@@ -103,6 +103,9 @@ class Recorder:
             restartable=ab.restartable or None if "x2" in self.extensions else None,
             hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
             connect=ab.connect or None if "x4" in self.extensions else None,
+            spans=ab.spans or None if "x7" in self.extensions else None,
+            fresh=(ab.stale - self.now) / 1000 if ab.stale is not None else None,
+            words=ab.stream.words.text if ab.stream.words else None,
             motion=ab.motion or None if "x5" in self.extensions else None,
             source=line_of(command.source if command else ab.group.source if ab.group else ""),
         )

@@ -11,7 +11,14 @@ from prima.messages import (
     Request,
     line_of,
 )
-from prima.scheduler.admission import Refused, check_steps, link, parent_in, substitute
+from prima.scheduler.admission import (
+    Refused,
+    check_command,
+    check_steps,
+    link,
+    parent_in,
+    substitute,
+)
 from prima.scheduler.behavior import GONE, Application, Behavior, Stream
 from prima.scheduler.endings import cancel, close_unit, withdraw
 from prima.scheduler.mediation import Mediation
@@ -32,6 +39,8 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
     unit = app.units.get(asked.unit) if asked.unit is not None else None
     try:
         check_steps(asked.steps, app, mediation.table, unit.devices if unit else None)
+        if asked.words is not None and asked.words.type in mediation.table:
+            check_command(asked.words, app, mediation.table)
     except Refused as refused:
         e3(mediation, app, asked, refused)
         return
@@ -42,11 +51,14 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
     else:
         stream, parent = place(mediation, app, reaction, unit)
     x3(mediation, stream, asked)
+    stream.words = asked.words if mediation.has("x9") else None
     made = mediation.maker.chain(app, stream, asked, mediation.now, unit)
     for ab in made:
         if not ab.waits_for:
             _root(mediation, ab, parent, reaction)
             ab.connect = asked.connect and unit is None
+            if asked.fresh is not None and ab.reaction is not None and mediation.has("x8"):
+                ab.stale = mediation.now + asked.fresh
         if unit is not None and unit.inside is not None:
             unit.inside.members[ab.name] = unit.inside.latest = ab
         mediation.memory.add(ab)

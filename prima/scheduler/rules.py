@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
+from prima.scheduler.behavior import GONE, LINKED, RUNNING, Behavior, Stream
 from prima.scheduler.memory import Memory
 
 Refusal = tuple[str, str]
@@ -39,8 +39,42 @@ def e6(ab: Behavior, memory: Memory, now: int) -> int:
 
 def acknowledges(ab: Behavior, now: int) -> bool:
     """E6: whether it is what a user hears who has just answered, and no further question."""
-    asks = ab.type is not None and "speech-recognition" in ab.type.devices
+    asks = ab.type is not None and ab.asks
     return ab.stream.answered == now and ab.freed == now and "speaker" in ab.devices and not asks
+
+
+def third_turn(ab: Behavior, memory: Memory) -> bool:
+    """X7: whether it is what the asker owes to an answer, or comes before that."""
+    owed = memory.owed
+    return owed is not None and (ab is owed or ab in before(owed, memory))
+
+
+def before(ab: Behavior, memory: Memory) -> list[Behavior]:
+    """All that has to end before an AB may start."""
+    found: list[Behavior] = []
+    names = [*ab.waits_for]
+    while names:
+        parent = memory.behaviors[names.pop()]
+        if parent not in found:
+            found.append(parent)
+            names += parent.waits_for
+    return found
+
+
+def x7(ab: Behavior, memory: Memory) -> Refusal | None:
+    """X7: nobody speaks between a user's answer and what the asker says to it.
+
+    Once that waits, it holds the speaker back itself (S3).
+    """
+    owed = memory.owed
+    if owed is None or owed.state is not LINKED or "speaker" not in ab.devices:
+        return None
+    return None if third_turn(ab, memory) else ("X7", owed.id)
+
+
+def aside(ab: Behavior, memory: Memory) -> bool:
+    """X7: whether it starts though another application holds the floor, and does not take it."""
+    return third_turn(ab, memory) and f2(ab, memory) is not None
 
 
 def keeps_speaker(ab: Behavior, memory: Memory) -> bool:

@@ -8,10 +8,11 @@ from prima.scheduler.behavior import WAITING, Behavior, Wait
 from prima.scheduler.interruption import Held, x2
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.policy import Ranked
-from prima.scheduler.preparation import join_ways_back, prepare
+from prima.scheduler.preparation import join_first, note_words, prepare
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.starvation import count_waits, e4, note_waits
 from prima.scheduler.streams import f1, note_turns, resume
+from prima.scheduler.thirdturn import owe
 
 COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
@@ -22,6 +23,7 @@ def select(mediation: Mediation) -> None:
     mediation.started, mediation.resumed = [], []
     memory = mediation.memory
     count_waits(mediation)
+    owe(mediation)
     for unit in [ab for ab in memory.running.values() if ab.inside is not None]:
         advance(mediation, unit)
     while memory.waiting and s4(mediation):
@@ -36,7 +38,7 @@ def s4(mediation: Mediation) -> bool:
     All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
     """
     policy, memory = mediation.policy, mediation.memory
-    join_ways_back(mediation)
+    join_first(mediation)
     ranked = policy.ranked(memory.waiting.values(), memory, mediation.now)
     held: Held = {}
     before = len(mediation.started)
@@ -90,7 +92,7 @@ def s3(mediation: Mediation, ab: Behavior, held: Held) -> Refusal | None:
 
 def _hold_back(mediation: Mediation, ab: Behavior, held: Held) -> None:
     """S3: keep a waiting AB's devices from those that it outranks, if it is a reaction."""
-    if mediation.policy.holds_back(ab):
+    if mediation.policy.holds_back(ab, mediation.memory):
         for device in ab.devices:
             held.setdefault(device, ab)
 
@@ -144,11 +146,13 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     rivals = able(mediation, lower, held)
     composed = mediation.has("x5") and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
-    reaction, ab.reaction = ab.reaction, None
+    reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = -1 if reaction is None else reaction
-    beside = composed or not rules.f3(ab, memory)
-    run(mediation, ab)
+    aside = rules.aside(ab, memory)
+    beside = composed or aside or not rules.f3(ab, memory)
+    run(mediation, ab, aside)
     changed = f1(mediation, ab, reaction, beside)
+    note_words(mediation, ab)
     losers = _outdone(mediation, rivals, ab, lower, held)
     rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
@@ -174,13 +178,15 @@ def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
         return "none"
     if composed:
         return "X5"
+    if rules.third_turn(ab, mediation.memory) and rules.refusal(ab, mediation.memory) is not None:
+        return "X7"
     if policy.floor and holder is not None and holder.app is not ab.app:
         return "F2"
     return "S4" if mediation.memory.running else "S1"
 
 
-def run(mediation: Mediation, ab: Behavior) -> None:
-    """Let an AB run."""
+def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
+    """Let an AB run; one that runs ``aside`` (X7) does not resume its stream."""
     memory, now = mediation.memory, mediation.now
     if not mediation.policy.exclusive:
         _collide(mediation, ab)
@@ -188,12 +194,14 @@ def run(mediation: Mediation, ab: Behavior) -> None:
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
     ab.restarting = False
     ab.wait = Wait()
+    if ab.run is not None:
+        ab.run.begun = True
     if ab.feedback:
         ab.next_loop()
     mediation.started.append(ab)
     beside = mediation.has("x5") and memory.conflict(ab) is not None
     memory.start(ab, now)
-    _note_start(mediation, ab)
+    _note_start(mediation, ab, aside)
     if ab.command is not None:
         order = Order(
             "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
@@ -204,14 +212,16 @@ def run(mediation: Mediation, ab: Behavior) -> None:
         u4(mediation, ab)
 
 
-def _note_start(mediation: Mediation, ab: Behavior) -> None:
+def _note_start(mediation: Mediation, ab: Behavior, aside: bool) -> None:
     """F6, K1, C2: what the start of an AB changes for its stream."""
     stream = ab.stream
     if ab.command is not None and "speaker" in ab.devices:
         stream.spoken = True
     if ab.engages:
         mediation.memory.engage(stream)
-    if stream.suspended and ab.unit is None:
+    if ab is mediation.memory.owed:
+        mediation.memory.owed = None
+    if stream.suspended and ab.unit is None and not aside:
         resume(mediation, stream, ab)
 
 

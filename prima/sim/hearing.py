@@ -32,7 +32,7 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 ENDINGS = frozenset({"exit", "unloaded"})
 """Why an application ends, beside the names of events."""
 OPEN = (
-    *("end.", "cancel.", "interrupted.", "reply.", "error.service."),
+    *("end.", "cancel.", "interrupted.", "expired.", "reply.", "error.service."),
     *("error.unsupported.", "error.badfetch."),
 )
 """Beginnings of events that go on with a name that is not the language's own."""

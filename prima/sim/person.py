@@ -179,7 +179,7 @@ class Person:
         while script.time <= now:
             if script.speaking:
                 told = {**self.robot.conductor.marks_passed(script.began), **script.told}
-                made.append(Heard(script.speaking, told))
+                made.append(Heard(script.speaking, told, now - script.began))
                 script.speaking = ""
                 self.robot.ear.speech_ends()
             if not script.left:

@@ -37,10 +37,16 @@ class Criteria:
     """Conversations begun without the channel (second pattern)."""
     left: int = 0
     """Conversations that the robot left before their end."""
+    third_turns: int = 0
+    """Answers before whose acknowledgement another application spoke (X7)."""
+    misanswered: int = 0
+    """Questions that took what the user said just after another application's timeout (X10)."""
     reactions: int = 0
     """Events that some application reacted to."""
     reaction_mean: float = 0.0
     reaction_max: float = 0.0
+    late_reactions: int = 0
+    """Reactions that began more than 3 s after their event (X8)."""
     responses: int = 0
     """Reactions in which the robot said something or turned to the user."""
     response_mean: float = 0.0

@@ -77,6 +77,10 @@ class _Event:
     """The application whose wait was broken and that this answers, until it is taken up."""
 
 
+LATE_REACTION = 3.0
+"""Seconds after its event from which on a reaction is late."""
+LATE_ANSWER = 3.0
+"""Seconds after a question's timeout in which the end of the user's words is meant for it still."""
 PARTS = 1 << 80
 """Parts of a second in which floats from a microsecond on are whole numbers."""
 MOST_EVENTS = 1000
@@ -112,10 +116,15 @@ class Observer:
         """The latest events, by serial number."""
         self._waits: dict[tuple[str, str], _Wait] = {}
         """Applications that wait for a service's answer, by application and service."""
+        self._stolen: dict[str, bool] = {}
+        """Streams with a question that was answered, of which the next word is awaited, and
+        whether another application has spoken meanwhile."""
+        self._lapsed = ("", -LATE_ANSWER - 1)
+        """Whose question was not answered in time last, and when."""
         self._do: dict[str, Callable[[Entry], None]] = {
             "request": self._request,
             "start": self._start,
-            "end": self._end,
+            "end": self._over,
             "cancel": self._end,
             "fail": self._end,
             "stream-end": lambda record: self._forget(record.tree),
@@ -169,6 +178,7 @@ class Observer:
 
     def _forget(self, name: str) -> None:
         """A stream is over, or there are too many."""
+        self._stolen.pop(name, None)
         tree = self._trees.pop(name, None)
         self.found.unfaced += tree is not None and tree.unfaced
 
@@ -210,9 +220,31 @@ class Observer:
         if request.leaves:
             self._leave(tree, record.behavior)
         if speaks:
+            self._take_turn(tree, record)
             tree.speaking.add(record.behavior.partition(".")[0])
         if record.text or (request.engages and record.command != "q-and-a"):
             self._respond(tree)
+
+    def _take_turn(self, tree: _Tree, record: Entry) -> None:
+        """Somebody speaks: is it who has asked what the user has answered, or another?"""
+        if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
+            self.found.third_turns += 1
+        for name in self._stolen:
+            other = self._trees[name]
+            self._stolen[name] = self._stolen[name] or other.app != tree.app
+
+    def _over(self, record: Entry) -> None:
+        """A behavior ends; of a question: whose answer is it?"""
+        tree = self._of.get(record.behavior)
+        if tree is not None and record.command == "q-and-a":
+            app, when = self._lapsed
+            if record.outcome == "noinput":
+                self._lapsed = (tree.app, self._now)
+            elif record.outcome == "filled":
+                late = self._now - when <= LATE_ANSWER
+                self.found.misanswered += late and app != tree.app
+                self._stolen[tree.name] = False
+        self._end(record)
 
     def _go_on(self, tree: _Tree, speaks: bool) -> None:
         """A stream does something, or speaks: has another application broken it meanwhile?
@@ -239,6 +271,7 @@ class Observer:
             seconds = round(self._now - event.time, 3)
             found.reactions += 1
             found.reaction_max = max(found.reaction_max, seconds)
+            found.late_reactions += seconds > LATE_REACTION
             self._delayed += int(seconds * PARTS)
             delay = Delay(event.name, serial, app, seconds)
             tree.owed = [*tree.owed[-MOST_STREAMS:], (event.time, delay)]

@@ -59,8 +59,8 @@ PHASES = {
         "an AB enters working memory",
         "`behavior`, `tree`, `command`, `text`, `args`, `extra`, `parent`, `parents`, "
         "`devices`, `priority`, `reactive`, `cause`, `feedback`, `leaves`, `engages`, `order`, "
-        "`state`, `unit`, `inserted`, `before`, `restartable`, `hold`, `connect`, `motion`, "
-        "`source`",
+        "`state`, `unit`, `inserted`, `before`, `restartable`, `hold`, `connect`, `fresh`, `spans`, "
+        "`words`, `motion`, `source`",
         ("behavior", "command", "app", "tree", "priority"),
     ),
     "decision": Phase(
@@ -280,12 +280,17 @@ class Entry:
     state: Annotated[
         int | None, "The activation of a document's state that asks, or is left (O3)."
     ] = None
-    inserted: Annotated[str, "The rule by which the mediator put it in itself (X1, X4)."] = ""
+    inserted: Annotated[str, "The rule by which the mediator put it in itself (X1, X4, X9)."] = ""
     before: Annotated[str, "The AB that it was put in before."] = ""
     restartable: Annotated[bool, "Whether it gives way to a reaction and starts again (X2)."] = (
         False
     )
     hold: Annotated[float, "How long (s) its stream is held for an event afterwards (X3)."] = 0.0
+    fresh: Annotated[float, "For how long (s) the reaction is worth starting (X8)."] = 0.0
+    spans: Annotated[bool, "Whether it is a unit that spans questions and states (U5; for X7)."] = (
+        False
+    )
+    words: Annotated[str, "What is said first when its stream resumes (X9)."] = ""
     connect: Annotated[bool, "Whether the robot has to face the user before it starts (X4)."] = (
         False
     )

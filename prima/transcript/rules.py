@@ -37,5 +37,9 @@ RULES = {
     "X4": "the robot turns to the user before the first word",
     "X5": "a motion free in its path and one faithful to its own run together",
     "X6": "another Command takes the place of one that the robot lacks",
+    "X7": "nobody speaks between a user's answer and what the asker says to it",
+    "X8": "a reaction that comes too late is given up; what a question refuses may answer one",
+    "X9": "a topic that resumes after others have spoken says so first",
+    "X10": "what the user says just after a question's timeout goes to that question's application",
 }
 """The rules by their numbers, as in a record's ``rule``."""

@@ -89,10 +89,13 @@ class Stage:
         steps: list[Step] | None = None,
         hold: int | None = None,
         connect: bool = False,
+        words: Command | None = None,
+        fresh: int | None = None,
     ) -> int:
         """Ask for Commands; nothing is selected before :meth:`select`."""
         self.runs += 1
         asked = Request(self.runs, steps or chain(*whats), state, cause, unit, hold, connect)
+        asked.words, asked.fresh = words, fresh
         self.mediator.request(app, asked)
         return self.runs
 

@@ -7,6 +7,7 @@ import pytest
 from prima.messages import Command, Data
 from prima.scheduler import (
     endings,
+    freshness,
     interruption,
     preparation,
     requests,
@@ -120,7 +121,7 @@ def floor_ignored(patch: pytest.MonkeyPatch) -> None:
 def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
     """S3 is gone."""
 
-    def holds_back(policy: Policy, ab: Behavior) -> bool:
+    def holds_back(policy: Policy, ab: Behavior, memory: Memory) -> bool:
         return False
 
     rebind(patch, Policy, "holds_back", holds_back)
@@ -355,6 +356,21 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
         return found
 
     rebind(patch, requests, "stream_of", apart)
+
+
+def never_too_late(patch: pytest.MonkeyPatch) -> None:
+    """X8: a reaction waits as long as it takes."""
+    rebind(patch, freshness, "_give_up", lambda mediation, root: setattr(root, "stale", None))
+
+
+def resumed_silently(patch: pytest.MonkeyPatch) -> None:
+    """X9: a topic goes on as if nobody had spoken meanwhile."""
+    rebind(patch, preparation, "x9", lambda mediation, ab: False)
+
+
+def spoken_between(patch: pytest.MonkeyPatch) -> None:
+    """X7: a reaction is said between an answer and what the asker says to it."""
+    rebind(patch, rules, "x7", lambda ab, memory: None)
 
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:

@@ -36,6 +36,7 @@ from tests.invariants.broken import (
     held_without_floor,
     inserted_beside,
     never_resumed,
+    never_too_late,
     not_held,
     nothing_held_back,
     nothing_interrupted,
@@ -46,8 +47,10 @@ from tests.invariants.broken import (
     restarted_as_new,
     restarted_in_part,
     restored_for_nothing,
+    resumed_silently,
     run_twice,
     running_cut,
+    spoken_between,
     unmarked_interrupted,
 )
 
@@ -100,6 +103,14 @@ TAKEN_AWAY = Script(
 """The robot has gone somewhere to speak, when the other application drives it away."""
 
 
+ANSWERED = Script(
+    (((Ask(("move-head", "speak"), ((), (0,))),),), ()),
+    ((10, ((one("q-and-a"),), ())), (20, ((), (one("speak"),)))),
+    (),
+    World(),
+)
+"""A question is answered while a reaction waits to speak; the asker's word follows a movement."""
+
 TWO_BRANCHES = Ask(("turn", "speak", "turn", "speak", "turn"), ((), (), (0,), (1,), (2,)))
 MUTATIONS = (
     Mutation(1, devices_shared, at_events(("fa", one("speak")), ("ea", one("speak")))),
@@ -126,6 +137,23 @@ MUTATIONS = (
         7,
         floor_ignored,
         at_events(("ea", one("topological-move")), ("fa", one("speak", "move-head"))),
+    ),
+    Mutation(
+        16,
+        never_too_late,
+        at_events(
+            ("ea", one("speak")),
+            ("fa", replace(one("speak"), fresh=1)),
+            ("ea", one("move-head")),
+        ),
+        "prima+x8",
+    ),
+    Mutation(16, spoken_between, ANSWERED, "prima+x7"),
+    Mutation(
+        16,
+        resumed_silently,
+        at_events(("ea", replace(one("speak", "speak"), words=True)), ("fa", one("speak"))),
+        "prima+x9",
     ),
     Mutation(
         1,

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from prima import session
 from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
 from prima.language.commands import CommandType
@@ -22,6 +23,7 @@ from prima.scheduler import (
     emergency,
     endings,
     failures,
+    freshness,
     interruption,
     preparation,
     requests,
@@ -29,6 +31,7 @@ from prima.scheduler import (
     selection,
     starvation,
     streams,
+    thirdturn,
 )
 from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
@@ -190,7 +193,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("s2f", "reversed", wrapped(rules, "s2f", lambda r: (-r[0], r[1]))),
     ("s2f", "by loading", loaded_order),
     ("s2", "all that wait have lost", any_loser),
-    ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab: False)),
+    ("s3", "dropped", put(Policy, "holds_back", lambda policy, ab, memory: False)),
     ("f1", "no floor", put(streams, "take_floor", nothing)),
     ("f1", "nobody is suspended", put(streams, "suspend_others", nothing)),
     ("f2", "dropped", put(rules, "f2", nothing)),
@@ -299,6 +302,35 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         put(selection, "in_the_way", lambda mediation, ab: mediation.memory.conflicts(ab)),
     ),
     ("x6", "dropped", put(requests, "x6", nothing)),
+    ("x8", "dropped", put(freshness, "x8", lambda mediation: False)),
+    ("x8", "never shrinks", reworded(freshness, "_give_up", "not kept or ", "True or ")),
+    ("x8", "whatever keeps it", reworded(freshness, "_give_up", "not kept or ", "")),
+    ("x8", "what follows stays", put(freshness, "followers", lambda root: [root])),
+    ("x8", "the last instant", reworded(freshness, "x8", "if ab in may_start", "if False")),
+    ("x8", "what has begun is abandoned", reworded(freshness, "_tell", " and not run.begun", "")),
+    ("x8", "nothing is offered", put(freshness, "offered", nothing)),
+    ("x8", "what comes before is lost", reworded(endings, "answered", "in ab.waits_for", "in ()")),
+    ("x10", "dropped", put(Session, "_late_for", nothing)),
+    ("x10", "for ever", put(session, "LATE_MS", 10**9)),
+    ("x10", "not at once", put(session, "LATE_MS", 0)),
+    ("x10", "links alone", put(Mediator, "coming_question", nothing)),
+    ("x9", "dropped", put(preparation, "x9", lambda *given: False)),
+    ("x9", "whoever resumes", reworded(preparation, "note_words", " and stream.spoken", "")),
+    (
+        "x9",
+        "what is no speech",
+        reworded(preparation, "note_words", '"speaker" in ab.devices', "True"),
+    ),
+    ("x9", "for ever", reworded(preparation, "x9", "stream.words_due = False", "pass")),
+    ("x9", "another topic, too", reworded(preparation, "x9", " or wanted_now(ab)", "")),
+    ("x9", "nobody waits for it", put(preparation, "join_first", nothing)),
+    ("x7", "dropped", put(thirdturn, "owe", nothing)),
+    ("x7", "others speak", put(rules, "x7", nothing)),
+    ("x7", "floors are kept", put(rules, "aside", lambda ab, memory: False)),
+    ("x7", "questions, too", reworded(thirdturn, "_soon_over", " or ab.asks", "")),
+    ("x7", "loops, too", reworded(thirdturn, "_soon_over", "ab.feedback or ", "")),
+    ("x7", "whatever comes before", put(rules, "before", lambda ab, memory: [])),
+    ("x7", "whatever was heard", reworded(endings, "u2", 'outcome == "filled" and ', "")),
 ]
 """Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""
 

@@ -128,8 +128,10 @@ LOOPS = (
 HOOKED = '<speak>Hooked.<on event="cancel"><log>cut</log></on><on event="end">{}</on></speak>'
 THROWN = "thrown.here"
 TURNS = ("suspended", "resumed")
+OWN = ("end", "cancel", "expired", "error")
+"""Events that may come for ever, of what the application itself does."""
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
-HINTS = re.compile(r' (stream|hold-for|channel|restartable)="[^"]*"')
+HINTS = re.compile(r' (stream|hold-for|channel|restartable|resume-text|fresh-for)="[^"]*"')
 
 
 def without_hints(play: Play) -> Play:
@@ -177,10 +179,10 @@ class Author:
     def form(self, index: int) -> str:
         items = "".join(self.item(index) for _ in range(self.some(0, 2)))
         handlers = "".join(
-            self.handler(index, self.one((*EVENTS, *TURNS, "own", "end", "cancel", "error")))
+            self.handler(index, self.one((*EVENTS, *TURNS, "own", "late", *OWN)))
             for _ in range(self.some(0, 2))
         )
-        hints = self.hold(4) + self.connect(4)
+        hints = self.hold(4) + self.connect(4) + self.words(2)
         watch = self.watch(index) if self.chance(8) else ""
         return f'<form id="{self.forms[index]}"{hints}>{watch}{items}{handlers}</form>'
 
@@ -197,6 +199,10 @@ class Author:
     def hold(self, of: int) -> str:
         """X3: now and then the hint that the stream be kept open."""
         return f' stream="hold" hold-for="{self.some(1, 6000)}ms"' if self.chance(of) else ""
+
+    def words(self, of: int) -> str:
+        """X9: now and then what is said when the form's stream resumes."""
+        return ' resume-text="As I was saying."' if self.chance(of) else ""
 
     def connect(self, of: int) -> str:
         """X4: now and then the hint that the robot turn to the user first."""
@@ -269,10 +275,11 @@ class Author:
         # Ends and errors may come for ever, so what is done about them asks for nothing;
         # the application's own event is sent by what comes from outside or once, and leads ahead;
         # so does what its stream comes to.
-        simple = event in ("end", "cancel", "error")
+        simple = event in OWN
         external = not simple and event not in ("own", *TURNS)
         content = self.content(index, unit=unit, simple=simple, external=external, sends=external)
-        return f'<on event="{event}"{reactive}>{content}</on>'
+        fresh = self.one(("", "", ' fresh-for="1ms"', ' fresh-for="900ms"'))
+        return f'<on event="{event}"{reactive}{fresh}>{content}</on>'
 
     def content(
         self,

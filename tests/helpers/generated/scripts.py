@@ -54,6 +54,8 @@ class Ask:
     hold: int | None = None
     connect: bool = False
     restartable: bool = False
+    words: bool = False
+    fresh: int | None = None
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,8 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
 }
 PIECES = tuple(name for name, row in TABLE_4_2.items() if not row.feedback and not row.leaves)
 GROUPED = tuple(name for name in PIECES if name not in ("q-and-a", "stop-moving"))
-ALL = (*TABLE_4_2, *DANCES)
+ALL = (*TABLE_4_2, *DANCES, *("q-and-a", "speak") * 3)
+"""What is asked for; questions and words often, as much happens by their ends."""
 
 
 def command(name: str, now: bool = False, restartable: bool = False) -> Command:
@@ -154,6 +157,8 @@ class Requester:
                     asked = Request(
                         number, steps, self.state, cause, self.unit, deed.hold, deed.connect
                     )
+                    asked.fresh = deed.fresh
+                    asked.words = command("speak") if deed.words else None
                     mediator.request(self.name, asked)
                     self._asked, cause = True, None
                 case Open() if self.unit is None:
@@ -319,6 +324,8 @@ def _asks(draw: Any) -> Ask:
         draw(st.integers(1, 6000)) if draw(st.integers(1, 4)) == 4 else None,
         draw(st.integers(1, 4)) == 4,
         draw(st.integers(1, 3)) == 3,
+        draw(st.integers(1, 3)) == 3,
+        draw(st.sampled_from((1, 700, 3000))) if draw(st.integers(1, 3)) == 3 else None,
     )
 
 

@@ -179,6 +179,8 @@ class Devices:
         elif dice.random() < 0.5:
             self.plan(later, Heard("mumble"))
         self.plan(later + 1, Ended(name, True, {"outcome": "noinput"}), task)
+        if dice.randrange(200) < self.world.silent:
+            self.plan(later + dice.randint(2, 2500), Heard(dice.choice(("yes", "no", "mumble"))))
 
 
 @dataclass

@@ -1,0 +1,105 @@
+"""What comes too late: reactions that are given up (X8), and answers (X8, X10)."""
+
+from __future__ import annotations
+
+from prima.invariants.model import AB, WAITING, Record
+from prima.invariants.selection import Selection
+
+A_MOMENT = 0.0055
+"""Seconds by which a reaction that may start, and is outdone, may be older than its time."""
+LATE = 2.0
+"""Seconds after a question's timeout in which the user may begin to answer it still."""
+
+
+class Late(Selection):
+    """X8 and X10."""
+
+    def hears_surely(self, ab: AB) -> None:
+        """C3: nothing can have made the mediator deaf for its end, as a unit that is left can."""
+        if not (self.has_left(ab) or ab.app in self.gone_apps):
+            self.owed[ab.tree.name] += 1
+
+    def hears_of(self, ab: AB) -> None:
+        """C3, O3, E2: an end opens a window, but not of what was given up before."""
+        if not (self.has_left(ab) or ab.app in self.gone_apps):
+            self.heard[ab.tree.name] += 1
+
+    def reaction_of(self, ab: AB) -> AB | None:
+        """The root of the reaction that an AB is of, which has not started."""
+        ab = ab.outermost
+        while ab.parents:
+            ab = self.abs[min(ab.parents)]
+        return ab if ab.phase == WAITING and ab.cause is not None else None
+
+    def comes_too_late(self, ab: AB, was: str, root: AB | None, waited: list[AB]) -> None:
+        """X8: it is of a reaction whose time is over; what is left of that reacts at once."""
+        shown = f"{ab.shown} ({was}) is given up"
+        if "x8" not in self.extensions or root is None or root.fresh_until is None:
+            self.report(3, "X8", f"{shown}, but is of no reaction that has a time")
+            return
+        if root.fresh_until > self.now:
+            self.report(3, "X8", f"{shown} before {root.fresh_until:g}")
+        for other in waited:
+            if other.phase == WAITING:
+                other.cause, other.fresh_until = root.cause, self.now
+
+    def fresh(self, ab: AB) -> None:
+        """X8 at the end of an instant: no reaction waits whose time is over."""
+        if ab.cause is None or ab.fresh_until is None or "x8" not in self.extensions:
+            return
+        if self.now > ab.fresh_until + A_MOMENT * self.second:
+            self.report(16, "X8", f"{ab.shown} waits, but was worth it until {ab.fresh_until:g}")
+
+    def answered_early(self, ab: AB, record: Record) -> None:
+        """X8, X10: a question is answered that nobody has asked yet."""
+        rule = record["rule"]
+        if rule not in ("X8", "X10") or rule.lower() not in self.extensions:
+            self.report(3, str(rule), f"{ab.shown} is answered by a rule that is not on")
+        if not ab.question or ab.phase not in (WAITING, "linked"):
+            self.report(3, str(rule), f"{ab.shown} is answered early, but it is {ab.phase}")
+        if self.speech_at != self.now:
+            self.report(3, str(rule), f"{ab.shown} is answered, but nobody has said anything")
+        root = self.reaction_of(ab)
+        if rule == "X8" and root is None:
+            self.report(3, "X8", f"{ab.shown} is answered early, but is of no reaction that waits")
+        self.answered_now(ab)
+        self.hears_of(ab)
+        if not (ab.silent or ab.unit):
+            self.hears_surely(ab)
+        waited = [one for one in ab.tree.members.values() if ab.name in one.parents]
+        for other in waited:
+            other.parents |= ab.parents
+        reacts = ab.cause is not None
+        self.remove(ab)
+        for other in waited:
+            if reacts and other.phase == WAITING:
+                other.cause = self.speech
+
+    def note_speech(self, record: Record) -> None:
+        """X10: whose question the user answers, if the time for that is just over."""
+        if record["event"] != "speech" or record["actor"] != "user":
+            return
+        self.speech_at, self.speech = self.now, record.get("serial")
+        began = self.now - (record.get("data") or {}).get("lasted", 0) * self.second
+        lapsed, self.late_app = self.lapsed, ""
+        if "x10" not in self.extensions or lapsed is None:
+            late = ""
+        else:
+            app, when = lapsed
+            late = "" if app in self.gone_apps or began - when > LATE * self.second else app
+        told = record.get("app") or ""
+        if told and (record.get("rule") != "X10" or told != late):
+            self.report(16, "X10", f"what {told} has not asked for is told it alone")
+        self.late_app = late
+
+    def note_lapse(self, record: Record) -> None:
+        """X10: a question's time is over, or it is answered."""
+        ab = self.abs.get(record["behavior"])
+        if ab is None or not ab.question:
+            return
+        if record["outcome"] == "noinput" and record.get("inbound") and not ab.silent:
+            self.lapsed = (ab.app, self.now)
+            return
+        late = self.late_app if self.speech_at == self.now else ""
+        if record["outcome"] == "filled" and late not in ("", ab.app):
+            self.report(16, "X10", f"{ab.shown} is answered by what {late} has asked")

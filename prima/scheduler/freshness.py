@@ -1,0 +1,94 @@
+"""X8: reactions that come too late are given up, and what a question refuses may answer one.
+
+A reaction is a root that has not started, with all of its tree that waits for it alone (as in E1).
+"""
+
+from __future__ import annotations
+
+from prima.messages import Command, Notice
+from prima.scheduler.behavior import LINKED, WAITING, Behavior
+from prima.scheduler.endings import delete
+from prima.scheduler.mediation import Mediation
+from prima.scheduler.selection import able
+
+
+def x8(mediation: Mediation) -> bool:
+    """X8: give up reactions that were not started in time; true if there was one."""
+    if not mediation.has("x8") or mediation.halted:
+        return False
+    stale = [ab for ab in mediation.memory.waiting.values() if _is_stale(ab, mediation.now)]
+    if not stale:
+        return False
+    waiting = mediation.memory.waiting.values()
+    ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
+    may_start = [ab for _, ab in able(mediation, ranked, {})]
+    for ab in stale:
+        if ab in may_start:
+            ab.stale = mediation.now + 1  # the selection of this very instant may start it
+        elif ab.name in mediation.memory.waiting:
+            _give_up(mediation, ab)
+    return True
+
+
+def _is_stale(ab: Behavior, now: int) -> bool:
+    return ab.stale is not None and ab.stale <= now
+
+
+def _give_up(mediation: Mediation, root: Behavior) -> None:
+    """Delete a reaction, but for what needs only devices that are free."""
+    kept = mediation.policy.refusal(root, mediation.memory) is None
+    lost = [root]
+    for ab in followers(root)[1:]:
+        if not kept or mediation.memory.conflict(ab) is not None:
+            lost.append(ab)
+    reaction = root.reaction
+    freed = [ab for one in lost for ab in one.children if ab.state is LINKED and ab not in lost]
+    for ab in reversed(lost):
+        delete(mediation, ab, "X8")
+    for ab in freed:
+        if ab.state is WAITING:
+            ab.reaction, ab.stale = reaction, mediation.now + 1
+            ab.freed = -1  # nothing has ended before it (S2c)
+    _tell(mediation, lost)
+
+
+def followers(root: Behavior) -> list[Behavior]:
+    """A root and what waits for it alone, each behind all that it waits for."""
+    found, names = [root], {root.name}
+    for ab in found:  # it grows
+        for child in ab.children:
+            if child.state is LINKED and child.waits_for <= names and child not in found:
+                found.append(child)
+                names.add(child.name)
+    return found
+
+
+def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
+    """Tell the application what it is not to wait for any more.
+
+    What it asked for with that goes on, if any of it has started or is still to start.
+    """
+    told = [ab for ab in lost if ab.run is not None and not (ab.silent or ab.app.gone)]
+    for ab in told:
+        assert ab.run is not None
+        ab.run.left -= 1
+    for ab in told:
+        run = ab.run
+        assert run is not None
+        command = ab.command or Command("iu", hook=[])
+        whole = run.left == 0 and not run.begun
+        event = f"expired.{command.type}"
+        notices = [Notice("cancelled" if whole else "expired", run.number, command, event=event)]
+        if run.left == 0 and run.begun and ab is told[-1]:
+            notices.append(Notice("done", run.number, command))
+        mediation.tell(ab.app, None, *notices)
+
+
+def offered(mediation: Mediation) -> Behavior | None:
+    """X8: the first question of a reaction that waits, to which is offered what another refuses."""
+    reactions = [ab for ab in mediation.memory.waiting.values() if ab.reaction is not None]
+    for _, root in mediation.policy.ranked(reactions, mediation.memory, mediation.now):
+        for ab in followers(root):
+            if ab.command is not None and ab.command.type == "q-and-a" and ab.run is not None:
+                return ab
+    return None

@@ -1,0 +1,35 @@
+"""X7: nobody speaks between a user's answer and what the asker says to it."""
+
+from __future__ import annotations
+
+from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
+from prima.scheduler.mediation import Mediation
+from prima.scheduler.memory import Memory
+from prima.scheduler.rules import before
+
+
+def owe(mediation: Mediation) -> None:
+    """X7: when a question was answered, note what its asker says to that."""
+    memory = mediation.memory
+    stream, memory.answered = memory.answered, None
+    if memory.owed is not None and memory.owed.state in (GONE, RUNNING):
+        memory.owed = None
+    if stream is not None and mediation.has("x7"):
+        memory.owed = acknowledgement(stream, memory)
+
+
+def acknowledgement(stream: Stream, memory: Memory) -> Behavior | None:
+    """The stream's next utterance, if that is soon over and comes after what is soon over.
+
+    Another question is none: it lasts as long as the user takes.
+    """
+    coming = (ab for ab in stream.members.values() if ab.state not in (GONE, RUNNING))
+    first = next((ab for ab in coming if ab.unit is None and "speaker" in ab.devices), None)
+    if first is None or not all(map(_soon_over, [first, *before(first, memory)])):
+        return None
+    return first
+
+
+def _soon_over(ab: Behavior) -> bool:
+    lasting = ab.feedback or ab.leaves or ab.asks or ab.spans
+    return not lasting and ab.reaction is None and not ab.inserted

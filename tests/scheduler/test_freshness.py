@@ -1,0 +1,155 @@
+"""X8: reactions that come too late are given up, or shrink to what can be done at once."""
+
+from __future__ import annotations
+
+from prima.invariants import check
+from prima.messages import Command, Step
+from tests.helpers.stage import Stage, ask, command, move, say
+
+TOUCH = 7
+POLICY = "prima+x8"
+NOD = command("gesture", name="nod")
+
+
+def busy(*whats: Command, policy: str = POLICY, steps: list[Step] | None = None) -> Stage:
+    """The EA speaks, and the FA wants to react within two seconds."""
+    stage = Stage(policy)
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.at(1000).request("fa", *whats, steps=steps, cause=TOUCH, fresh=2000)
+    stage.select()
+    return stage
+
+
+def late(stage: Stage, time: int = 3000) -> list[str]:
+    """Time goes on: what is too late goes, and others start."""
+    stage.at(time).mediator.expire()
+    return stage.select()
+
+
+def test_x8_a_reaction_that_comes_too_late_is_given_up() -> None:
+    stage = busy(say("Oh!"), say("Who was that?"))
+    assert stage.mediator.deadline() == 3000
+    assert late(stage) == []
+    assert stage.told("fa") == ["expired.speak", "expired.speak"]
+    assert [notice.what for _, notice in stage.notices] == ["cancelled", "cancelled"]
+    stage.at(4000).end("ea#1")
+    assert stage.select() == []
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_in_time_it_is_said() -> None:
+    stage = busy(say("Oh!"))
+    stage.at(2999).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    assert stage.mediator.deadline() != 3000
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_what_ends_in_the_last_instant_lets_it_start() -> None:
+    stage = busy(say("Oh!"))
+    stage.at(3000).end("ea#1")
+    assert late(stage) == ["fa#1"]
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_is_off_unless_it_is_asked_for() -> None:
+    stage = busy(say("Oh!"), policy="prima")
+    late(stage)
+    stage.at(4000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+def test_x8_a_reaction_without_a_time_waits() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.at(1000).request("fa", say("Oh!"), cause=TOUCH)
+    stage.select()
+    assert late(stage, 90_000) == [] and stage.told("fa") == []
+    stage.at(90_000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+def test_x8_it_shrinks_to_what_needs_only_free_devices() -> None:
+    stage = busy(say("Oh!"), NOD)
+    assert late(stage) == ["fa#2"]
+    [start] = [r for r in stage.phases("start") if r["behavior"] == "fa#2"]
+    assert start["reactive"] and start["cause"] == TOUCH
+    assert stage.told("fa") == ["expired.speak"]
+    assert stage.notices[0][1].what == "expired", "the rest goes on"
+    stage.at(4000).end("fa#2")
+    assert [notice.what for _, notice in stage.notices[1:]] == ["ended", "done"]
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_a_reaction_that_has_begun_is_not_given_up() -> None:
+    stage = busy(NOD, say("Oh!"))
+    assert stage.running == {"ea#1", "fa#1"}
+    assert late(stage) == [] and stage.told("fa") == []
+
+
+def test_x8_a_branch_that_has_not_started_is() -> None:
+    stage = busy(steps=[Step(NOD), Step(say("Oh!"))])
+    stage.at(2000).end("fa#1")
+    stage.select()
+    assert late(stage) == []
+    assert [(n.what, n.event) for _, n in stage.notices[1:]] == [
+        ("expired", "expired.speak"),
+        ("done", ""),
+    ], "what began is done"
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_what_the_floor_keeps_is_given_up_whole() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("Watch out!"), cause=TOUCH)
+    stage.select()
+    stage.at(1000).request("fa", say("Oh!"), NOD, cause=TOUCH, fresh=500)
+    stage.select()
+    assert stage.holds("fa#1") == ["F2"]
+    assert late(stage, 1500) == []
+    assert stage.told("fa") == ["expired.speak", "expired.gesture"]
+    assert check(stage.records, POLICY) == []
+
+
+def test_x8_a_question_that_refuses_offers_what_was_said_to_a_reaction_that_waits() -> None:
+    stage = busy(say("Oh!"), ask("What's the matter?"), move())
+    question = stage.mediator.offered()
+    assert question is not None and question.id == "fa#2"
+    stage.at(1500).mediator.answered(question, {"outcome": "filled"}, "X8", TOUCH + 1)
+    assert stage.select() == []
+    assert [n.what for _, n in stage.notices] == ["ended"]
+    stage.at(2000).end("ea#1")
+    assert stage.select() == ["fa#1"], "what comes before it is said still"
+
+
+def test_x8_what_follows_an_answered_question_reacts_to_the_answer() -> None:
+    stage = busy(ask("What's the matter?"), say("Thank you."))
+    question = stage.mediator.offered()
+    assert question is not None and question.id == "fa#1"
+    stage.at(1500).mediator.answered(question, {"outcome": "filled"}, "X8", TOUCH + 1)
+    stage.select()
+    stage.at(2000).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    [start] = [r for r in stage.phases("start") if r["behavior"] == "fa#2"]
+    assert start["cause"] == TOUCH + 1
+
+
+def test_x8_nothing_is_offered_to_what_is_no_reaction() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("A long story."))
+    stage.request("fa", ask("What's the matter?"))
+    stage.select()
+    assert stage.mediator.offered() is None
+
+
+def test_x8_with_x4_the_turn_to_the_user_goes_with_it() -> None:
+    both = "prima+x4+x8"
+    stage = Stage(both)
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.at(1000).request("fa", ask("Yes?"), cause=TOUCH, fresh=2000, connect=True)
+    stage.select()
+    assert late(stage) == [] and stage.told("fa") == ["expired.q-and-a"]
+    assert check(stage.records, both) == []

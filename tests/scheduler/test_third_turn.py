@@ -1,0 +1,126 @@
+"""X7: nobody speaks between a user's answer and what the asker says to it."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import Any
+
+import pytest
+
+from prima.invariants import check
+from prima.messages import Command
+from tests.helpers.stage import TRACK, Stage, ask, command, move, say
+
+TOUCH = 7
+HEAD = command("move-head", pan=30)
+
+
+def answer(stage: Stage, behavior: str, then: Any = None, outcome: str = "filled") -> None:
+    """The user answers a question."""
+    stage.mediator.ended(behavior, True, {"outcome": outcome}, inbound=False)
+    stage.settle(then)
+
+
+def touched_while_asked(policy: str = "prima+x7", wants: Command | None = None) -> Stage:
+    """The EA asks, and the user strokes the robot: the FA wants to say something to that."""
+    stage = Stage(policy)
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1000).request("fa", wants or say("That feels good."), cause=TOUCH)
+    assert stage.select() == []
+    return stage
+
+
+def test_x7_the_asker_has_the_first_word_after_an_answer() -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Thank you.")))
+    assert stage.select() == ["ea#2"]
+    assert (stage.rule("ea#2"), stage.losers("ea#2")) == ("X7", ["fa#1"])
+    stage.at(3000).end("ea#2")
+    assert stage.select() == ["fa#1"], "the price is one utterance"
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_is_off_unless_it_is_asked_for() -> None:
+    stage = touched_while_asked("prima")
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Thank you.")))
+    assert stage.select() == ["fa#1"]
+
+
+def test_x7_nobody_speaks_while_the_robot_turns_its_head_before_its_word() -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    assert stage.select() == ["ea#2"]
+    assert stage.holds("fa#1")[-1] == "X7"
+    stage.at(2500).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_what_says_nothing_reacts_at_once_and_keeps_the_floor() -> None:
+    stage = Stage("prima+x7")
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1000).request("fa", TRACK, cause=TOUCH)
+    assert stage.select() == ["fa#1.1"] and stage.floor == ["fa:1"]
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Thank you."), say("Now.")))
+    assert stage.select() == ["ea#2"]
+    assert stage.rule("ea#2") == "X7", "F2 would have kept it"
+    assert stage.floor == ["fa:1"]
+    assert not [r for r in stage.phases("resume") if r["tree"] == "ea:1"], "its stream waits on"
+    stage.at(3000).end("ea#2")
+    assert stage.select() == [] and stage.holds("ea#3")[-1] == "F2"
+    assert check(stage.records, "prima+x7") == []
+
+
+@pytest.mark.parametrize("outcome", ["noinput", "nomatch"])
+def test_x7_only_an_answer_is_answered(outcome: str) -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Well.")), outcome)
+    assert stage.select() == ["fa#1"]
+
+
+@pytest.mark.parametrize(
+    "then",
+    [
+        (ask("And when?"),),
+        (move(), say("Here we are.")),
+        (TRACK, say("There you are.")),
+        (ask("And when?"), say("I see.")),
+    ],
+    ids=["a question", "behind a move", "behind a loop", "behind a question"],
+)
+def test_x7_what_may_last_is_not_waited_for(then: tuple[Command, ...]) -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", *deepcopy(then)))
+    assert "fa#1" in stage.select()
+
+
+def test_x7_who_says_nothing_to_an_answer_keeps_nobody() -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1")
+    assert stage.select() == ["fa#1"]
+
+
+def test_x7_an_application_that_ends_owes_nothing() -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    stage.select()
+    stage.at(2100).leave("ea")
+    stage.mediator.unload("ea", "exit")
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_its_own_reaction_waits_as_well() -> None:
+    stage = Stage("prima+x7")
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1000).request("ea", say("Oh!"), cause=TOUCH)
+    stage.select()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    assert stage.select() == ["ea#3"]
+    assert stage.holds("ea#2")[-1] == "X7"
+    assert check(stage.records, "prima+x7") == []
