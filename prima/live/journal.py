@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from prima.errors import RunError, UsageError
 from prima.journal import replay_instants
-from prima.messages import Emergency, Inbound, Json, Narrated, Record
+from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
 from prima.transcript.lines import finished, line, read_lines
 
@@ -162,6 +162,8 @@ class Known:
     sensors: dict[str, Json]
     halted: bool
     """Whether the emergency stop was pressed."""
+    asked: dict[str, Order] = field(default_factory=dict)
+    """What applications had asked and had no answer to, by its name, the oldest first."""
 
 
 def known(records: list[Record]) -> Known:
@@ -181,7 +183,35 @@ def known(records: list[Record]) -> Known:
                 state.sensors |= record["data"]
             case "emergency":
                 state.halted = record["outcome"] == "pressed"
+        _note_asked(state.asked, record)
     return state
+
+
+def _note_asked(asked: dict[str, Order], record: Record) -> None:
+    """Keep what is asked until it is answered.
+
+    A service's reply does not say to which message it is one: it counts for the oldest.
+    """
+    app, data = str(record.get("app", "")), record.get("data") or {}
+    match record["phase"]:
+        case "load" | "unload":  # whoever has asked is gone
+            for name in [name for name, order in asked.items() if order.app == app]:
+                del asked[name]
+        case "send" if data.get("transfer") == "over":
+            asked.pop(f"{app}!{data['call']}", None)
+        case "send":
+            name = f"{app}!{record['serial']}"
+            asked[name] = Order("send", name, app=app, data=data)
+        case "fetched":
+            asked.pop(f"{app}!{data['serial']}", None)
+        case "transferred":
+            asked.pop(f"{app}!{record['serial']}", None)
+        case "event" if record.get("inbound"):
+            for name, order in asked.items():
+                to = order.data["to"]
+                if order.app == app and record["event"] in (f"reply.{to}", f"error.service.{to}"):
+                    del asked[name]
+                    return
 
 
 def going_on(state: Known) -> Iterator[Inbound]:

@@ -12,7 +12,7 @@ import os
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from http.client import HTTPException, HTTPResponse
@@ -50,6 +50,7 @@ FIRST_S = 0.1
 """How long (s) it is waited before a service is asked again; then twice as long, and so on."""
 MOST_ASKED = 32
 """Requests of a run that are under way at one time."""
+CUT_OFF = "the run was cut off before the answer came; it is asked once only"
 HIDDEN = b"***"
 """What takes the place of a secret that a host sends back."""
 
@@ -80,6 +81,8 @@ class LiveServices:
         self._arrived: list[tuple[int, Inbound]] = []
         self._last = -1
         self._under_way = 0
+        self._open: list[tuple[Order, bool]] = []
+        """What has still to be asked of a run that was cut off, and whether it may have been."""
         self.run: LiveDevices
         """Whose clock counts, and what lets things run in the background."""
 
@@ -93,9 +96,34 @@ class LiveServices:
     def collect(self, now: int) -> list[Inbound]:
         """The answers that have come."""
         self._last = now
+        waiting, self._open = self._open, []
+        for order, perhaps in waiting:
+            if perhaps and not self._may_ask_again(order):
+                self._arrive(now, _failed(order, CUT_OFF))
+            else:
+                self.order(now, order)
         inbound = [value for _, value in self._arrived]
         self._arrived.clear()
         return inbound + self._telephone.collect(now)
+
+    def go_on(self, asked: Iterable[Order], never: Container[str]) -> None:
+        """See to what a run had asked that was cut off: nobody waits for ever.
+
+        Args:
+            asked: what has no answer, the oldest first.
+            never: the names of those that were certainly not asked before the cut.
+        """
+        self._open = [(order, order.behavior not in never) for order in asked]
+
+    def _may_ask_again(self, order: Order) -> bool:
+        """Whether it does no harm to ask something twice."""
+        fetches, name = "method" in order.data, str(order.data["to"])
+        endpoint = self._of(name) if fetches else self._endpoints.get(name)
+        if "transfer" in order.data or order.data.get("method") == "get":
+            return True
+        if endpoint is None:  # one that is not there is not asked; other hosts are by a post
+            return not fetches or name.startswith(SCHEME)
+        return endpoint.repeats
 
     def order(self, now: int, order: Order) -> None:
         """Take a message, a fetch or a call."""

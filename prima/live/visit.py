@@ -294,7 +294,11 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
     loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, services, start)
     missed = catch_up(broken, loop.session)
     loop.go_on(start)
-    state = known(broken.records)
+    state = known([*broken.records, *missed])
+    apps = loop.session.apps
+    asked = [order for order in state.asked.values() if not apps[order.app].over]
+    never = {f"{one['app']}!{one['serial']}" for one in missed if one["phase"] == "send"}
+    services.go_on(asked, never)
     assert isinstance(loop.devices, LiveDevices)
     loop.devices.go_on(state, list(going_on(state)))
     if settings.until is not None:
