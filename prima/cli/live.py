@@ -129,7 +129,7 @@ def live(
     prima live --resume visit.jsonl
     """
     from prima import api
-    from prima.live.visit import Chosen, Settings, begin, go_on
+    from prima.live.visit import Chosen, Settings, begin
 
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
@@ -148,6 +148,7 @@ def live(
         )
     if journal is not None:
         from prima.live.journal import read_broken
+        from prima.live.resumed import go_on
 
         visit = go_on(read_broken(journal), settings)
     else:

@@ -137,15 +137,21 @@ def catch_up(broken: Broken, session: Session) -> list[Record]:
     Raises:
         UsageError: the session does not make the journal's records: other documents made it.
     """
-    made = list(replay_instants(session, broken.records))
+    return lacking(broken, list(replay_instants(session, broken.records)))
+
+
+def lacking(broken: Broken, made: list[Record]) -> list[Record]:
+    """What a journal lacks of the records that were made again, times in ms.
+
+    Raises:
+        UsageError: the records are others.
+    """
+    message = "the documents do not give this record again; they have changed."
     for number, (before, record) in enumerate(zip(broken.records[1:], made, strict=False), start=2):
         if finished(record) != before:
-            message = "the documents do not give this record again; they have changed."
             raise UsageError(f"{broken.path}:{number}: {message}")
     if len(made) < len(broken.records) - 1:
-        number = len(made) + 2
-        message = "the documents do not give this record again; they have changed."
-        raise UsageError(f"{broken.path}:{number}: {message}")
+        raise UsageError(f"{broken.path}:{len(made) + 2}: {message}")
     return made[len(broken.records) - 1 :]
 
 

@@ -7,7 +7,7 @@ import os
 import signal
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
-from prima.live.journal import Broken, Journal, catch_up, going_on, known, redacted
+from prima.live.journal import Journal, redacted
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
@@ -255,67 +255,26 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
     name = settings.policy or cast.scenario.policy
     policy = chosen_policy(name, loaded)
     if simulated:
-        loop = _simulated(loaded, policy, settings)
+        loop = in_simulation(loaded, policy, settings)
     else:
-        loop = _real(loaded, policy, settings, chosen.answering(settings.web))
+        loop = on_robot(loaded, policy, settings, chosen.answering(settings.web))
     if settings.until is not None:
         loop.until = settings.until
     told = chosen.told(os.path.dirname(output or ""))
     patience = cast.scenario.patience if settings.patience is None else settings.patience
     head = run_record(loaded, name, settings.bound, patience, {"live": told})
     journal = Journal(output, settings.sync) if output is not None else None
-    _record_beside(loop, journal, settings)
+    record_beside(loop, journal, settings)
     return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)
 
 
-def go_on(broken: Broken, settings: Settings) -> Visit:
-    """Prepare to go on with a run that was cut off.
-
-    Raises:
-        DocumentError: documents are wrong.
-        UsageError: a file is not the one of then, or the run was a simulation.
-    """
-    head = broken.records[0]
-    chosen, loaded = chosen_then(head, broken.path), reloaded(head, broken.path)
-    data = head["data"]
-    if data["live"].get("scenario"):
-        message = "a scenario's world is gone with its run; run it again from its beginning."
-        raise UsageError(f"{broken.path}: {message}")
-    loaded.cast.scenario.date = data["date"]
-    patience = data.get("patience")
-    settings = replace(
-        settings,
-        policy=data["policy"],
-        bound=data.get("bound"),
-        patience=None if patience is None else round(patience * 1000),
-    )
-    start = broken.time
-    services = chosen.answering(settings.web)
-    loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, services, start)
-    missed = catch_up(broken, loop.session)
-    loop.go_on(start)
-    state = known([*broken.records, *missed])
-    apps = loop.session.apps
-    asked = [order for order in state.asked.values() if not apps[order.app].over]
-    never = {f"{one['app']}!{one['serial']}" for one in missed if one["phase"] == "send"}
-    services.go_on(asked, never)
-    assert isinstance(loop.devices, LiveDevices)
-    loop.devices.go_on(state, list(going_on(state)))
-    if settings.until is not None:
-        loop.until = settings.until
-    journal = Journal(broken.path, settings.sync, broken.kept)
-    _record_beside(loop, journal, settings)
-    clock = Clock(settings.speed, start)
-    return Visit(loop, clock, settings, head, loaded, journal, missed, resumed=True)
-
-
-def _simulated(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
+def in_simulation(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
     """A scenario, which is run as in a rehearsal but by the clock."""
     given = settings.bound, settings.web, settings.isolate, settings.patience
     return Rehearsal(loaded.cast, policy, *given)
 
 
-def _real(
+def on_robot(
     loaded: Loaded, policy: Policy, settings: Settings, services: LiveServices, start: int = -1
 ) -> Loop:
     """A run on the robot's drivers."""
@@ -339,7 +298,7 @@ def _real(
     return Loop(session, devices, FOREVER_MS, bounded=False)
 
 
-def _record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
+def record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
     """Let drivers keep what they record beside the journal, if anything of it is to be kept."""
     kept = journal is not None and not settings.redact and os.path.isfile(journal.path)
     recordings = Recordings(journal.path if journal is not None and kept else None)

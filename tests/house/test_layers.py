@@ -164,7 +164,7 @@ INSIDE = {
         {"services"},
         {"shell"},
         {"visit"},
-        {"preflight"},
+        {"preflight", "resumed"},
         {"__init__"},
     ],
     "sim": [

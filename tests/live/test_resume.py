@@ -107,3 +107,36 @@ def tells(event: str, app: str = "a") -> Record:
 )
 def test_what_has_no_answer_is_known(records: list[Record], left: list[str]) -> None:
     assert list(known(records).asked) == left
+
+
+# Scenarios ----------------------------------------------------------------------------------
+
+SCENARIO = "documents/scenarios/touched-on-the-way.xml"
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.999])
+def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(
+    share: float, tmp_path: Path
+) -> None:
+    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
+    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
+    text = whole.read_text()
+    ends = text.index("\n") + 1
+    journal.write_text(text[: max(int(len(text) * share), ends)])
+    on = prima("live", "--speed", "1000", "--resume", str(journal))
+    assert on.returncode == 0, on.stderr
+    assert journal.read_text() == text
+    assert prima("replay", str(journal)).returncode == 0
+
+
+def test_a_scenario_that_a_host_has_answered_does_not_go_on(tmp_path: Path) -> None:
+    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
+    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
+    first = whole.read_text().splitlines(keepends=True)[0]
+    fetched = {"time": 0.0, "phase": "fetched", "actor": "environment", "inbound": True}
+    fetched |= {"app": "guide", "data": {"serial": 1, "uri": "http://localhost/", "host": True}}
+    journal.write_text(first + json.dumps(fetched) + "\n")
+    on = prima("live", "--resume", str(journal))
+    assert on.returncode == 2
+    assert "visit.jsonl:2: a host has answered this scenario's run" in on.stderr
+    assert journal.read_text() == first + json.dumps(fetched) + "\n"
