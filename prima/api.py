@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 # Modules that only some functions need are imported there, so that short commands start quickly.
 
+MOST_MORE = 1000
+"""Records that a replay makes at most beyond those of its transcript: it differs anyway."""
 LACKING = "a record lacks a field of its phase."
 
 
@@ -391,12 +393,13 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
         UsageError: the scenario's files are not those of the transcript.
         DocumentError: documents have errors.
     """
+    from itertools import islice
+
     from prima.journal import replay_records
-    from prima.transcript.lines import finished
+    from prima.transcript.lines import check_head, finished
 
     head = transcript.records[0]
-    if head["phase"] != "run":
-        raise UsageError(f"{transcript.name}: the transcript does not begin with its run record.")
+    check_head(head, transcript.name)
     if head["data"].get("redacted"):
         message = "what users said was left out of this journal, so it cannot be run again."
         raise UsageError(f"{transcript.name}: {message}")
@@ -408,16 +411,13 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
         loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     cast = loaded.cast
     check_files(head, loaded, transcript.name)
-    if transcript.records[-1]["time"] > LONGEST_MS / 1000:
+    if "live" not in head["data"] and transcript.records[-1]["time"] > LONGEST_MS / 1000:
         raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
-    try:
-        again = list(
-            replay_records(
-                transcript.records, cast.documents, cast.robot.commands, cast.robot.absence
-            )
-        )
-    except (KeyError, TypeError, ValueError, AttributeError):
-        raise UsageError(f"{transcript.name}: {LACKING}") from None
+    robot, most = cast.robot, len(transcript.records) + MOST_MORE
+    made = replay_records(
+        transcript.records, cast.documents, robot.commands, robot.absence, transcript.name
+    )
+    again = list(islice(made, most))
     return Transcript([finished(record) for record in again], transcript.name)
 
 

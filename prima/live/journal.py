@@ -7,7 +7,7 @@ the world has not seen, but for what came in at the very last instant.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,10 +15,14 @@ from prima.errors import RunError, UsageError
 from prima.journal import replay_instants
 from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
-from prima.transcript.lines import finished, line, read_lines
+from prima.transcript.lines import check_head, finished, line, read_lines
 
 REDACTED = "[redacted]"
 """What stands for what a user has said."""
+CHANGED = (
+    "the documents do not give this record again: lines are missing above it or were changed,"
+    " or another version of PRIMA has written them."
+)
 SPOKEN = ("utterance", "alternatives", "recorded", "text")
 """Where the data of records have what a user has said."""
 
@@ -118,6 +122,7 @@ def read_broken(path: str) -> Broken:
     except UnicodeDecodeError:
         raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
     records = list(read_lines(path, text.splitlines(keepends=True)))
+    check_head(records[0], path)
     if records[-1]["phase"] == "over":
         raise UsageError(f"{path}: this run has ended; there is nothing to go on with.")
     if records[0].get("data", {}).get("redacted"):
@@ -137,22 +142,21 @@ def catch_up(broken: Broken, session: Session) -> list[Record]:
     Raises:
         UsageError: the session does not make the journal's records: other documents made it.
     """
-    return lacking(broken, list(replay_instants(session, broken.records)))
+    return lacking(broken, replay_instants(session, broken.records, broken.path))
 
 
-def lacking(broken: Broken, made: list[Record]) -> list[Record]:
+def lacking(broken: Broken, made: Iterable[Record]) -> list[Record]:
     """What a journal lacks of the records that were made again, times in ms.
 
     Raises:
         UsageError: the records are others.
     """
-    message = "the documents do not give this record again; they have changed."
-    for number, (before, record) in enumerate(zip(broken.records[1:], made, strict=False), start=2):
-        if finished(record) != before:
-            raise UsageError(f"{broken.path}:{number}: {message}")
-    if len(made) < len(broken.records) - 1:
-        raise UsageError(f"{broken.path}:{len(made) + 2}: {message}")
-    return made[len(broken.records) - 1 :]
+    again = iter(made)
+    for number, before in enumerate(broken.records[1:], start=2):
+        record = next(again, None)
+        if record is None or finished(record) != before:
+            raise UsageError(f"{broken.path}:{number}: {CHANGED}")
+    return list(again)
 
 
 @dataclass(slots=True)

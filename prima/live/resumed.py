@@ -25,6 +25,7 @@ from prima.loading import Loaded
 from prima.loading.heads import chosen_policy
 from prima.messages import Record
 from prima.scheduler.policy import Policy
+from prima.script.prelude import START
 
 PATIENCE_S = PATIENCE_MS / 1000
 
@@ -49,7 +50,7 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
     if chosen.scenario:
         loop, missed = _scenario(broken, loaded, policy, settings)
     else:
-        loaded.cast.scenario.date = data["date"]
+        loaded.cast.scenario.date = data.get("date", START)
         loop, missed = _robot(broken, chosen, loaded, policy, settings)
     if settings.until is not None:
         loop.until = settings.until

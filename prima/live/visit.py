@@ -32,8 +32,9 @@ from prima.sim.entrances import Entrances
 from prima.sim.map import Map
 from prima.sim.rehearsal import Rehearsal, make_session
 from prima.sim.services import Web
+from prima.transcript.record import LONGEST
 
-FOREVER_MS = 10**13
+FOREVER_MS = round(LONGEST * 1000)
 """How long a run may last on a robot: nobody ends it but its applications, or people."""
 STAGE = "stage.xml"
 """The scenario that is made of applications, and no file."""
@@ -107,7 +108,7 @@ def chosen_then(head: Record, name: str) -> Chosen:
         UsageError: the record says nothing of files.
     """
     live = head["data"].get("live")
-    if not isinstance(live, dict):
+    if not isinstance(live, dict) or not (live.get("robot") or live.get("scenario")):
         message = "the transcript does not say with which files it was made; name its scenario."
         raise UsageError(f"{name}: {message}")
     folder = os.path.dirname(name)

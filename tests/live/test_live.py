@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -95,6 +96,30 @@ def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     on = prima("live", "--resume", str(journal), "--speed", "50", "--until", "20s")
     assert on.returncode == 0, on.stderr
     assert "the run was cut off here, and goes on" in on.stdout
+    assert prima("replay", str(journal)).returncode == 0
+
+
+def test_a_machine_that_stood_still_is_told_of_and_the_run_goes_on(
+    hello: str, tmp_path: Path
+) -> None:
+    journal = tmp_path / "visit.jsonl"
+    words = ["--robot", ROBOT, "--ea", hello, "-o", str(journal)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "live", *words],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    limit = time.monotonic() + 30
+    while not (journal.exists() and journal.stat().st_size) and time.monotonic() < limit:
+        time.sleep(0.02)
+    running.send_signal(signal.SIGSTOP)
+    time.sleep(4)
+    running.send_signal(signal.SIGCONT)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 0, told
+    assert re.search(r"An instant was carried out \d\S* s late", told)
     assert prima("replay", str(journal)).returncode == 0
 
 
