@@ -57,7 +57,7 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
     journal = Journal(broken.path, settings.sync, broken.kept)
     record_beside(loop, journal, settings)
     clock = Clock(settings.speed, broken.time)
-    return Visit(loop, clock, settings, head, loaded, journal, missed, resumed=True)
+    return Visit(loop, clock, settings, head, loaded, journal, missed, True, before=broken.records)
 
 
 def _scenario(

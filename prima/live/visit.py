@@ -6,6 +6,7 @@ import asyncio
 import os
 import signal
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -192,6 +193,14 @@ class Visit:
     """How late (ms) the latest of its instants was."""
     stopped: bool = False
     """Whether somebody has ended it from outside."""
+    before: list[Record] = field(default_factory=list)
+    """What the journal has already of a run that goes on, times in s."""
+    _stop: Callable[[], object] = lambda: None
+
+    def stop(self) -> None:
+        """End it as soon as possible, from any thread: the robot is made safe."""
+        self.stopped = True
+        self._stop()
 
     def run(self, sink: Sink, warn: Callable[[str], None]) -> None:
         """Carry it out to its end.
@@ -220,17 +229,41 @@ class Visit:
             if self.journal is not None:
                 self.journal.close()
 
+    def run_anywhere(self, sink: Sink, warn: Callable[[str], None]) -> None:
+        """The same, also where an event loop runs already, as in a notebook: in a thread.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C came meanwhile; the run has ended.
+        """
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:
+            self.run(sink, warn)
+            return
+        with ThreadPoolExecutor(1, "live") as pool:
+            running = pool.submit(self.run, sink, warn)
+            try:
+                running.result()
+            except KeyboardInterrupt:
+                self.stop()
+                running.result()
+                raise
+
     async def _run(self, warn: Callable[[str], None]) -> None:
         shell = Shell(self.loop, self.clock, warn, self.settings.late)
 
-        def stop() -> None:
-            self.stopped = True
-            shell.stop()
-
         running = asyncio.get_running_loop()
+
+        def stop() -> None:
+            with suppress(RuntimeError):  # the run is over
+                running.call_soon_threadsafe(shell.stop)
+
+        self._stop = stop
         for name in (signal.SIGINT, signal.SIGTERM):
             with suppress(NotImplementedError, ValueError, RuntimeError):
-                running.add_signal_handler(name, stop)
+                running.add_signal_handler(name, self.stop)
+        if self.stopped:
+            return
         # Not before: once there is a journal, a signal has to end the run as it should.
         self.loop.journal(self.missed if self.resumed else [self.head])
         try:

@@ -165,6 +165,7 @@ INSIDE = {
         {"shell"},
         {"visit"},
         {"preflight", "resumed"},
+        {"prepared"},
         {"__init__"},
     ],
     "sim": [
