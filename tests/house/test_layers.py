@@ -156,7 +156,7 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"clock", "journal", "recordings", "told"},
+        {"answers", "clock", "journal", "recordings", "told"},
         {"driver"},
         {"mapped"},
         {"ros"},

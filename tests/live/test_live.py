@@ -224,7 +224,8 @@ def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
 
 def test_the_driver_of_the_documentation_works(hello: str, tmp_path: Path) -> None:
     page = (ROOT / "docs" / "live.md").read_text()
-    code = page.split("```python\n")[1].split("```")[0]
+    section = page.partition("## Your own robot in an hour")[2]
+    code = section.split("```python\n")[1].split("```")[0]
     (tmp_path / "my_robot.py").write_text(code)
     words = ["--driver", str(tmp_path / "my_robot.py")]
     away = prima(
