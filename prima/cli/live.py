@@ -152,11 +152,11 @@ def live(
 
 
 def _check(chosen: Chosen, settings: Settings) -> None:
-    """Try the robot; exit code 3 if something of it does not work."""
+    """Try the robot; exit code 2 if it is not set up, 3 if something of it does not work."""
     from prima.live.preflight import check_robot
 
-    if not check_robot(chosen, settings, click.echo):
-        raise Exit(3)
+    if code := check_robot(chosen, settings, click.echo):
+        raise Exit(code)
 
 
 def _run(visit: Visit, why: bool, as_json: bool) -> None:

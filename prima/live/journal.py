@@ -87,6 +87,11 @@ class Journal:
         except OSError as error:
             raise RunError(f"{self.path}: cannot be written: {error.strerror}.") from None
 
+    def discard(self) -> None:
+        """Remove the file, where it is one."""
+        if os.path.isfile(self.path):
+            os.unlink(self.path)
+
     def close(self) -> None:
         """Close the file."""
         os.close(self._file)

@@ -20,10 +20,11 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile, read_robot
 from prima.devices.settings import Limits
+from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
-from prima.live.devices import LiveDevices
+from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
-from prima.live.shell import SAFE_S, open_driver
+from prima.live.shell import open_driver
 from prima.live.visit import Chosen, Settings, make_drivers
 from prima.loading import documents_folder
 from prima.loading.files import read_file
@@ -43,8 +44,11 @@ LATE_S = 0.05
 Say = Callable[[str], object]
 
 
-def check_robot(chosen: Chosen, settings: Settings, say: Say) -> bool:
-    """Try a robot, and say what came of it line by line; false if something does not work.
+def check_robot(chosen: Chosen, settings: Settings, say: Say) -> int:
+    """Try a robot, and say what came of it line by line.
+
+    Returns:
+        an exit code: 0 if all of it works, 2 if a driver is not set up, 3 if it does not work.
 
     Raises:
         DocumentError: a document is wrong.
@@ -68,11 +72,17 @@ class Preflight:
         self._devices = LiveDevices(robot, drivers, Services([]), [])
         self._reports: dict[str, asyncio.Queue[Report]] = {}
         self._wrong = 0
+        self._unusable = False
+        """Whether a driver is not set up."""
         self._count = 0
         self._began = monotonic()
 
-    async def run(self) -> bool:
-        """Try everything; the robot is made safe afterwards."""
+    async def run(self) -> int:
+        """Try everything; the robot is made safe afterwards.
+
+        Returns:
+            an exit code: 2 if a driver is not set up, 3 if something else does not work.
+        """
         try:
             await self._check_clock()
             opened = [driver for driver in self._drivers if await self._opens(driver)]
@@ -86,7 +96,7 @@ class Preflight:
             for driver in self._drivers:
                 for end in (driver.safe, driver.close):
                     await self._end(driver, end)
-        return not self._wrong
+        return 2 if self._unusable else 3 if self._wrong else 0
 
     async def _end(self, driver: Driver, end: Callable[[], object]) -> None:
         try:
@@ -120,7 +130,8 @@ class Preflight:
         began = monotonic()
         try:
             await open_driver(driver)
-        except Unreachable as error:
+        except (Unreachable, UsageError) as error:
+            self._unusable |= isinstance(error, UsageError)
             self._tell(False, driver.kind, str(error))
             return False
         taken = (monotonic() - began) * 1000

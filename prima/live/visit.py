@@ -270,6 +270,8 @@ class Visit:
             await shell.run()
         finally:
             self.latest = shell.latest
+            if not (shell.opened or self.resumed) and self.journal is not None:
+                self.journal.discard()  # nothing has happened: the same command may be given again
 
 
 def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
@@ -356,5 +358,11 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
             kind = driver_class(settings.kind, tuple(files))
         except UsageError as error:
             raise UsageError(f"{settings.place}: {error}") from None
-        made.append(kind(settings, robot, site))
+        try:
+            made.append(kind(settings, robot, site))
+        except UsageError:
+            raise
+        except Exception as error:
+            reason = f"the driver has failed: {type(error).__name__}: {error}"
+            raise UsageError(f"{settings.place}: {settings.kind}: {reason}") from error
     return made

@@ -231,7 +231,7 @@ def test_the_driver_of_the_documentation_works(hello: str, tmp_path: Path) -> No
     away = prima(
         "live", *words, "--robot", robot_with(tmp_path, '<driver kind="my-robot"/>'), "--ea", hello
     )
-    assert (away.returncode, 'write its address="..."' in away.stderr) == (3, True)
+    assert (away.returncode, 'write its address="..."' in away.stderr) == (2, True)
     robot = robot_with(tmp_path, '<driver kind="my-robot" address="here"/>')
     ran = prima("live", *words, "--robot", robot, "--ea", hello, "-o", str(tmp_path / "a.jsonl"))
     assert ran.returncode == 0, ran.stderr

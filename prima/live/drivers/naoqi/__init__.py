@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
@@ -10,12 +11,13 @@ from typing import Any, Final
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
 INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
 PORT: Final = 9559
+ADDRESS: Final = re.compile(r"tcps?://(?:[\w.-]+|\[[0-9a-fA-F:.]+\])(?::(?P<port>[0-9]{1,5}))?")
 SAFE_S: Final = 2.0
 """How long to wait until goals have stopped in an emergency."""
 SHARE: Final = 0.9
@@ -58,7 +60,7 @@ class NaoqiDriver(MappedDriver):
         try:
             import qi
         except ImportError as error:
-            raise Unreachable(INSTALL.format(error)) from None
+            raise Unusable(INSTALL.format(error)) from None
         methods = self._methods()
         await self._leave()
         self._services, self._links, self._pending = {}, [], set()
@@ -267,10 +269,18 @@ def _said(error: object) -> str:
 
 
 def _url(address: str) -> str:
-    """The URL of a service directory."""
+    """The URL of a service directory.
+
+    Raises:
+        Unusable: it is none.
+    """
     url = address or "127.0.0.1"
     url = url if "://" in url else f"tcp://{url}"
-    return url if ":" in url.partition("://")[2] else f"{url}:{PORT}"
+    found = ADDRESS.fullmatch(url)
+    if found is None or not 0 < int(found["port"] or PORT) < 65_536:
+        remedy = 'Write for example address="tcp://nao.local:9559".'
+        raise Unusable(f'"{address}" is not the address of a service directory. {remedy}')
+    return url if found["port"] else f"{url}:{PORT}"
 
 
 DRIVER = NaoqiDriver

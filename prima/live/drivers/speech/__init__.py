@@ -15,7 +15,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError, one_of
 from prima.grammar.answers import Answers
-from prima.live.driver import Refused, TaskDriver, Unreachable
+from prima.live.driver import Refused, TaskDriver, Unusable
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import CHUNK, RATE, Sound, SoundCard, beep
 from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
@@ -84,7 +84,7 @@ class SpeechDriver(TaskDriver):
                 await asyncio.get_running_loop().run_in_executor(self._worker, self._load)
             except ImportError as error:
                 reason = f"what speech needs is not installed ({error})"
-                raise Unreachable(f"{reason}: pip install 'prima[speech]'") from None
+                raise Unusable(f"{reason}: pip install 'prima[speech]'") from None
         if self._sound is not None:
             self._sound.close()
         self._sound = self.sound()
