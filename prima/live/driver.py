@@ -126,13 +126,13 @@ class Driver:
             Unreachable: it is not.
         """
 
-    async def check(self) -> list[str]:
+    async def check(self) -> dict[str, str]:
         """Try what only this driver can try before a run, as whether the microphone hears anything.
 
         Returns:
-            what does not work, each a sentence.
+            what was tried, each with a sentence of what does not work, or nothing.
         """
-        return []
+        return {}
 
     async def close(self) -> None:
         """Give back the connection; the run is over."""

@@ -175,13 +175,13 @@ class SpeechDriver(TaskDriver):
             self._speaking -= 1
             self._deaf_until = monotonic() + TAIL_S
 
-    async def check(self) -> list[str]:
+    async def check(self) -> dict[str, str]:
         """Listen for a moment, to see whether the microphone gives any sound."""
         self._loudest = -1
         await asyncio.sleep(CHECK_S)
         if self._loudest < 0:
-            return ["no sound comes from the microphone"]
-        return [] if self._loudest else ["the microphone is silent: is it switched off?"]
+            return {"microphone": "no sound comes from it"}
+        return {"microphone": "" if self._loudest else "it is silent: is it switched off?"}
 
     async def close(self) -> None:
         """Fall silent, and give back the sound card."""
