@@ -187,9 +187,18 @@ class Shell:
             except (Unreachable, UsageError):
                 continue
             self._lost.discard(driver)
+            await self._end_what_went_on(driver)
             self._warn(f"{driver.kind}: the robot is back.")
             driver.tell(Back(driver.settings.devices))
             return
+
+    async def _end_what_went_on(self, driver: Driver) -> None:
+        """Make a robot safe that was out of reach: nobody has stopped it meanwhile."""
+        try:
+            async with asyncio.timeout(SAFE_S):
+                await driver.safe()
+        except Exception as error:
+            self._warn(f"{driver.kind}: safe has failed: {_why(error)}.")
 
     async def _watch(self, driver: Driver) -> None:
         """Ask by the heartbeat whether the robot is still there."""

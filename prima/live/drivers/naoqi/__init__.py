@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from functools import partial
 from typing import Any, Final
 
@@ -207,13 +208,17 @@ class NaoqiDriver(MappedDriver):
             self._call(does.by, [])[0].add_done_callback(_heed)
 
     async def safe(self) -> None:
-        """Call all that stops something."""
-        if self.gone:
+        """Call all that stops something; over a link that seems to be lost, too."""
+        if self._session is None:
             return
         named = {does.stop for does in self.settings.does if does.stop}
         if (does := self.settings.how("stop-moving")) is not None:
             named.add(does.by)
-        calls = [self._call(name, [])[0] for name in sorted(named)]
+        with suppress(Exception) if self.gone else nullcontext():
+            await self._stop_all(named)
+
+    async def _stop_all(self, named: set[str]) -> None:
+        calls = [self._ask_method(name, [])[0] for name in sorted(named)]
         async with asyncio.timeout(SAFE_S):
             await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
 
@@ -225,6 +230,11 @@ class NaoqiDriver(MappedDriver):
         """Call a method; gives its answer, and what cancels it."""
         if self.gone:
             raise Unreachable("there is no connection")
+        return self._ask_method(name, arguments)
+
+    def _ask_method(
+        self, name: str, arguments: list[Json]
+    ) -> tuple[asyncio.Future[Any], Callable[[], object]]:
         service, _, method = name.partition(".")
         asked = getattr(self._services[service], method)(*arguments, _async=True)
         return self._future(asked), asked.cancel
