@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         read,
         rehearse,
         replay,
+        run_live,
         stage,
         validate,
     )
@@ -56,6 +57,7 @@ __all__ = [
     "read",
     "rehearse",
     "replay",
+    "run_live",
     "stage",
     "sweep",
     "validate",

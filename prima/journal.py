@@ -66,6 +66,11 @@ INBOUND: dict[str, Callable[[Record, Record], Inbound]] = {
 """The inbound value of a record of each phase, from the record and its data."""
 
 
+WRONG = (KeyError, TypeError, ValueError, AttributeError)
+"""What a record causes whose fields are not those of its phase."""
+DAMAGED = "a record lacks a field of its phase, or has another value in it than PRIMA writes."
+
+
 def inbound_of(record: Record) -> Inbound | None:
     """The inbound value that a record was made from; None for decisions of the mediator."""
     make = INBOUND.get(record["phase"]) if record.get("inbound") else None
@@ -81,11 +86,14 @@ def replay_records(
     documents: Iterable[AnyDocument],
     commands: Mapping[str, CommandType],
     absence: int = ABSENCE_MS,
+    name: str = "",
 ) -> Iterator[Record]:
     """Run the inbound records of a transcript through a session; times of both in s and ms.
 
+    ``name`` is the transcript's.
+
     Raises:
-        UsageError: the transcript names an unknown application.
+        UsageError: the transcript names an unknown application, or a record is wrong.
     """
     held = list(records)
     head, settings = held[0], held[0]["data"]
@@ -98,34 +106,46 @@ def replay_records(
     )
     session = Session(documents, policy, commands, bound, date, absence=absence, patience=patience)
     try:
-        yield from replay_instants(session, held)
+        yield from replay_instants(session, held, name)
     finally:
         session.close()
     if (last := held[-1])["phase"] == "over":
         yield {**last, "time": _milliseconds(last["time"])}
 
 
-def replay_instants(session: Session, records: list[Record]) -> Iterator[Record]:
+def replay_instants(session: Session, records: list[Record], name: str = "") -> Iterator[Record]:
     """Feed a transcript's inbound records to a session; yield its records.
 
     Args:
         session: a new one.
         records: the transcript's, times in s. Those of the session are in ms.
+        name: the transcript's name.
 
     Raises:
-        UsageError: the transcript names an unknown application.
+        UsageError: the transcript names an unknown application, or a record is wrong.
     """
     batches: dict[int, list[Inbound]] = {}
-    for record in records:
-        value = inbound_of(record)
+    lines: dict[int, int] = {}
+    for number, record in enumerate(records, 1):
+        try:
+            value = inbound_of(record)
+        except WRONG:
+            raise UsageError(f"{name}:{number}: {DAMAGED}") from None
         if value is not None:
             if isinstance(value, Loaded) and value.app not in session.apps:
-                raise UsageError(f'The transcript loads an unknown application: "{value.app}".')
-            batches.setdefault(_milliseconds(record["time"]), []).append(value)
+                message = f'it loads an application that is not there: "{value.app}".'
+                raise UsageError(f"{name}:{number}: {message}")
+            now = _milliseconds(record["time"])
+            batches.setdefault(now, []).append(value)
+            lines.setdefault(now, number)
     end = _milliseconds(records[-1]["time"])
     for now, batch in sorted(batches.items()):
         yield from _time_out(session, now - 1)
-        session.step(now, batch)
+        try:
+            session.step(now, batch)
+        except WRONG:
+            message = f"the records from {now / 1000:g} s on are no transcript's: {DAMAGED}"
+            raise UsageError(f"{name}:{lines[now]}: {message}") from None
         session.drain_visits()  # a long replay would keep them all
         yield from session.drain()
     yield from _time_out(session, end)

@@ -29,7 +29,6 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
-from prima.errors import UsageError
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C."""
-FASTEST = 1000.0
+FASTEST = 1000.0  # as prima.api.FASTEST, which takes long to import
 
 
 @click.command()
@@ -129,11 +128,12 @@ def live(
     prima live --resume visit.jsonl
     """
     from prima import api
-    from prima.live.visit import Chosen, Settings, begin, go_on
+    from prima.live.prepared import check_usage, prepared
+    from prima.live.visit import Chosen, Settings
 
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
-    _check_usage(chosen, journal, output, checks)
+    check_usage(chosen, output, journal, checks)
     web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
     settings = Settings(policy, bound, patience, isolate, speed, until, sync, web=web)
     settings.drivers, settings.redact = drivers, redact
@@ -146,49 +146,17 @@ def live(
         check_output(
             output, "journal", *filter(None, (scenario, robot, world, services, *fas, *eas))
         )
-    if journal is not None:
-        from prima.live.journal import read_broken
-
-        visit = go_on(read_broken(journal), settings)
-    else:
-        visit = begin(chosen, settings, output)
+    visit = prepared(chosen, settings, output, journal)
     tell_problems(visit.loaded.problems)
     _run(visit, why, form == "json")
 
 
-def _check_usage(chosen: Chosen, journal: str | None, output: str | None, checks: bool) -> None:
-    """Refuse options that do not go together.
-
-    Raises:
-        UsageError: there are some.
-    """
-    given = chosen.scenario or chosen.fas or chosen.eas
-    if journal is not None:
-        if given or chosen.robot or chosen.world or chosen.maps or chosen.services or output:
-            raise UsageError("--resume goes on with what the journal names; leave out the rest.")
-        return
-    if chosen.scenario and (chosen.fas or chosen.eas or chosen.world or chosen.maps):
-        message = "A scenario names its own applications and world;"
-        raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
-    if chosen.scenario and chosen.services:
-        raise UsageError("A scenario has its own services; leave out --services.")
-    if checks and not chosen.robot:
-        raise UsageError("Name the robot to be checked with --robot.")
-    if checks:
-        return
-    if not given and not chosen.world:
-        raise UsageError("Name applications with --fa and --ea, or a scenario.")
-    if not chosen.scenario and not chosen.robot:
-        hint = "documents/robots/simulated.xml is one without hardware."
-        raise UsageError(f"Name the robot with --robot; {hint}")
-
-
 def _check(chosen: Chosen, settings: Settings) -> None:
-    """Try the robot; exit code 3 if something of it does not work."""
+    """Try the robot; exit code 2 if it is not set up, 3 if something of it does not work."""
     from prima.live.preflight import check_robot
 
-    if not check_robot(chosen, settings, click.echo):
-        raise Exit(3)
+    if code := check_robot(chosen, settings, click.echo):
+        raise Exit(code)
 
 
 def _run(visit: Visit, why: bool, as_json: bool) -> None:

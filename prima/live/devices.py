@@ -5,8 +5,10 @@ It has no clock of its own and starts no task: the shell gives it both.
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Coroutine, Sequence
-from typing import Any, Protocol
+from functools import partial
+from typing import Any, Protocol, TypeVar
 
 from prima.devices import voice
 from prima.devices.conductor import Conductor
@@ -17,6 +19,7 @@ from prima.devices.goals import (
     Accepted,
     Again,
     At,
+    Back,
     Begin,
     Broke,
     Call,
@@ -47,8 +50,11 @@ from prima.messages import (
 )
 from prima.sim.entrances import Entrances
 
+T = TypeVar("T")
 MOST_NEWS = 10_000
 """What drivers may tell in one turn, before the one that tells more is given up."""
+SAFE_S = 5.0
+"""How long a driver may take to stop everything."""
 SPEECH_MS = 5_000
 """How much longer than expected a text may take, besides twice its time."""
 
@@ -123,6 +129,10 @@ class LiveDevices:
         """The latest instant."""
         self._at: At | None = None
         self._sees = Sees(False)
+        self._stopping = 0
+        """How many drivers are being made safe."""
+        self._failing: set[Driver] = set()
+        """Drivers that have failed themselves, and are asked for nothing until they are back."""
         self._flooding: set[Driver] = set()
         """Drivers that have told too much in this turn."""
         self._began: int | None = None
@@ -148,7 +158,7 @@ class LiveDevices:
             self.conductor.due(self._sees.visible),
             self._too_long(),
             self.services.due(),
-            *(driver.due() for driver in self.drivers),
+            *(self._let(driver, driver.due) for driver in self.drivers),
         ]
         return min((time for time in times if time is not None), default=None)
 
@@ -156,7 +166,7 @@ class LiveDevices:
         """All that has come in by ``now``, in order."""
         self._last = now
         for driver in self.drivers:
-            driver.sample(now)
+            self._let(driver, partial(driver.sample, now))
         self._told = None
         inbound: list[Inbound] = [Loaded(name) for name in self._loads]
         self._loads.clear()
@@ -164,10 +174,11 @@ class LiveDevices:
             inbound += self._entrances.cross((self._at.x, self._at.y))
         inbound += self.conductor.collect(now, self._sees.visible, self._whereabouts())
         self._carry_out()
-        news, self._news = self._news, []
         self._flooding.clear()
-        for one in news:
-            inbound += self._take(now, one)
+        news, self._news = self._news, []
+        while news and not (self._stopping and _releases(news[0])):
+            inbound += self._take(now, news.pop(0))
+        self._news = news  # a release counts when everything has stopped
         inbound += self._cut_off(now)
         return inbound + self.services.collect(now)
 
@@ -190,9 +201,9 @@ class LiveDevices:
         if [id(one) for one in takes] != [id(one) for one in self._taken]:
             self._taken = takes
             for driver in self.drivers:
-                driver.hears(takes)
+                self._let(driver, partial(driver.hears, takes))
         for driver in self.drivers:
-            driver.observe(now, records)
+            self._let(driver, partial(driver.observe, now, records))
 
     def go_on(self, state: Known, first: list[Inbound]) -> None:
         """Go on after a run that was cut off.
@@ -223,6 +234,8 @@ class LiveDevices:
             case _ if isinstance(told, Report):
                 if isinstance(told, Lost):
                     self.lost(driver)
+                if isinstance(told, Back):
+                    self._failing.discard(driver)
                 self.conductor.report(now, told)
                 self._carry_out()
             case _ if len(self._news) < MOST_NEWS:
@@ -300,7 +313,29 @@ class LiveDevices:
     def make_safe(self) -> None:
         """Let every driver stop everything at once."""
         for driver in self.drivers:
-            self.spawn(driver.safe())
+            self._stopping += 1
+            self.spawn(self._make_safe(driver))
+
+    async def _make_safe(self, driver: Driver) -> None:
+        try:
+            async with asyncio.timeout(SAFE_S):
+                await driver.safe()
+        finally:
+            self._stopping -= 1
+            if self._news and self._told is None:
+                self._told = self._now()
+            self.wake()
+
+    def _let(self, driver: Driver, what: Callable[[], T]) -> T | None:
+        """Ask a driver for something; one that fails itself has lost its robot."""
+        if driver in self._failing:
+            return None
+        try:
+            return what()
+        except Exception as error:
+            self._failing.add(driver)
+            driver.lose(f"the driver has failed: {type(error).__name__}: {error}")
+            return None
 
     def _carry_out(self) -> None:
         """Let the drivers do what the conductor says, until nothing more comes of it."""
@@ -319,12 +354,14 @@ class LiveDevices:
             case Begin():
                 self._begin(call)
             case Again() if call.key in self._routes:
-                self._routes[call.key].again(call.key)
+                driver = self._routes[call.key]
+                self._let(driver, partial(driver.again, call.key))
             case Cancel() if call.key in self._routes:
-                self._routes[call.key].cancel(call.key)
+                driver = self._routes[call.key]
+                self._let(driver, partial(driver.cancel, call.key))
             case Stand():
                 for driver in self.drivers:
-                    driver.stand()
+                    self._let(driver, driver.stand)
             case Safe():
                 self.make_safe()
 
@@ -378,3 +415,8 @@ class LiveDevices:
         sees = self._sees
         told = {"distance": sees.distance, "angle": sees.angle} if sees.visible else {}
         return {name: value for name, value in told.items() if value is not None}
+
+
+def _releases(news: News | Inbound) -> bool:
+    """Whether the emergency stop is released."""
+    return isinstance(news, Emergency) and not news.pressed

@@ -27,7 +27,7 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings, Limits, Pose
-from prima.errors import RunError
+from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.recordings import Recordings
 from prima.messages import Data, Json, Record
@@ -38,6 +38,10 @@ Tell = Callable[[Report | News], None]
 
 class Unreachable(RunError):
     """The robot, or the program that drives it, is not there."""
+
+
+class Unusable(UsageError):
+    """The driver is not set up: a library is missing, or its address is none."""
 
 
 class Refused(Exception):
@@ -89,6 +93,7 @@ class Driver:
 
         Raises:
             Unreachable: it is not there; the message says what to do.
+            Unusable: it can never be there as the driver is set up.
         """
 
     def start(self, goal: Begin) -> None:
@@ -121,13 +126,13 @@ class Driver:
             Unreachable: it is not.
         """
 
-    async def check(self) -> list[str]:
+    async def check(self) -> dict[str, str]:
         """Try what only this driver can try before a run, as whether the microphone hears anything.
 
         Returns:
-            what does not work, each a sentence.
+            what was tried, each with a sentence of what does not work, or nothing.
         """
-        return []
+        return {}
 
     async def close(self) -> None:
         """Give back the connection; the run is over."""

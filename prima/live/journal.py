@@ -7,18 +7,22 @@ the world has not seen, but for what came in at the very last instant.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from prima.errors import RunError, UsageError
 from prima.journal import replay_instants
-from prima.messages import Emergency, Inbound, Json, Narrated, Record
+from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
-from prima.transcript.lines import finished, line, read_lines
+from prima.transcript.lines import check_head, finished, line, read_lines
 
 REDACTED = "[redacted]"
 """What stands for what a user has said."""
+CHANGED = (
+    "the documents do not give this record again: lines are missing above it or were changed,"
+    " or another version of PRIMA has written them."
+)
 SPOKEN = ("utterance", "alternatives", "recorded", "text")
 """Where the data of records have what a user has said."""
 
@@ -83,6 +87,11 @@ class Journal:
         except OSError as error:
             raise RunError(f"{self.path}: cannot be written: {error.strerror}.") from None
 
+    def discard(self) -> None:
+        """Remove the file, where it is one."""
+        if os.path.isfile(self.path):
+            os.unlink(self.path)
+
     def close(self) -> None:
         """Close the file."""
         os.close(self._file)
@@ -118,6 +127,7 @@ def read_broken(path: str) -> Broken:
     except UnicodeDecodeError:
         raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
     records = list(read_lines(path, text.splitlines(keepends=True)))
+    check_head(records[0], path)
     if records[-1]["phase"] == "over":
         raise UsageError(f"{path}: this run has ended; there is nothing to go on with.")
     if records[0].get("data", {}).get("redacted"):
@@ -137,16 +147,21 @@ def catch_up(broken: Broken, session: Session) -> list[Record]:
     Raises:
         UsageError: the session does not make the journal's records: other documents made it.
     """
-    made = list(replay_instants(session, broken.records))
-    for number, (before, record) in enumerate(zip(broken.records[1:], made, strict=False), start=2):
-        if finished(record) != before:
-            message = "the documents do not give this record again; they have changed."
-            raise UsageError(f"{broken.path}:{number}: {message}")
-    if len(made) < len(broken.records) - 1:
-        number = len(made) + 2
-        message = "the documents do not give this record again; they have changed."
-        raise UsageError(f"{broken.path}:{number}: {message}")
-    return made[len(broken.records) - 1 :]
+    return lacking(broken, replay_instants(session, broken.records, broken.path))
+
+
+def lacking(broken: Broken, made: Iterable[Record]) -> list[Record]:
+    """What a journal lacks of the records that were made again, times in ms.
+
+    Raises:
+        UsageError: the records are others.
+    """
+    again = iter(made)
+    for number, before in enumerate(broken.records[1:], start=2):
+        record = next(again, None)
+        if record is None or finished(record) != before:
+            raise UsageError(f"{broken.path}:{number}: {CHANGED}")
+    return list(again)
 
 
 @dataclass(slots=True)
@@ -162,6 +177,8 @@ class Known:
     sensors: dict[str, Json]
     halted: bool
     """Whether the emergency stop was pressed."""
+    asked: dict[str, Order] = field(default_factory=dict)
+    """What applications had asked and had no answer to, by its name, the oldest first."""
 
 
 def known(records: list[Record]) -> Known:
@@ -181,7 +198,35 @@ def known(records: list[Record]) -> Known:
                 state.sensors |= record["data"]
             case "emergency":
                 state.halted = record["outcome"] == "pressed"
+        _note_asked(state.asked, record)
     return state
+
+
+def _note_asked(asked: dict[str, Order], record: Record) -> None:
+    """Keep what is asked until it is answered.
+
+    A service's reply does not say to which message it is one: it counts for the oldest.
+    """
+    app, data = str(record.get("app", "")), record.get("data") or {}
+    match record["phase"]:
+        case "load" | "unload":  # whoever has asked is gone
+            for name in [name for name, order in asked.items() if order.app == app]:
+                del asked[name]
+        case "send" if data.get("transfer") == "over":
+            asked.pop(f"{app}!{data['call']}", None)
+        case "send":
+            name = f"{app}!{record['serial']}"
+            asked[name] = Order("send", name, app=app, data=data)
+        case "fetched":
+            asked.pop(f"{app}!{data['serial']}", None)
+        case "transferred":
+            asked.pop(f"{app}!{record['serial']}", None)
+        case "event" if record.get("inbound"):
+            for name, order in asked.items():
+                to = order.data["to"]
+                if order.app == app and record["event"] in (f"reply.{to}", f"error.service.{to}"):
+                    del asked[name]
+                    return
 
 
 def going_on(state: Known) -> Iterator[Inbound]:

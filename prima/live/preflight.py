@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from time import monotonic
 
 from prima.devices.goals import (
     LISTEN,
     SAY,
-    Accepted,
     Begin,
     Broke,
     Done,
@@ -20,10 +22,11 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile, read_robot
 from prima.devices.settings import Limits
+from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
-from prima.live.devices import LiveDevices
+from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
-from prima.live.shell import SAFE_S, open_driver
+from prima.live.shell import open_driver
 from prima.live.visit import Chosen, Settings, make_drivers
 from prima.loading import documents_folder
 from prima.loading.files import read_file
@@ -37,14 +40,53 @@ UNBOUNDED_MS = 10_000
 """How long a driver may take where its document says nothing."""
 SENTENCE = "This is a check of my voice."
 TICK_S = 0.1
+ENDS = (Done, Stopped, Broke, Lost)
+INTERRUPTED = 130
+"""The exit code after a signal."""
+HEEDED_S = 0.15
+"""By when a goal that ends well after a cancel may just have come to its end."""
+SLOW_S = 1.0
+"""How long it may take to stop before that is remarkable."""
+LINE = "{:5}  {:26}  {:10}  {:>9}  {:>9}  {}"
+"""How a line looks: the result, what is tried, the driver, two times, and what there is to say."""
+SMALL = {"speed": 0.05, "x": 0.2, "angle": 30.0, "pan": 20.0}
+"""Arguments that move the robot so little that it does no harm, and so long that it can be cancelled."""
 LATE_S = 0.05
 """By how much a tick of the clock may be late."""
 
 Say = Callable[[str], object]
 
 
-def check_robot(chosen: Chosen, settings: Settings, say: Say) -> bool:
-    """Try a robot, and say what came of it line by line; false if something does not work.
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What came of a Command: whether it is right, why not, and its times for people."""
+
+    right: bool
+    text: str
+    accepted: str = ""
+    cancelled: str = ""
+    done: bool = False
+    """Whether it was over before it could be cancelled."""
+
+
+def _ended(report: Report, accepted: str) -> Found:
+    """What a Command is that has ended by itself."""
+    if isinstance(report, Broke | Lost):
+        return Found(False, report.reason, accepted)
+    if isinstance(report, Stopped):
+        return Found(False, "it stops by itself", accepted)
+    return Found(True, "over at once", accepted, done=True)
+
+
+def _ms(seconds: float) -> str:
+    return f"{seconds * 1000:.0f} ms"
+
+
+def check_robot(chosen: Chosen, settings: Settings, say: Say) -> int:
+    """Try a robot, and say what came of it line by line.
+
+    Returns:
+        an exit code: 0 if all of it works, 2 if a driver is not set up, 3 if it does not work.
 
     Raises:
         DocumentError: a document is wrong.
@@ -54,7 +96,20 @@ def check_robot(chosen: Chosen, settings: Settings, say: Say) -> bool:
     world = chosen.world or str(documents_folder() / "worlds" / "room.xml")
     site = read_world(world, read_file(world))
     drivers = make_drivers(robot, site, settings.drivers)
-    return asyncio.run(Preflight(robot, site, drivers, say).run())
+    return asyncio.run(_stoppable(Preflight(robot, site, drivers, say)))
+
+
+async def _stoppable(preflight: Preflight) -> int:
+    """Carry a check out; a signal ends it with a safe robot."""
+    running = asyncio.get_running_loop()
+    task = asyncio.ensure_future(preflight.run())
+    for name in (signal.SIGINT, signal.SIGTERM):
+        with suppress(NotImplementedError, ValueError, RuntimeError):
+            running.add_signal_handler(name, task.cancel)
+    try:
+        return await task
+    except asyncio.CancelledError:
+        return INTERRUPTED
 
 
 class Preflight:
@@ -68,25 +123,35 @@ class Preflight:
         self._devices = LiveDevices(robot, drivers, Services([]), [])
         self._reports: dict[str, asyncio.Queue[Report]] = {}
         self._wrong = 0
+        self._opened: list[Driver] = []
+        self._unusable = False
+        """Whether a driver is not set up."""
         self._count = 0
         self._began = monotonic()
 
-    async def run(self) -> bool:
-        """Try everything; the robot is made safe afterwards."""
+    async def run(self) -> int:
+        """Try everything; the robot is made safe afterwards.
+
+        Returns:
+            an exit code: 2 if a driver is not set up, 3 if something else does not work.
+        """
         try:
+            self._say(LINE.format("", "", "driver", "accepted", "cancelled", "").rstrip())
             await self._check_clock()
-            opened = [driver for driver in self._drivers if await self._opens(driver)]
-            if len(opened) == len(self._drivers):
-                for command in self._commands():
-                    await self._try(command)
-                for driver in opened:
-                    for problem in await driver.check():
-                        self._tell(False, driver.kind, problem)
+            for driver in self._drivers:
+                if await self._opens(driver):
+                    self._opened.append(driver)
+            self._tell_stops()
+            for command in self._commands():
+                await self._try(command)
+            for driver in self._opened:
+                for what, problem in (await driver.check()).items():
+                    self._tell(not problem, what, problem, driver.kind)
         finally:
             for driver in self._drivers:
                 for end in (driver.safe, driver.close):
                     await self._end(driver, end)
-        return not self._wrong
+        return 2 if self._unusable else 3 if self._wrong else 0
 
     async def _end(self, driver: Driver, end: Callable[[], object]) -> None:
         try:
@@ -94,17 +159,20 @@ class Preflight:
                 await end()  # type: ignore[misc]
         except Exception as error:
             name = getattr(end, "__name__", "")
-            self._tell(False, driver.kind, f"{name} has failed: {error or type(error).__name__}")
+            reason = f"{name} has failed: {error or type(error).__name__}"
+            self._tell(False, "end", reason, driver.kind)
 
-    def _tell(self, right: bool, what: str, text: str) -> None:
-        self._wrong += not right
-        self._say(f"{'ok' if right else 'FAILS':5}  {what}: {text}")
+    def _tell(self, right: bool | None, what: str, text: str, *columns: str) -> None:
+        """Say a line: whether it works (None for what is only told), what, and how."""
+        self._wrong += right is False
+        result = "-" if right is None else "ok" if right else "FAILS"
+        self._say(LINE.format(result, what, *columns, *[""] * (3 - len(columns)), text).rstrip())
 
     async def _check_clock(self) -> None:
         began = monotonic()
         await asyncio.sleep(TICK_S)
         late = monotonic() - began - TICK_S
-        self._tell(late < LATE_S, "clock", f"a tick was {max(late, 0) * 1000:.0f} ms late")
+        self._tell(late < LATE_S, "clock", f"a tick was {_ms(max(late, 0))} late")
 
     async def _opens(self, driver: Driver) -> bool:
         def told(report: Report | News) -> None:
@@ -120,12 +188,25 @@ class Preflight:
         began = monotonic()
         try:
             await open_driver(driver)
-        except Unreachable as error:
-            self._tell(False, driver.kind, str(error))
+        except (Unreachable, UsageError) as error:
+            self._unusable |= isinstance(error, UsageError)
+            self._tell(False, "connection", str(error), driver.kind)
             return False
-        taken = (monotonic() - began) * 1000
-        self._tell(True, driver.kind, f"connected in {taken:.0f} ms")
+        self._tell(True, "connection", "", driver.kind, _ms(monotonic() - began))
         return True
+
+    def _tell_stops(self) -> None:
+        """Say what the emergency stop is, which nobody presses here."""
+        stops = [
+            (driver, senses.by)
+            for driver in self._drivers
+            for senses in driver.settings.senses
+            if senses.what == "emergency"
+        ]
+        for driver, by in stops:
+            self._tell(None, "emergency stop", f"by {by}; press it once in a run", driver.kind)
+        if not stops:
+            self._tell(None, "emergency stop", "the robot's document has none")
 
     def _now(self) -> int:
         return int((monotonic() - self._began) * 1000)
@@ -173,9 +254,10 @@ class Preflight:
         if argument.kind == "duration":
             return 500
         if argument.kind == "number":
-            wanted = {"speed": 0.05, "x": 0.2}.get(name, 10.0 if argument.choice else 0.0)
+            wanted = SMALL.get(name, 10.0 if argument.choice else 0.0)
             return min(max(wanted, argument.low or wanted), argument.high or wanted)
-        return next(iter(self._site.places), None) if argument.kind == "id" else None
+        places = [name for one in self._robot.drivers for name in one.places]
+        return next(iter([*places, *self._site.places]), None) if argument.kind == "id" else None
 
     async def _try(self, tried: tuple[str, Command, frozenset[str]]) -> None:
         """Begin a Command, let it go on for a moment, and cancel it."""
@@ -189,52 +271,56 @@ class Preflight:
         begin = Begin(key, kind, command, devices, 0, tick, self._robot.loop)
         driver = self._devices.route(begin)
         if driver is None:
-            self._tell(
-                False, what, f'no driver carries it out; name it in a <does command="{kind}">'
-            )
-            return
-        limits = self._devices.limits(begin)
+            hint = f'no driver carries it out; name it in a <does command="{kind}">'
+            self._tell(False, what, hint)
+        elif driver not in self._opened:
+            self._tell(None, what, "not tried: its driver is not there", driver.kind)
+        else:
+            found = await self._carried_out(driver, begin, LASTING_MS)
+            if found.done:  # too quickly to be cancelled: once more
+                again = replace(begin, key=f"{key}/again")
+                found = replace(await self._carried_out(driver, again, 0), accepted=found.accepted)
+            self._tell(found.right, what, found.text, driver.kind, found.accepted, found.cancelled)
+
+    async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> Found:
+        """Begin a Command, let it go on for a while (ms), and cancel it."""
+        key, limits = begin.key, self._devices.limits(begin)
         self._reports[key] = asyncio.Queue()
-        driver.sample(now)
         try:
+            driver.sample(self._now())
             driver.start(begin)
-            self._tell(*await self._watch(driver, key, what, limits))
+            return await self._watch(driver, key, limits, lasts)
         except Exception as error:
-            self._tell(False, what, f"{driver.kind} has failed: {error}")
+            return Found(False, f"the driver has failed: {type(error).__name__}: {error}")
         finally:
             del self._reports[key]
 
-    async def _watch(
-        self, driver: Driver, key: str, what: str, limits: Limits
-    ) -> tuple[bool, str, str]:
+    async def _watch(self, driver: Driver, key: str, limits: Limits, lasts: int) -> Found:
         """What comes of a Command that was begun."""
         began = monotonic()
         first = await self._report(key, limits.accept)
-        accepted = (monotonic() - began) * 1000
+        accepted = _ms(monotonic() - began)
         if first is None:
             driver.cancel(key)
-            return False, what, f"{driver.kind} does not accept it within {limits.accept} ms"
-        then = first
-        if isinstance(first, Accepted):
-            ended = await self._report(key, LASTING_MS, last=True)
-            if ended is None:
-                began = monotonic()
-                driver.cancel(key)
-                ended = await self._report(key, limits.cancel, last=True)
-                if ended is None:
-                    return False, what, f"{driver.kind} does not stop within {limits.cancel} ms"
-            then = ended
-        taken = (monotonic() - began) * 1000
-        match then:
-            case Broke():
-                return False, what, f"{driver.kind}: {then.reason}"
-            case Lost():
-                return False, what, f"{driver.kind}: {then.reason}"
-            case Done():
-                return True, what, f"accepted in {accepted:.0f} ms, done in {taken:.0f} ms"
-            case Stopped():
-                return True, what, f"accepted in {accepted:.0f} ms, stopped in {taken:.0f} ms"
-        return True, what, f"accepted in {accepted:.0f} ms"
+            return Found(False, f"not accepted within {limits.accept} ms")
+        if isinstance(first, ENDS):
+            return _ended(first, accepted)
+        if lasts and (then := await self._report(key, lasts, last=True)) is not None:
+            return _ended(then, accepted)
+        began = monotonic()
+        driver.cancel(key)
+        ended = await self._report(key, limits.cancel, last=True)
+        taken = monotonic() - began
+        if ended is None:
+            text = f"does not stop within {limits.cancel or UNBOUNDED_MS} ms"
+            return Found(False, text, accepted)
+        if isinstance(ended, Lost):
+            return Found(False, ended.reason, accepted)
+        if isinstance(ended, Done) and taken > HEEDED_S:
+            text = "goes on to its end although it is cancelled"
+            return Found(False, text, accepted, _ms(taken))
+        text = "stops late: does it heed a cancel?" if taken > SLOW_S else ""
+        return Found(True, text, accepted, _ms(taken))
 
     async def _report(self, key: str, limit: int | None, last: bool = False) -> Report | None:
         """The next report of a goal, or with ``last`` its end; None if none comes in time (ms)."""
@@ -243,7 +329,7 @@ class Preflight:
             async with asyncio.timeout((limit or UNBOUNDED_MS) / 1000):
                 while True:
                     report = await self._next(queue)
-                    if not last or isinstance(report, Done | Stopped | Broke | Lost):
+                    if not last or isinstance(report, ENDS):
                         return report
         except TimeoutError:
             return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Protocol
@@ -184,10 +185,16 @@ class RosDriver(MappedDriver):
             self._link.fail(reason)
 
     async def safe(self) -> None:
-        """Cancel all goals, of others too; publish that the body stands; call what stops."""
-        if self._link is None or self.gone:
+        """Cancel all goals, of others too; publish that the body stands; call what stops.
+
+        It is tried over a link that seems to be lost, too: perhaps only answers are.
+        """
+        if self._link is None:
             return
-        link = self._link
+        with suppress(Exception) if self.gone else nullcontext():
+            await self._stop_all(self._link)
+
+    async def _stop_all(self, link: Link) -> None:
         link.cancel_all()
         for does in self.settings.does:
             if self._moves(does):

@@ -12,7 +12,7 @@ import os
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from http.client import HTTPException, HTTPResponse
@@ -23,6 +23,7 @@ from urllib.request import Request
 
 from prima.devices.endpoints import Endpoint, Unfit, filled_by_grammar
 from prima.errors import UsageError
+from prima.live.answers import HIDDEN, check_type, hidden, read_json, said_by_model
 from prima.loading.web import end_connections, follow, form_request, read_plain, silence
 from prima.messages import Data, Fetched, Inbound, Json, Order
 from prima.sim.happenings import Reply
@@ -50,8 +51,7 @@ FIRST_S = 0.1
 """How long (s) it is waited before a service is asked again; then twice as long, and so on."""
 MOST_ASKED = 32
 """Requests of a run that are under way at one time."""
-HIDDEN = b"***"
-"""What takes the place of a secret that a host sends back."""
+CUT_OFF = "the run was cut off before the answer came; it is asked once only"
 
 
 class LiveServices:
@@ -74,12 +74,16 @@ class LiveServices:
     ) -> None:
         self._endpoints = {one.name: one for one in endpoints}
         self._secrets = {one.name: _secrets(one, environment) for one in self._endpoints.values()}
+        made = (secret for held in self._secrets.values() for _, secret in held.values())
+        self._hide = frozenset(made)
         self._hosts = frozenset(host_of(one.url) for one in self._endpoints.values())
         self._web = web
         self._telephone = Telephone()
         self._arrived: list[tuple[int, Inbound]] = []
         self._last = -1
         self._under_way = 0
+        self._open: list[tuple[Order, bool]] = []
+        """What has still to be asked of a run that was cut off, and whether it may have been."""
         self.run: LiveDevices
         """Whose clock counts, and what lets things run in the background."""
 
@@ -93,9 +97,34 @@ class LiveServices:
     def collect(self, now: int) -> list[Inbound]:
         """The answers that have come."""
         self._last = now
+        waiting, self._open = self._open, []
+        for order, perhaps in waiting:
+            if perhaps and not self._may_ask_again(order):
+                self._arrive(now, _failed(order, CUT_OFF))
+            else:
+                self.order(now, order)
         inbound = [value for _, value in self._arrived]
         self._arrived.clear()
         return inbound + self._telephone.collect(now)
+
+    def go_on(self, asked: Iterable[Order], never: Container[str]) -> None:
+        """See to what a run had asked that was cut off: nobody waits for ever.
+
+        Args:
+            asked: what has no answer, the oldest first.
+            never: the names of those that were certainly not asked before the cut.
+        """
+        self._open = [(order, order.behavior not in never) for order in asked]
+
+    def _may_ask_again(self, order: Order) -> bool:
+        """Whether it does no harm to ask something twice."""
+        fetches, name = "method" in order.data, str(order.data["to"])
+        endpoint = self._of(name) if fetches else self._endpoints.get(name)
+        if "transfer" in order.data or order.data.get("method") == "get":
+            return True
+        if endpoint is None:  # one that is not there is not asked; other hosts are by a post
+            return not fetches or name.startswith(SCHEME)
+        return endpoint.repeats
 
     def order(self, now: int, order: Order) -> None:
         """Take a message, a fetch or a call."""
@@ -122,7 +151,7 @@ class LiveServices:
             value = _failed(order, f"it cannot be asked: {type(error).__name__}")
         finally:
             self._under_way -= 1
-        self._arrive(self.run.now(), value)
+        self._arrive(self.run.now(), hidden(value, self._hide))
 
     async def _asked(self, order: Order) -> Inbound:
         fetches, name = "method" in order.data, str(order.data["to"])
@@ -170,23 +199,33 @@ class LiveServices:
         """The data of a service's reply; for a language model perhaps the fallback's."""
         try:
             what = endpoint.chat(params) if endpoint.model else params
-            body = await self._ask(endpoint, lambda: _request(endpoint, what), endpoint.repeats)
+            body = await self._ask(
+                endpoint, lambda: _request(endpoint, what), endpoint.repeats, check_type
+            )
             given = read_json(body, "the answer")
             if endpoint.model:
-                given = _content(given)
+                given = said_by_model(given)
             return endpoint.reply(given)
         except Unfit:
             if (found := filled_by_grammar(endpoint, params)) is not None:
                 return found
             raise
 
-    async def _ask(self, endpoint: Endpoint, make: Callable[[], Request], again: bool) -> bytes:
+    async def _ask(
+        self,
+        endpoint: Endpoint,
+        make: Callable[[], Request],
+        again: bool,
+        check: Callable[[HTTPResponse], None] = lambda _: None,
+    ) -> bytes:
         """The bytes of an answer, asked for again where that is allowed and may help.
+
+        ``check`` refuses answers by their headers.
 
         Raises:
             Unfit: there is none.
         """
-        asking = _Asking(endpoint, self._secrets[endpoint.name], self._hosts)
+        asking = _Asking(endpoint, self._secrets[endpoint.name], self._hosts, check)
         try:
             async with asyncio.timeout(endpoint.deadline / 1000):
                 for count in range(endpoint.retries if again else 0):
@@ -211,6 +250,7 @@ class _Asking:
     endpoint: Endpoint
     secrets: dict[str, tuple[str, str]]
     hosts: frozenset[str]
+    check: Callable[[HTTPResponse], None]
     held: list[socket.socket] = field(default_factory=list)
     closed: bool = False
 
@@ -233,7 +273,7 @@ class _Asking:
         except ValueError as error:
             raise Unfit(str(error)) from None
         for _, secret in self.secrets.values():
-            body = body.replace(secret.encode(), HIDDEN)
+            body = body.replace(secret.encode(), HIDDEN.encode())
         return body
 
     @property
@@ -261,6 +301,7 @@ class _Asking:
 
     def _read(self, response: HTTPResponse) -> bytes:
         """An answer's body, chunk by chunk: its deadline is that of all."""
+        self.check(response)
         most = self.endpoint.most
         ends = time.monotonic() + self._seconds
         data = read_plain(response, most + 1)
@@ -297,33 +338,6 @@ def _request(endpoint: Endpoint, what: Data) -> Request:
     headers = {"User-Agent": "PRIMA", "Content-Type": "application/json"}
     body = json.dumps(dict(what), ensure_ascii=False).encode()
     return Request(endpoint.url, body, headers, method=endpoint.method.upper())
-
-
-def read_json(body: bytes | str, what: str) -> Json:
-    """A text as JSON (RFC 8259).
-
-    Raises:
-        Unfit: it is none.
-    """
-
-    def refuse(name: str) -> Json:
-        raise ValueError(name)
-
-    try:
-        return json.loads(body, parse_constant=refuse)
-    except (ValueError, RecursionError):
-        raise Unfit(f"{what} is not JSON") from None
-
-
-def _content(given: Json) -> Json:
-    """What a language model says, as JSON."""
-    try:
-        said = given["choices"][0]["message"]["content"]
-    except (TypeError, KeyError, IndexError):
-        raise Unfit("the answer has no choices[0].message.content") from None
-    if not isinstance(said, str):
-        raise Unfit("the model says nothing")
-    return read_json(said, "what the model says")
 
 
 def _failed(order: Order, why: str) -> Inbound:

@@ -13,14 +13,13 @@ from typing import Any
 
 from prima.devices.goals import Back
 from prima.devices.loop import Loop
+from prima.errors import UsageError
 from prima.live.clock import Clock
-from prima.live.devices import LiveDevices
-from prima.live.driver import Driver, Unreachable
+from prima.live.devices import SAFE_S, LiveDevices
+from prima.live.driver import Driver, Unreachable, Unusable
 
 FIRST_S, LONGEST_S = 0.5, 30.0
 """How long to wait before a lost robot is looked for again: at first, and at most."""
-SAFE_S = 5.0
-"""How long a driver may take to stop everything."""
 LATE_MS = 250
 """How late an instant may be before that is worth telling."""
 
@@ -52,6 +51,9 @@ class Shell:
         self._tasks: set[asyncio.Task[None]] = set()
         self._stopped = False
         self._lost: set[Driver] = set()
+        self.opened = False
+        """Whether every driver has reached its robot."""
+        self._opening: list[asyncio.Task[None]] = []
 
     @property
     def _drivers(self) -> list[Driver]:
@@ -62,15 +64,19 @@ class Shell:
         """End the run as soon as possible: no more instants are carried out."""
         self._stopped = True
         self._woken.set()
+        for task in self._opening:
+            task.cancel()
 
     async def run(self) -> None:
         """Carry out the run to its end; the robot is made safe then, whatever has happened.
 
         Raises:
             Unreachable: a driver cannot reach its robot at the start.
+            UsageError: a driver is not set up.
         """
         try:
             await self._open()
+            self.opened = True
             self.clock.begin()
             await self._go()
         finally:
@@ -120,9 +126,24 @@ class Shell:
         devices.spawn, devices.lost = self._spawn, self._lose
         for driver in self._drivers:
             driver.attach(partial(devices.tell, driver), self.clock.now)
-        await asyncio.gather(*(open_driver(driver) for driver in self._drivers))
+        await self._open_all()
         for driver in self._drivers:
             self._spawn(self._watch(driver))
+
+    async def _open_all(self) -> None:
+        """Open all drivers at once; where one cannot be, none stays half open."""
+        tasks = self._opening = [asyncio.ensure_future(open_driver(one)) for one in self._drivers]
+        try:
+            if tasks:
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_EXCEPTION)
+        finally:
+            for task in tasks:
+                task.cancel()
+            ended = await asyncio.gather(*tasks, return_exceptions=True)
+            self._opening = []
+        for problem in ended:
+            if isinstance(problem, Exception):
+                raise problem
 
     async def _close(self) -> None:
         for task in list(self._tasks):
@@ -163,12 +184,21 @@ class Shell:
             wait = min(wait * 2, LONGEST_S)
             try:
                 await open_driver(driver)
-            except Unreachable:
+            except (Unreachable, UsageError):
                 continue
             self._lost.discard(driver)
+            await self._end_what_went_on(driver)
             self._warn(f"{driver.kind}: the robot is back.")
             driver.tell(Back(driver.settings.devices))
             return
+
+    async def _end_what_went_on(self, driver: Driver) -> None:
+        """Make a robot safe that was out of reach: nobody has stopped it meanwhile."""
+        try:
+            async with asyncio.timeout(SAFE_S):
+                await driver.safe()
+        except Exception as error:
+            self._warn(f"{driver.kind}: safe has failed: {_why(error)}.")
 
     async def _watch(self, driver: Driver) -> None:
         """Ask by the heartbeat whether the robot is still there."""
@@ -180,15 +210,18 @@ class Shell:
             try:
                 async with asyncio.timeout(seconds):
                     await driver.ping()
-            except (Unreachable, TimeoutError) as error:
-                driver.lose(str(error) or "the robot does not answer")
+            except TimeoutError:
+                driver.lose("the robot does not answer")
+            except Exception as error:
+                driver.lose(_why(error))
 
 
 async def open_driver(driver: Driver) -> None:
     """Connect a driver with its robot, in the time that its document allows.
 
     Raises:
-        Unreachable: it is not there, or does not answer in time.
+        Unreachable: it is not there, does not answer in time, or the driver fails.
+        UsageError: the driver is not set up.
     """
     settings = driver.settings
     where = f" at {settings.address}" if settings.address else ""
@@ -201,6 +234,13 @@ async def open_driver(driver: Driver) -> None:
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}.") from None
     except Unreachable as error:
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {error}") from None
+    except Unusable as error:
+        raise Unusable(f"{settings.place}: {driver.kind}{where}: {error}") from None
+    except (UsageError, asyncio.CancelledError, KeyboardInterrupt):
+        raise
+    except BaseException as error:  # also SystemExit: a robot's library wants to end the program
+        reason = f"the driver has failed: {type(error).__name__}: {error}"
+        raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}") from error
 
 
 def _why(error: BaseException) -> str:

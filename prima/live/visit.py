@@ -6,8 +6,9 @@ import asyncio
 import os
 import signal
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
-from prima.live.journal import Broken, Journal, catch_up, going_on, known, redacted
+from prima.live.journal import Journal, redacted
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
@@ -32,8 +33,9 @@ from prima.sim.entrances import Entrances
 from prima.sim.map import Map
 from prima.sim.rehearsal import Rehearsal, make_session
 from prima.sim.services import Web
+from prima.transcript.record import LONGEST
 
-FOREVER_MS = 10**13
+FOREVER_MS = round(LONGEST * 1000)
 """How long a run may last on a robot: nobody ends it but its applications, or people."""
 STAGE = "stage.xml"
 """The scenario that is made of applications, and no file."""
@@ -107,7 +109,7 @@ def chosen_then(head: Record, name: str) -> Chosen:
         UsageError: the record says nothing of files.
     """
     live = head["data"].get("live")
-    if not isinstance(live, dict):
+    if not isinstance(live, dict) or not (live.get("robot") or live.get("scenario")):
         message = "the transcript does not say with which files it was made; name its scenario."
         raise UsageError(f"{name}: {message}")
     folder = os.path.dirname(name)
@@ -191,6 +193,14 @@ class Visit:
     """How late (ms) the latest of its instants was."""
     stopped: bool = False
     """Whether somebody has ended it from outside."""
+    before: list[Record] = field(default_factory=list)
+    """What the journal has already of a run that goes on, times in s."""
+    _stop: Callable[[], object] = lambda: None
+
+    def stop(self) -> None:
+        """End it as soon as possible, from any thread: the robot is made safe."""
+        self.stopped = True
+        self._stop()
 
     def run(self, sink: Sink, warn: Callable[[str], None]) -> None:
         """Carry it out to its end.
@@ -219,23 +229,49 @@ class Visit:
             if self.journal is not None:
                 self.journal.close()
 
+    def run_anywhere(self, sink: Sink, warn: Callable[[str], None]) -> None:
+        """The same, also where an event loop runs already, as in a notebook: in a thread.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C came meanwhile; the run has ended.
+        """
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:
+            self.run(sink, warn)
+            return
+        with ThreadPoolExecutor(1, "live") as pool:
+            running = pool.submit(self.run, sink, warn)
+            try:
+                running.result()
+            except KeyboardInterrupt:
+                self.stop()
+                running.result()
+                raise
+
     async def _run(self, warn: Callable[[str], None]) -> None:
         shell = Shell(self.loop, self.clock, warn, self.settings.late)
 
-        def stop() -> None:
-            self.stopped = True
-            shell.stop()
-
         running = asyncio.get_running_loop()
+
+        def stop() -> None:
+            with suppress(RuntimeError):  # the run is over
+                running.call_soon_threadsafe(shell.stop)
+
+        self._stop = stop
         for name in (signal.SIGINT, signal.SIGTERM):
             with suppress(NotImplementedError, ValueError, RuntimeError):
-                running.add_signal_handler(name, stop)
+                running.add_signal_handler(name, self.stop)
+        if self.stopped:
+            return
         # Not before: once there is a journal, a signal has to end the run as it should.
         self.loop.journal(self.missed if self.resumed else [self.head])
         try:
             await shell.run()
         finally:
             self.latest = shell.latest
+            if not (shell.opened or self.resumed) and self.journal is not None:
+                self.journal.discard()  # nothing has happened: the same command may be given again
 
 
 def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
@@ -255,63 +291,26 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
     name = settings.policy or cast.scenario.policy
     policy = chosen_policy(name, loaded)
     if simulated:
-        loop = _simulated(loaded, policy, settings)
+        loop = in_simulation(loaded, policy, settings)
     else:
-        loop = _real(loaded, policy, settings, chosen.answering(settings.web))
+        loop = on_robot(loaded, policy, settings, chosen.answering(settings.web))
     if settings.until is not None:
         loop.until = settings.until
     told = chosen.told(os.path.dirname(output or ""))
     patience = cast.scenario.patience if settings.patience is None else settings.patience
     head = run_record(loaded, name, settings.bound, patience, {"live": told})
     journal = Journal(output, settings.sync) if output is not None else None
-    _record_beside(loop, journal, settings)
+    record_beside(loop, journal, settings)
     return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)
 
 
-def go_on(broken: Broken, settings: Settings) -> Visit:
-    """Prepare to go on with a run that was cut off.
-
-    Raises:
-        DocumentError: documents are wrong.
-        UsageError: a file is not the one of then, or the run was a simulation.
-    """
-    head = broken.records[0]
-    chosen, loaded = chosen_then(head, broken.path), reloaded(head, broken.path)
-    data = head["data"]
-    if data["live"].get("scenario"):
-        message = "a scenario's world is gone with its run; run it again from its beginning."
-        raise UsageError(f"{broken.path}: {message}")
-    loaded.cast.scenario.date = data["date"]
-    patience = data.get("patience")
-    settings = replace(
-        settings,
-        policy=data["policy"],
-        bound=data.get("bound"),
-        patience=None if patience is None else round(patience * 1000),
-    )
-    start = broken.time
-    services = chosen.answering(settings.web)
-    loop = _real(loaded, chosen_policy(data["policy"], loaded), settings, services, start)
-    missed = catch_up(broken, loop.session)
-    loop.go_on(start)
-    state = known(broken.records)
-    assert isinstance(loop.devices, LiveDevices)
-    loop.devices.go_on(state, list(going_on(state)))
-    if settings.until is not None:
-        loop.until = settings.until
-    journal = Journal(broken.path, settings.sync, broken.kept)
-    _record_beside(loop, journal, settings)
-    clock = Clock(settings.speed, start)
-    return Visit(loop, clock, settings, head, loaded, journal, missed, resumed=True)
-
-
-def _simulated(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
+def in_simulation(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
     """A scenario, which is run as in a rehearsal but by the clock."""
     given = settings.bound, settings.web, settings.isolate, settings.patience
     return Rehearsal(loaded.cast, policy, *given)
 
 
-def _real(
+def on_robot(
     loaded: Loaded, policy: Policy, settings: Settings, services: LiveServices, start: int = -1
 ) -> Loop:
     """A run on the robot's drivers."""
@@ -335,7 +334,7 @@ def _real(
     return Loop(session, devices, FOREVER_MS, bounded=False)
 
 
-def _record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
+def record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
     """Let drivers keep what they record beside the journal, if anything of it is to be kept."""
     kept = journal is not None and not settings.redact and os.path.isfile(journal.path)
     recordings = Recordings(journal.path if journal is not None and kept else None)
@@ -359,5 +358,11 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
             kind = driver_class(settings.kind, tuple(files))
         except UsageError as error:
             raise UsageError(f"{settings.place}: {error}") from None
-        made.append(kind(settings, robot, site))
+        try:
+            made.append(kind(settings, robot, site))
+        except UsageError:
+            raise
+        except Exception as error:
+            reason = f"the driver has failed: {type(error).__name__}: {error}"
+            raise UsageError(f"{settings.place}: {settings.kind}: {reason}") from error
     return made

@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from typing import Annotated, Any, NotRequired
+from typing import TYPE_CHECKING, Annotated, Any, NotRequired
 
 from prima.errors import UsageError
 from prima.errors.visible import escaped
+from prima.language.values import moment
 from prima.messages import Json, Record
-from prima.transcript.record import FIELDS, lacking, model
+from prima.transcript.record import FIELDS, LONGEST, LONGEST_DAYS, lacking, model
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 MAX_LINE = 1_000_000
 """Maximum length of a line of a transcript."""
@@ -70,7 +74,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
     from pydantic import ValidationError
 
     quick = quick_reader()
-    count = 0
+    count, latest = 0, 0.0
     for number, text in enumerate(lines, 1):
         if not text.strip():
             continue
@@ -84,13 +88,15 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
                 record = _closely(text)
             if missing := lacking(record):
                 raise ValueError(f'{record["phase"]} needs "{missing}"')
+            if record["time"] < latest:
+                raise _Backward(f"the time goes back from {latest:g} s to {record['time']:g} s")
         except (ValueError, RecursionError) as error:
             message = f"{name}:{number}: {_why(error, text, ValidationError)}"
             if cut is None or count == 0:
                 raise UsageError(message) from None
             cut.append(message)
             return
-        count += 1
+        count, latest = count + 1, record["time"]
         yield record
     if count == 0:
         raise UsageError(f"{name}: not a transcript: it has no records.")
@@ -137,9 +143,17 @@ def _no_number(word: str) -> None:
     raise ValueError(f"{word} is no number of JSON's")
 
 
+class _Backward(ValueError):
+    """A record is before the one that stands above it."""
+
+
 def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
+    if isinstance(error, _Backward):
+        return f"{error}; lines have been moved, or are of two transcripts."
     if isinstance(error, invalid):
         first = error.errors()[0]  # type: ignore[attr-defined]
+        if first["type"] == "less_than_equal":
+            return f"the time is after more than {LONGEST_DAYS} days; a run does not last so long."
         if not first["loc"]:
             return 'not a transcript\'s record: write an object such as {"time":0, ...}.'
         where = ".".join(str(part) for part in first["loc"])
@@ -151,3 +165,56 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
     if text.lstrip().startswith("<"):
         return "this is not a line of JSON but of XML. Transcripts are written by prima run -o."
     return "this is not a line of JSON. Transcripts are written by prima run -o."
+
+
+@cache
+def head_model() -> type[BaseModel]:
+    """What the data of a run's record are checked against before they are used."""
+    from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+    class Live(BaseModel):
+        model_config = ConfigDict(strict=True)
+        robot: str = ""
+        scenario: str = ""
+        world: str = ""
+        services: str = ""
+        document: str = ""
+        fa: list[str] = []
+        ea: list[str] = []
+        maps: list[str] = []
+
+    class Head(BaseModel):
+        model_config = ConfigDict(strict=True)
+        policy: str
+        bound: int | None = Field(None, ge=1)
+        patience: float = Field(0, ge=0, le=LONGEST)
+        absence: float = Field(0, ge=0, le=LONGEST)
+        date: Annotated[str, AfterValidator(_date)] = ""
+        files: dict[str, str] = {}
+        redacted: bool = False
+        live: Live | None = None
+
+    return Head
+
+
+def check_head(head: Record, name: str) -> None:
+    """See that a transcript's first record says how to run it again.
+
+    Raises:
+        UsageError: it does not.
+    """
+    from pydantic import ValidationError
+
+    if head["phase"] != "run":
+        raise UsageError(f"{name}:1: the transcript does not begin with its run record.")
+    try:
+        head_model().model_validate(head["data"])
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"]))
+        raise UsageError(f"{name}:1: the run record is damaged: {where}: {first['msg']}.") from None
+
+
+def _date(text: str) -> str:
+    moment(text)
+    return text

@@ -27,7 +27,8 @@ MEANING = """One line of a transcript. Fields that do not apply are left out.
 
 Times are seconds of the run. ``inbound`` marks what came from outside: the
 inbound records of a transcript are enough to run it again."""
-LONGEST = 1e9
+LONGEST_DAYS = 366
+LONGEST = LONGEST_DAYS * 86_400.0
 """Seconds that a run may last: no drawing of a longer one would come to an end."""
 
 

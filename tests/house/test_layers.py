@@ -157,7 +157,7 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"clock", "journal", "recordings", "told"},
+        {"answers", "clock", "journal", "recordings", "told"},
         {"driver"},
         {"mapped"},
         {"ros"},
@@ -165,7 +165,8 @@ INSIDE = {
         {"services"},
         {"shell"},
         {"visit"},
-        {"preflight"},
+        {"preflight", "resumed"},
+        {"prepared"},
         {"__init__"},
     ],
     "sim": [

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -18,9 +20,15 @@ from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished
 from tests.live.stage import carried_out, live_loop
+from tests.live.test_live import HELLO, ROBOT, prima
 
 SCENARIOS = Path(__file__).parents[2] / "documents" / "scenarios"
-HEAD: Record = {"time": 0, "phase": "run", "actor": "mediator", "data": {"live": {}}}
+HEAD: Record = {
+    "time": 0,
+    "phase": "run",
+    "actor": "mediator",
+    "data": {"policy": "prima", "live": {}},
+}
 
 
 def cast_of(name: str) -> Cast:
@@ -105,7 +113,7 @@ def broken_text(tmp_path: Path, text: str) -> str:
     [
         ("", "no records"),
         ("{}\n", "not a transcript's record"),
-        (json.dumps({**HEAD, "data": {}}) + "\n", "not the journal of a live run"),
+        (json.dumps({**HEAD, "data": {"policy": "prima"}}) + "\n", "not the journal of a live run"),
         (
             written([{"time": 1, "phase": "over", "actor": "mediator", "outcome": "over"}]),
             "has ended",
@@ -134,6 +142,71 @@ def test_a_journal_of_other_documents_is_refused(tmp_path: Path) -> None:
     path = broken_text(tmp_path, written(changed))
     with pytest.raises(UsageError, match=r"visit\.jsonl:\d+: the documents do not give"):
         gone_on(cast, Path(path))
+
+
+Change = Callable[[list[Record]], None]
+END: Record = {"time": 3.0, "phase": "end", "actor": "robot", "inbound": True}
+
+
+def told(**more: object) -> Change:
+    """A record at the end, whose fields are not those of its phase."""
+    return lambda records: records.append({**END, **more})
+
+
+def headed(name: str, value: object) -> Change:
+    return lambda records: records[0]["data"].update({name: value})
+
+
+def backward(records: list[Record]) -> None:
+    records[-1]["time"] = 0.001
+
+
+def late(records: list[Record]) -> None:
+    records[-1]["time"] = 4e7
+
+
+@pytest.fixture(scope="module")
+def journal(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The journal of a live run that was cut off before its end."""
+    folder = tmp_path_factory.mktemp("visit")
+    (folder / "hello.xml").write_text(HELLO)
+    path = folder / "visit.jsonl"
+    words = ("--robot", ROBOT, "--ea", str(folder / "hello.xml"), "--speed", "100")
+    ran = prima("live", *words, "-o", str(path))
+    assert ran.returncode == 0, ran.stderr
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(lines[:-1]))
+    return path
+
+
+@pytest.mark.parametrize("verb", ["live --resume", "replay"])
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (backward, r":\d+: the time goes back from .* s to 0\.001 s"),
+        (late, r":\d+: the time is after more than 366 days"),
+        (told(phase="fetched", app="hello", data={"x": 1}), r":\d+: a record lacks a field"),
+        (told(phase="fail"), r":\d+: a record lacks a field"),
+        (told(phase="load", app="other"), r':\d+: it loads an application .*"other"'),
+        (headed("policy", 5), ":1: the run record is damaged: policy"),
+        (headed("bound", "x"), ":1: the run record is damaged: bound"),
+        (headed("date", "someday"), ":1: the run record is damaged: date"),
+        (headed("patience", -1), ":1: the run record is damaged: patience"),
+        (headed("live", {"robot": 5}), r":1: the run record is damaged: live\.robot"),
+        (headed("live", {"robot": "r.xml", "maps": 7}), r":1: .* damaged: live\.maps"),
+        (headed("live", {}), "does not say with which files"),
+        (lambda records: records.pop(0), ":1: the transcript does not begin with its run record"),
+    ],
+)
+def test_a_changed_journal_is_refused(change: Change, why: str, verb: str, journal: Path) -> None:
+    records = [json.loads(text) for text in journal.read_text().splitlines()]
+    change(records)
+    path = journal.with_name("changed.jsonl")
+    path.write_text("".join(json.dumps(record) + "\n" for record in records))
+    ran = prima(*verb.split(), str(path))
+    assert ran.returncode == 2, ran.stderr
+    assert re.search(rf"changed\.jsonl.*{why}", ran.stderr), ran.stderr
+    assert "defect" not in ran.stderr
 
 
 def test_a_journal_is_never_written_over(tmp_path: Path) -> None:

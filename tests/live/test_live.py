@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -98,10 +99,34 @@ def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     assert prima("replay", str(journal)).returncode == 0
 
 
+def test_a_machine_that_stood_still_is_told_of_and_the_run_goes_on(
+    hello: str, tmp_path: Path
+) -> None:
+    journal = tmp_path / "visit.jsonl"
+    words = ["--robot", ROBOT, "--ea", hello, "-o", str(journal)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "live", *words],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    limit = time.monotonic() + 30
+    while not (journal.exists() and journal.stat().st_size) and time.monotonic() < limit:
+        time.sleep(0.02)
+    running.send_signal(signal.SIGSTOP)
+    time.sleep(4)
+    running.send_signal(signal.SIGCONT)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 0, told
+    assert re.search(r"An instant was carried out \d\S* s late", told)
+    assert prima("replay", str(journal)).returncode == 0
+
+
 def test_every_command_of_the_simulated_robot_passes_the_preflight() -> None:
     ran = prima("live", "--robot", ROBOT, "--check")
     assert ran.returncode == 0, ran.stdout
-    assert "turn: accepted in" in ran.stdout
+    assert "ok     turn   " in ran.stdout
     assert "FAILS" not in ran.stdout
 
 
@@ -199,13 +224,14 @@ def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
 
 def test_the_driver_of_the_documentation_works(hello: str, tmp_path: Path) -> None:
     page = (ROOT / "docs" / "live.md").read_text()
-    code = page.split("```python\n")[1].split("```")[0]
+    section = page.partition("## Your own robot in an hour")[2]
+    code = section.split("```python\n")[1].split("```")[0]
     (tmp_path / "my_robot.py").write_text(code)
     words = ["--driver", str(tmp_path / "my_robot.py")]
     away = prima(
         "live", *words, "--robot", robot_with(tmp_path, '<driver kind="my-robot"/>'), "--ea", hello
     )
-    assert (away.returncode, 'write its address="..."' in away.stderr) == (3, True)
+    assert (away.returncode, 'write its address="..."' in away.stderr) == (2, True)
     robot = robot_with(tmp_path, '<driver kind="my-robot" address="here"/>')
     ran = prima("live", *words, "--robot", robot, "--ea", hello, "-o", str(tmp_path / "a.jsonl"))
     assert ran.returncode == 0, ran.stderr

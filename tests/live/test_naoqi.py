@@ -12,7 +12,7 @@ import pytest
 from prima.devices.goals import SAY
 from prima.devices.profile import read_robot
 from prima.errors import UsageError
-from prima.live.driver import Unreachable
+from prima.live.driver import Unusable
 from prima.live.drivers.naoqi import DRIVER, _said, _url
 from prima.messages import Command
 from prima.sim.map import Map
@@ -27,7 +27,7 @@ def driver(inside: str = "") -> Any:
 
 def test_without_qi_it_is_told_how_to_have_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "qi", None)
-    with pytest.raises(Unreachable, match=r"pip install 'prima\[naoqi\]'"):
+    with pytest.raises(Unusable, match=r"pip install 'prima\[naoqi\]'"):
         asyncio.run(driver().open())
 
 
@@ -64,3 +64,9 @@ def test_an_error_is_its_first_line() -> None:
     error = "RuntimeError: ALMotion::moveTo there is a wall\n\nAt:\n  robot.py(39): moveTo\n"
     assert _said(error) == "ALMotion::moveTo there is a wall"
     assert _said("") == "the robot has refused it"
+
+
+@pytest.mark.parametrize("address", ["http://nao.local", "nao local", "nao:0", "nao:99999", "a/b"])
+def test_what_is_no_address_is_a_wrong_setting(address: str) -> None:
+    with pytest.raises(Unusable, match=r'Write for example address="tcp://nao\.local:9559"'):
+        _url(address)

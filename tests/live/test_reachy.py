@@ -13,7 +13,7 @@ import pytest
 from prima.devices.goals import At, Begin, Broke, Done, Lost, News, Report, Stopped
 from prima.devices.profile import Profile, read_robot
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers import driver_class
 from prima.live.drivers.reachy import DRIVER, driver
 from prima.live.drivers.reachy.link import read_address
@@ -307,7 +307,7 @@ def test_nonsense_ends_no_move_and_a_daemon_that_hangs_up_meanwhile_is_lost() ->
 def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(driver, "find_spec", lambda _: None)
     profile = robot()
-    with pytest.raises(Unreachable, match=r"httpx is missing: pip install 'prima\[reachy\]'"):
+    with pytest.raises(Unusable, match=r"httpx is missing: pip install 'prima\[reachy\]'"):
         asyncio.run(DRIVER(profile.drivers[0], profile, SITE).open())
 
 

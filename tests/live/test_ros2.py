@@ -10,7 +10,7 @@ import pytest
 
 from prima.devices.profile import read_robot
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unusable
 from prima.live.drivers.ros2 import DRIVER
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.ros import Use, uses
@@ -26,7 +26,7 @@ def driver(inside: str = "", address: str = "") -> Any:
 
 def test_without_rclpy_it_is_told_how_to_have_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rclpy", None)
-    with pytest.raises(Unreachable, match="source /opt/ros/DISTRIBUTION/"):
+    with pytest.raises(Unusable, match="source /opt/ros/DISTRIBUTION/"):
         asyncio.run(driver().open())
 
 
@@ -145,5 +145,5 @@ def test_the_fields_of_a_document_are_known_before_the_run() -> None:
 
 
 def test_a_type_that_is_not_installed_is_told() -> None:
-    with pytest.raises(Unreachable, match="the type nav2_msgs/action/Spin is not there"):
+    with pytest.raises(Unusable, match="the type nav2_msgs/action/Spin is not there"):
         interface("nav2_msgs/action/Spin")

@@ -10,7 +10,7 @@ import pytest
 
 from prima.devices.profile import read_robot
 from prima.errors import UsageError
-from prima.live.driver import Unreachable
+from prima.live.driver import Unusable
 from prima.live.drivers.rosbridge import DRIVER
 from prima.sim.map import Map
 from tests.live.test_mapped import ROBOT
@@ -24,7 +24,7 @@ def driver(address: str = "") -> Any:
 
 def test_without_roslibpy_it_is_told_how_to_have_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "roslibpy", None)
-    with pytest.raises(Unreachable, match=r"pip install 'prima\[rosbridge\]'"):
+    with pytest.raises(Unusable, match=r"pip install 'prima\[rosbridge\]'"):
         asyncio.run(driver().open())
 
 

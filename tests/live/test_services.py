@@ -45,6 +45,7 @@ class Host(ThreadingHTTPServer):
         super().__init__(("127.0.0.1", 0), Handler)
         self.asked: list[tuple[str, str, bytes]] = []
         self.keys: list[str | None] = []
+        self.moved = "http://localhost:1/books"
         self.said = '{"mood": "happy"}'
 
     def handle_error(self, request: object, client_address: object) -> None:
@@ -75,16 +76,19 @@ class Handler(BaseHTTPRequestHandler):
             self._send(503, b"")
         elif path == "/away":
             self.send_response(302)
-            self.send_header("Location", "http://localhost:1/books")
+            self.send_header("Location", host.moved)
             self.end_headers()
         elif path == "/chat":
             said = {"choices": [{"message": {"content": host.said}}]}
             self._send(200, json.dumps(said).encode())
         else:
-            self._send(200, BODIES.get(path, b'{"title": "I, Robot", "shelf": 3}'))
+            known = BODIES.get(path, b'{"title": "I, Robot", "shelf": 3}')
+            self._send(200, known, TYPES.get(path, ""))
 
-    def _send(self, status: int, data: bytes) -> None:
+    def _send(self, status: int, data: bytes, kind: str = "") -> None:
         self.send_response(status)
+        if kind:
+            self.send_header("Content-Type", kind)
         self.end_headers()
         self.wfile.write(data)
 
@@ -97,9 +101,20 @@ BODIES = {
     "/nan": b'{"title": NaN}',
     "/list": b"[1]",
     "/deep": b'{"items": [{"title": "I, Robot"}]}',
+    "/infinite": b'{"shelf": 1e999}',
+    "/endless": b'{"shelf": ' + b"9" * 400 + b"}",
+    "/twice": b'{"title": "A", "title": "B"}',
+    "/half": b'{"title": "\\ud800"}',
+    "/utf-16": '{"title": "é"}'.encode("utf-16"),
+    "/page": b'{"title": "A"}',
+    "/plus": b'{"title": "A"}',
+    "/echo-escaped": f'{{"title": "{SECRET}"}}'.replace("-", "\\u002d").encode(),
+    "/echo-utf-16": f'{{"title": "{SECRET}"}}'.encode("utf-16"),
+    "/echo-name": f'{{"{SECRET}": [1]}}'.replace("-", "\\u002d").encode(),
     "/huge": b'{"title": "' + b"a" * 200_000 + b'"}',
     "/echo": f'{{"title": "{SECRET}"}}'.encode(),
 }
+TYPES = {"/page": "text/html; charset=utf-8", "/plus": "application/vnd.books+json"}
 
 
 @pytest.fixture
@@ -186,6 +201,11 @@ def test_slots_are_taken_out_of_an_answer(host: Host, tmp_path: Path) -> None:
         ('url="URL/drip" deadline="300ms"/>', "no answer within 0.3 s"),
         ('url="URL/garbage"/>', "the answer is not JSON"),
         ('url="URL/nan"/>', "the answer is not JSON"),
+        ('url="URL/infinite"/>', "the answer has a number that is too large"),
+        ('url="URL/endless"/>', "the answer has a number that is too large"),
+        ('url="URL/twice"/>', 'the answer has "title" twice'),
+        ('url="URL/half"/>', "the answer has half a letter"),
+        ('url="URL/page"/>', "the answer is text/html, not application/json"),
         ('url="URL/list"/>', "the answer is not a JSON object"),
         ('url="URL/deep"/>', "is not flat"),
         ('url="URL/huge"/>', "larger than 100,000 bytes"),
@@ -250,6 +270,29 @@ def test_a_secret_is_sent_and_never_kept(host: Host, tmp_path: Path) -> None:
         with pytest.raises(UsageError, match="LIBRARY_KEY") as error:
             LiveServices(load_services(str(path))[0], environment={"LIBRARY_KEY": wrong})
         assert "services.xml:2:1" in str(error.value)
+
+
+@pytest.mark.parametrize("path", ["echo", "echo-escaped", "echo-utf-16", "echo-name", "away"])
+def test_a_secret_is_hidden_however_it_is_sent_back(host: Host, tmp_path: Path, path: str) -> None:
+    host.moved = f"http://{SECRET}.example/"
+    document_path = document(tmp_path, host, f'url="URL/{path}" key="LIBRARY_KEY"/>')
+    found = send(document_path, {"LIBRARY_KEY": SECRET})
+    assert host.keys == [f"Bearer {SECRET}"]
+    assert SECRET not in repr(found)
+    assert "***" in repr(found)
+
+
+@pytest.mark.parametrize("path", ["plus", "utf-16"])
+def test_json_of_other_kinds_is_taken(host: Host, tmp_path: Path, path: str) -> None:
+    assert send(document(tmp_path, host, f'url="URL/{path}"/>')).name == "reply.library"
+
+
+def test_voicexml_gets_no_secret_back(host: Host, tmp_path: Path) -> None:
+    path = document(tmp_path, host, 'url="URL/echo" key="LIBRARY_KEY"/>')
+    given = {"to": "service:library", "method": "get", "params": {}}
+    found = asked(path, given, {"LIBRARY_KEY": SECRET})
+    assert isinstance(found, Fetched)
+    assert found.body == '{"title": "***"}'
 
 
 MODEL = """url="URL/{}" model="small" deadline="500ms"><prompt>It is {{text}}.</prompt>

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.parties.bench import Driven, Process, Visit, in_order
+from tests.parties.checked import checked
 
 HERE = Path(__file__).parent
 LONG = "This takes much longer than anybody wants to wait for it."
@@ -231,3 +233,12 @@ def test_the_robot_goes_in_the_midst_of_a_run(
             back.kill()
     fails = ("Topological Move fails", "ends walk: error.device.")
     assert in_order(rows, *fails, "Turn", "Oh!", "ends dodge: exit"), rows
+
+
+def test_the_check_before_a_run_tries_to_cancel(robot: Process, document: Path) -> None:
+    code, lines = checked("naoqi", document)
+    for what in ("topological-move", "turn", "set-speed-and-time", "say", "listen"):
+        assert re.match(r"ok .* \d+ ms +\d+ ms$", lines[what]), lines
+    lacking = {what for what, line in lines.items() if line.startswith("FAILS")}
+    assert all("no driver carries it out" in lines[what] for what in lacking), lines
+    assert code == (3 if lacking else 0)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.parties.bench import Driven, Process, Visit, in_order
+from tests.parties.checked import checked
 
 HERE = Path(__file__).parent
 ROBOT = HERE / "robot.xml"
@@ -245,3 +247,19 @@ def test_the_robot_goes_and_comes_back_in_the_midst_of_a_run(
     fails = ("Topological Move fails", "ends walk: error.device.")
     parts = (*fails, "Turn", "Oh!", "ends dodge: exit")
     assert in_order(rows, *parts), rows
+
+
+def test_the_check_before_a_run_tries_to_cancel(robot: Process) -> None:
+    code, lines = checked("ros2", ROBOT, **HOME)
+    for what in ("topological-move", "set-position", "turn", "say", "listen", "gesture nod"):
+        assert re.match(r"ok .* \d+ ms +\d+ ms$", lines[what]), lines
+    assert "by /emergency" in lines["emergency stop"]
+    robot.expect("go canceled")
+    lacking = {what for what, line in lines.items() if line.startswith("FAILS")}
+    assert code == 3
+    assert "refuses the goal" in lines["gesture hop"]
+    lacking.remove("gesture hop")
+    assert all("no driver carries it out" in lines[what] for what in lacking), lines
+    robot.write("stubborn")
+    _, lines = checked("ros2", ROBOT, **HOME)
+    assert lines["topological-move"].endswith("stops late: does it heed a cancel?")

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from functools import partial
 from typing import Any, Final
 
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
 INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
 PORT: Final = 9559
+ADDRESS: Final = re.compile(r"tcps?://(?:[\w.-]+|\[[0-9a-fA-F:.]+\])(?::(?P<port>[0-9]{1,5}))?")
 SAFE_S: Final = 2.0
 """How long to wait until goals have stopped in an emergency."""
 SHARE: Final = 0.9
@@ -58,7 +61,7 @@ class NaoqiDriver(MappedDriver):
         try:
             import qi
         except ImportError as error:
-            raise Unreachable(INSTALL.format(error)) from None
+            raise Unusable(INSTALL.format(error)) from None
         methods = self._methods()
         await self._leave()
         self._services, self._links, self._pending = {}, [], set()
@@ -205,13 +208,17 @@ class NaoqiDriver(MappedDriver):
             self._call(does.by, [])[0].add_done_callback(_heed)
 
     async def safe(self) -> None:
-        """Call all that stops something."""
-        if self.gone:
+        """Call all that stops something; over a link that seems to be lost, too."""
+        if self._session is None:
             return
         named = {does.stop for does in self.settings.does if does.stop}
         if (does := self.settings.how("stop-moving")) is not None:
             named.add(does.by)
-        calls = [self._call(name, [])[0] for name in sorted(named)]
+        with suppress(Exception) if self.gone else nullcontext():
+            await self._stop_all(named)
+
+    async def _stop_all(self, named: set[str]) -> None:
+        calls = [self._ask_method(name, [])[0] for name in sorted(named)]
         async with asyncio.timeout(SAFE_S):
             await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
 
@@ -223,6 +230,11 @@ class NaoqiDriver(MappedDriver):
         """Call a method; gives its answer, and what cancels it."""
         if self.gone:
             raise Unreachable("there is no connection")
+        return self._ask_method(name, arguments)
+
+    def _ask_method(
+        self, name: str, arguments: list[Json]
+    ) -> tuple[asyncio.Future[Any], Callable[[], object]]:
         service, _, method = name.partition(".")
         asked = getattr(self._services[service], method)(*arguments, _async=True)
         return self._future(asked), asked.cancel
@@ -267,10 +279,18 @@ def _said(error: object) -> str:
 
 
 def _url(address: str) -> str:
-    """The URL of a service directory."""
+    """The URL of a service directory.
+
+    Raises:
+        Unusable: it is none.
+    """
     url = address or "127.0.0.1"
     url = url if "://" in url else f"tcp://{url}"
-    return url if ":" in url.partition("://")[2] else f"{url}:{PORT}"
+    found = ADDRESS.fullmatch(url)
+    if found is None or not 0 < int(found["port"] or PORT) < 65_536:
+        remedy = 'Write for example address="tcp://nao.local:9559".'
+        raise Unusable(f'"{address}" is not the address of a service directory. {remedy}')
+    return url if found["port"] else f"{url}:{PORT}"
 
 
 DRIVER = NaoqiDriver

@@ -13,7 +13,7 @@ from prima.devices.profile import POINTING_MS, Profile
 from prima.devices.settings import Does, DriverSettings
 from prima.devices.settings import Pose as Place
 from prima.errors import UsageError
-from prima.live.driver import Refused, TaskDriver, Unreachable
+from prima.live.driver import Refused, TaskDriver, Unreachable, Unusable
 from prima.live.drivers.reachy.link import Link, read_address
 from prima.live.drivers.reachy.pose import LIMITS, NEAR, Pose, read_pose, read_step, wrapped
 from prima.messages import Data
@@ -65,7 +65,7 @@ class ReachyDriver(TaskDriver):
         """
         missing = [name for name in NEEDS if find_spec(name) is None]
         if missing:
-            raise Unreachable(f"The library {missing[0]} is missing: {INSTALL}")
+            raise Unusable(f"The library {missing[0]} is missing: {INSTALL}")
         await self._leave()
         self._sent = None
         self._link = Link(self._address, self.lose)

@@ -13,7 +13,7 @@ from typing import Any
 
 from prima.devices.settings import Senses
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, Sent, Use
@@ -91,7 +91,7 @@ class RclpyLink:
             import rclpy
             from rclpy.executors import SingleThreadedExecutor
         except ImportError as error:
-            raise Unreachable(SETUP.format(error)) from None
+            raise Unusable(SETUP.format(error)) from None
         self._context = rclpy.Context()
         rclpy.init(args=[], context=self._context, domain_id=self._domain)
         name = f"prima_{uuid.uuid4().hex[:8]}"

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unusable
 from prima.messages import Json
 
 LISTED = re.compile(r"(?:sequence<)?(?P<of>[\w/]+)(?:<\d+>)?(?:, \d+>|>|\[\d+\])")
@@ -25,7 +25,7 @@ def interface(name: str) -> Any:
         return getattr(importlib.import_module(f"{package}.{kind}"), of)
     except (ImportError, AttributeError):
         remedy = f"Install the package {package}, or source the workspace that has it."
-        raise Unreachable(f"the type {name} is not there. {remedy}") from None
+        raise Unusable(f"the type {name} is not there. {remedy}") from None
 
 
 def fill(message: Any, values: dict[str, Json]) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
-from prima.live.driver import Refused, Unreachable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, Sent, Use
 from prima.messages import Json
@@ -66,7 +66,7 @@ class RosbridgeLink:
         try:
             import roslibpy
         except ImportError as error:
-            raise Unreachable(INSTALL.format(error)) from None
+            raise Unusable(INSTALL.format(error)) from None
         logging.getLogger("roslibpy").setLevel(logging.CRITICAL)  # what matters is told by us
         self._uses = uses
         await self._knock(until)

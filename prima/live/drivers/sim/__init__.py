@@ -17,11 +17,14 @@ from prima.devices.goals import (
     Stand,
     Stopped,
 )
+from prima.devices.profile import Profile
+from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.language.values import BadValue, read_value
 from prima.live.driver import Driver
 from prima.messages import Sensed
 from prima.sim.body import Body
+from prima.sim.map import Map
 from prima.sim.routes import Routes
 from prima.sim.world import STEP_MS, World
 
@@ -34,6 +37,13 @@ class SimDriver(Driver):
     """
 
     kind = "sim"
+
+    def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
+        super().__init__(settings, profile, site)
+        self._later: list[tuple[int, Report]] = []
+        self._at: At | None = None
+        self._sees = Sees(False)
+        self._stand_at("")
 
     async def open(self) -> None:
         """Put the robot on the map, where it was if it was there before.
@@ -50,17 +60,20 @@ class SimDriver(Driver):
         except BadValue:
             message = f"{self.settings.place}: stopping is not a duration. Write it as 20ms."
             raise UsageError(message) from None
-        heading = site.headings.get(at, 0.0)
-        x, y = site.places.get(at, (0.0, 0.0))
-        self.world = World(site, self.profile, (x, y), heading)
-        self.world.time = self.now()
+        self._stand_at(at)
+        heading, (x, y) = self.world.heading, self.world.position
         if options.get("user", "true") == "true":
             angle = math.radians(heading)
             self.world.person = x + math.cos(angle), y + math.sin(angle)
+        self._later, self._at, self._sees = [], None, Sees(False)
+
+    def _stand_at(self, place: str) -> None:
+        """Make a body that does nothing yet."""
+        site = self.site
+        point = site.places.get(place, (0.0, 0.0))
+        self.world = World(site, self.profile, point, site.headings.get(place, 0.0))
+        self.world.time = self.now()
         self.body = Body(self.profile, self.world, Routes(site))
-        self._later: list[tuple[int, Report]] = []
-        self._at: At | None = None
-        self._sees = Sees(False)
 
     def start(self, goal: Begin) -> None:
         """Begin a goal at the latest instant."""
@@ -86,7 +99,9 @@ class SimDriver(Driver):
         self.body.take(self.world.time, Stand())
 
     async def safe(self) -> None:
-        """Stop everything."""
+        """Stop everything: wheels, arm, neck, and what is being said."""
+        for key in list(self.body.efforts):
+            self.cancel(key)
         self.body.locomotion.stand()
 
     def due(self) -> int | None:

@@ -15,7 +15,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError, one_of
 from prima.grammar.answers import Answers
-from prima.live.driver import Refused, TaskDriver, Unreachable
+from prima.live.driver import Refused, TaskDriver, Unusable
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import CHUNK, RATE, Sound, SoundCard, beep
 from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
@@ -84,7 +84,7 @@ class SpeechDriver(TaskDriver):
                 await asyncio.get_running_loop().run_in_executor(self._worker, self._load)
             except ImportError as error:
                 reason = f"what speech needs is not installed ({error})"
-                raise Unreachable(f"{reason}: pip install 'prima[speech]'") from None
+                raise Unusable(f"{reason}: pip install 'prima[speech]'") from None
         if self._sound is not None:
             self._sound.close()
         self._sound = self.sound()
@@ -175,13 +175,13 @@ class SpeechDriver(TaskDriver):
             self._speaking -= 1
             self._deaf_until = monotonic() + TAIL_S
 
-    async def check(self) -> list[str]:
+    async def check(self) -> dict[str, str]:
         """Listen for a moment, to see whether the microphone gives any sound."""
         self._loudest = -1
         await asyncio.sleep(CHECK_S)
         if self._loudest < 0:
-            return ["no sound comes from the microphone"]
-        return [] if self._loudest else ["the microphone is silent: is it switched off?"]
+            return {"microphone": "no sound comes from it"}
+        return {"microphone": "" if self._loudest else "it is silent: is it switched off?"}
 
     async def close(self) -> None:
         """Fall silent, and give back the sound card."""

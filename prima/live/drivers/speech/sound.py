@@ -11,7 +11,7 @@ from threading import Lock
 from time import monotonic
 from typing import Any, Protocol
 
-from prima.live.driver import Unreachable
+from prima.live.driver import Unreachable, Unusable
 
 RATE = 16_000
 """Samples a second."""
@@ -119,7 +119,7 @@ class SoundCard:
             import sounddevice
         except (ImportError, OSError) as error:
             message = f"there is no sound: {error}. Install PortAudio (libportaudio2)"
-            raise Unreachable(f"{message} and: pip install 'prima[speech]'") from None
+            raise Unusable(f"{message} and: pip install 'prima[speech]'") from None
 
         def heard(data: Any, *_: object) -> None:
             hear(bytes(data))
@@ -129,24 +129,20 @@ class SoundCard:
 
         form = {"samplerate": RATE, "channels": 1, "dtype": "int16", "blocksize": CHUNK // 2}
         source, sink = (int(name) if name.isdigit() else name or None for name in self._names)
+        names = ("microphone", "loudspeaker")
         ended = lambda: lost("the sound card is gone")  # noqa: E731
-        try:
-            made = (
-                (sounddevice.RawInputStream, heard, source),
-                (
-                    sounddevice.RawOutputStream,
-                    wanted,
-                    sink,
-                ),
-            )
-            for kind, callback, device in made:
+        made = (
+            (sounddevice.RawInputStream, heard, source),
+            (sounddevice.RawOutputStream, wanted, sink),
+        )
+        for name, (kind, callback, device) in zip(names, made, strict=True):
+            try:
                 stream = kind(device=device, callback=callback, finished_callback=ended, **form)
                 self._streams.append(stream)
                 stream.start()
-        except Exception as error:  # PortAudio's own, and ValueError for a name
-            self.close()
-            hint = "python -m sounddevice lists the devices"
-            raise Unreachable(f"the sound card cannot be opened: {error} ({hint})") from None
+            except Exception as error:  # PortAudio's own, and ValueError for a name
+                self.close()
+                raise Unreachable(_lacking(name, device, error)) from None
 
     def _take(self, size: int) -> bytes:
         with self._lock:
@@ -170,3 +166,12 @@ class SoundCard:
         for stream in streams:
             with suppress(Exception):  # it is gone already
                 stream.close(ignore_errors=True)
+
+
+def _lacking(name: str, device: int | str | None, error: Exception) -> str:
+    """What to do where a microphone or a loudspeaker is missing."""
+    which = (
+        f'the {name} "{device}" cannot be opened' if device is not None else f"there is no {name}"
+    )
+    remedy = f'Connect one, or choose one by <option name="{name}" value="..."/>;'
+    return f"{which} ({error}). {remedy} python -m sounddevice lists the devices."

@@ -1,0 +1,56 @@
+"""A live run as it is asked for, from the command line or from Python."""
+
+from __future__ import annotations
+
+from prima.errors import UsageError
+from prima.live.journal import read_broken
+from prima.live.resumed import go_on
+from prima.live.visit import Chosen, Settings, Visit, begin
+
+
+def check_usage(
+    chosen: Chosen, output: str | None, resume: str | None, checks: bool = False
+) -> None:
+    """Refuse what does not go together.
+
+    Args:
+        chosen: what the run is made of.
+        output: the path of a new journal.
+        resume: the path of a journal whose run goes on.
+        checks: whether the robot is to be checked instead.
+
+    Raises:
+        UsageError: there is some.
+    """
+    given = chosen.scenario or chosen.fas or chosen.eas
+    if resume is not None:
+        if given or chosen.robot or chosen.world or chosen.maps or chosen.services or output:
+            raise UsageError("--resume goes on with what the journal names; leave out the rest.")
+        return
+    if chosen.scenario and (chosen.fas or chosen.eas or chosen.world or chosen.maps):
+        message = "A scenario names its own applications and world;"
+        raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
+    if chosen.scenario and chosen.services:
+        raise UsageError("A scenario has its own services; leave out --services.")
+    if checks and not chosen.robot:
+        raise UsageError("Name the robot to be checked with --robot.")
+    if checks:
+        return
+    if not given and not chosen.world:
+        raise UsageError("Name applications with --fa and --ea, or a scenario.")
+    if not chosen.scenario and not chosen.robot:
+        hint = "documents/robots/simulated.xml is one without hardware."
+        raise UsageError(f"Name the robot with --robot; {hint}")
+
+
+def prepared(chosen: Chosen, settings: Settings, output: str | None, resume: str | None) -> Visit:
+    """A run that is ready to go: a new one, or one that goes on.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: something does not go together, is not there, or is not the one of then.
+    """
+    check_usage(chosen, output, resume)
+    if resume is not None:
+        return go_on(read_broken(resume), settings)
+    return begin(chosen, settings, output)

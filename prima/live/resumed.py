@@ -1,0 +1,111 @@
+"""How a run goes on that was cut off: on its robot, or as a scenario."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from prima.devices.loop import Loop
+from prima.errors import UsageError
+from prima.language.commands import PATIENCE_MS
+from prima.live.clock import Clock
+from prima.live.devices import LiveDevices
+from prima.live.journal import Broken, Journal, catch_up, going_on, known, lacking
+from prima.live.services import LiveServices
+from prima.live.visit import (
+    Chosen,
+    Settings,
+    Visit,
+    chosen_then,
+    in_simulation,
+    on_robot,
+    record_beside,
+    reloaded,
+)
+from prima.loading import Loaded
+from prima.loading.heads import chosen_policy
+from prima.messages import Record
+from prima.scheduler.policy import Policy
+from prima.script.prelude import START
+
+PATIENCE_S = PATIENCE_MS / 1000
+
+
+def go_on(broken: Broken, settings: Settings) -> Visit:
+    """Prepare to go on with a run that was cut off.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: a file is not the one of then, or hosts were asked that cannot be asked again.
+    """
+    head = broken.records[0]
+    chosen, loaded = chosen_then(head, broken.path), reloaded(head, broken.path)
+    data = head["data"]
+    settings = replace(
+        settings,
+        policy=data["policy"],
+        bound=data.get("bound"),
+        patience=round(data.get("patience", PATIENCE_S) * 1000),
+    )
+    policy = chosen_policy(data["policy"], loaded)
+    if chosen.scenario:
+        loop, missed = _scenario(broken, loaded, policy, settings)
+    else:
+        loaded.cast.scenario.date = data.get("date", START)
+        loop, missed = _robot(broken, chosen, loaded, policy, settings)
+    if settings.until is not None:
+        loop.until = settings.until
+    journal = Journal(broken.path, settings.sync, broken.kept)
+    record_beside(loop, journal, settings)
+    clock = Clock(settings.speed, broken.time)
+    return Visit(loop, clock, settings, head, loaded, journal, missed, True, before=broken.records)
+
+
+def _scenario(
+    broken: Broken, loaded: Loaded, policy: Policy, settings: Settings
+) -> tuple[Loop, list[Record]]:
+    """A scenario runs again to the cut in no time, its world and its user with it.
+
+    Returns:
+        The loop at the cut, and the records that the journal's last instant lacks.
+
+    Raises:
+        UsageError: a host has answered, which nobody can simulate again.
+    """
+    for number, record in enumerate(broken.records, 1):
+        if record["phase"] == "fetched" and record["data"].get("host"):
+            message = "a host has answered this scenario's run, so it cannot be run again to here."
+            raise UsageError(f"{broken.path}:{number}: {message} Begin the run anew.")
+    loop, made = in_simulation(loaded, policy, settings), []
+    try:
+        while (records := loop.advance(broken.time)) is not None:
+            made += records
+        return loop, lacking(broken, made)
+    except BaseException:
+        loop.session.close()
+        raise
+
+
+def _robot(
+    broken: Broken, chosen: Chosen, loaded: Loaded, policy: Policy, settings: Settings
+) -> tuple[Loop, list[Record]]:
+    """The session is told again what it was told; what ran was interrupted.
+
+    Returns:
+        The loop at the cut, and the records that the journal's last instant lacks.
+    """
+    start = broken.time
+    services: LiveServices = chosen.answering(settings.web)
+    loop = on_robot(loaded, policy, settings, services, start)
+    try:
+        missed = catch_up(broken, loop.session)
+    except BaseException:
+        loop.session.close()
+        raise
+    loop.go_on(start)
+    state, apps = known([*broken.records, *missed]), loop.session.apps
+    asked = [order for order in state.asked.values() if not apps[order.app].over]
+    never = {f"{one['app']}!{one['serial']}" for one in missed if one["phase"] == "send"}
+    services.go_on(asked, never)
+    assert isinstance(loop.devices, LiveDevices)
+    loop.devices.go_on(state, list(going_on(state)))
+    return loop, missed

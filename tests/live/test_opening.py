@@ -1,0 +1,197 @@
+"""Drivers that cannot be opened, or fail later: a clear sentence, a safe robot, nothing lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from prima.live.driver import Unreachable
+from prima.live.drivers.speech.sound import SoundCard
+from tests.live.test_live import HELLO, ROOT, prima
+
+DRIVERS = """
+import asyncio, sys
+from prima.live.driver import Driver, TaskDriver, Unreachable, Unusable
+
+class Well(TaskDriver):
+    kind = "well"
+    async def open(self): print("well opens", file=sys.stderr)
+    async def perform(self, goal):
+        await asyncio.sleep(1000 if goal.kind == "listen" else 0.05)
+        return {}
+    async def safe(self): print("well is safe", file=sys.stderr)
+
+class Slow(Well):
+    kind = "slow"
+    async def open(self):
+        try:
+            await asyncio.sleep(1000)
+        except asyncio.CancelledError:
+            print("slow gives up", file=sys.stderr)
+            raise
+
+class Raises(Well):
+    kind = "raises"
+    async def open(self): raise ZeroDivisionError("division by zero")
+
+class Exits(Well):
+    kind = "exits"
+    async def open(self): sys.exit(7)
+
+class Never(Well):
+    kind = "never"
+    async def ping(self): await asyncio.sleep(1000)
+
+class Lacks(Well):
+    kind = "lacks"
+    async def open(self): raise Unusable("the library wheels is missing: pip install wheels")
+
+class Made(Well):
+    kind = "made"
+    def __init__(self, *given): raise KeyError("wheels")
+
+class Samples(Well):
+    kind = "samples"
+    def sample(self, now): raise ValueError("no such joint")
+
+class Due(Well):
+    kind = "due"
+    def due(self): raise ValueError("no such joint")
+
+class Pings(Well):
+    kind = "pings"
+    done = 0
+    async def ping(self):
+        self.done += 1
+        if self.done == 2:
+            raise KeyError("battery")
+"""
+TWO = """<driver kind="{}" devices="speaker speech-recognition" {}/><driver kind="well"/>"""
+
+
+@pytest.fixture
+def stage(tmp_path: Path) -> Path:
+    (tmp_path / "hello.xml").write_text(HELLO)
+    (tmp_path / "drivers.py").write_text(DRIVERS)
+    return tmp_path
+
+
+def robot(stage: Path, drivers: str) -> str:
+    text = (ROOT / "documents" / "robots" / "simulated.xml").read_text()
+    (stage / "robot.xml").write_text(text.replace('<driver kind="sim"/>', drivers))
+    return str(stage / "robot.xml")
+
+
+def live(stage: Path, drivers: str, *more: str) -> Any:
+    words = ["--robot", robot(stage, drivers), "--driver", str(stage / "drivers.py")]
+    return prima("live", *words, "--ea", str(stage / "hello.xml"), *more)
+
+
+@pytest.mark.parametrize(
+    ("kind", "code", "told"),
+    [
+        ("raises", 3, "robot.xml:20:3: raises: the driver has failed: ZeroDivisionError: division"),
+        ("exits", 3, "robot.xml:20:3: exits: the driver has failed: SystemExit: 7"),
+        ("slow", 3, "robot.xml:20:3: slow: no answer within 0.5 s"),
+        ("never", 3, "robot.xml:20:3: never: no answer within 0.5 s"),
+        ("lacks", 2, "robot.xml:20:3: lacks: the library wheels is missing: pip install wheels"),
+        ("made", 2, "robot.xml:20:3: made: the driver has failed: KeyError: 'wheels'"),
+    ],
+)
+def test_a_driver_that_cannot_be_opened_ends_the_run(
+    kind: str, code: int, told: str, stage: Path
+) -> None:
+    journal = stage / "visit.jsonl"
+    ran = live(stage, TWO.format(kind, 'open="500ms"'), "-o", str(journal))
+    assert told in ran.stderr
+    assert ran.returncode == code, ran.stderr
+    assert "Traceback" not in ran.stderr
+    assert "defect" not in ran.stderr
+    assert not journal.exists(), "nothing has happened, so the same command may be given again"
+    if kind != "made":
+        assert "well is safe" in ran.stderr
+    again = live(stage, '<driver kind="well"/>', "-o", str(journal))
+    assert again.returncode == 0, again.stderr
+
+
+def test_no_driver_stays_half_open(stage: Path) -> None:
+    ran = live(stage, TWO.format("raises", "").replace('"well"', '"slow"'))
+    assert ran.returncode == 3
+    assert "slow gives up" in ran.stderr
+
+
+def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
+    journal = stage / "visit.jsonl"
+    ran = live(stage, '<driver kind="well"/>', "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    cut = "".join(journal.read_text().splitlines(keepends=True)[:8])
+    journal.write_text(cut)
+    (stage / "drivers.py").write_text(DRIVERS.replace('print("well opens"', '1/0; print("x"'))
+    words = ("--resume", str(journal), "--driver", str(stage / "drivers.py"))
+    on = prima("live", *words)
+    assert (on.returncode, journal.read_text()[: len(cut)]) == (3, cut)
+    (stage / "drivers.py").write_text(DRIVERS)
+    on = prima("live", *words)
+    assert on.returncode == 0, on.stderr
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("samples", "the driver has failed: ValueError: no such joint"),
+        ("due", "the driver has failed: ValueError: no such joint"),
+        ("pings", "'battery'"),
+    ],
+)
+def test_a_driver_that_fails_later_has_lost_its_robot(kind: str, told: str, stage: Path) -> None:
+    drivers = f'<driver kind="{kind}" devices="localization" heartbeat="100ms"/>'
+    waits = HELLO.replace("<exit/>", "<pause time='1s'/><exit/>")
+    (stage / "hello.xml").write_text(waits)
+    journal = stage / "visit.jsonl"
+    ran = live(stage, f'{drivers}<driver kind="well"/>', "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    assert f"{kind}: the robot is lost; it is looked for." in ran.stderr
+    assert told in journal.read_text()
+    assert "well is safe" in ran.stderr
+
+
+@pytest.mark.parametrize("name", ["microphone", "loudspeaker"])
+@pytest.mark.parametrize("chosen", ["", "USB"])
+def test_a_missing_microphone_is_named_with_its_remedy(
+    name: str, chosen: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Stream:
+        def __init__(self, **_: object) -> None:
+            """It is there."""
+
+        def start(self) -> None:
+            """Begin."""
+
+        def close(self, **_: object) -> None:
+            """End."""
+
+    class Missing(Stream):
+        def __init__(self, **_: object) -> None:
+            raise ValueError("Error querying device -1")
+
+    kinds = (Missing, Stream) if name == "microphone" else (Stream, Missing)
+    made = SimpleNamespace(RawInputStream=kinds[0], RawOutputStream=kinds[1])
+    monkeypatch.setitem(__import__("sys").modules, "sounddevice", made)
+    which = f'the {name} "USB" cannot be opened' if chosen else f"there is no {name}"
+    with pytest.raises(Unreachable, match=rf'{which} .*<option name="{name}" value="..."/>'):
+        SoundCard(chosen, chosen).open(lambda _: None, lambda _: None)
+
+
+def test_extras_that_are_missing_are_wrong_settings() -> None:
+    for name, line in (
+        ("speech", "pip install 'prima[speech]'"),
+        ("nao", "pip install 'prima[naoqi]'"),
+        ("ros2", "source /opt/ros/DISTRIBUTION/setup.bash"),
+        ("rosbridge", "pip install 'prima[rosbridge]'"),
+    ):
+        words = ("--robot", f"documents/robots/{name}.xml", "--ea", "documents/ea/guide.xml")
+        ran = prima("live", *words)
+        assert (ran.returncode, line in ran.stderr) == (2, True), ran.stderr

@@ -1,0 +1,142 @@
+"""What applications had asked when a run was killed: asked again where that does no harm."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from prima.live.journal import known
+from prima.messages import Record
+from tests.live.test_live import ROBOT, ROOT, prima
+from tests.live.test_services import ASKS, Host, document, host
+
+__all__ = ["host"]
+
+
+def killed_while_asking(folder: Path, host: Host, how: str) -> Path:
+    """The journal of a run that was killed when its service had been asked and was silent."""
+    (folder / "asks.xml").write_text(ASKS)
+    path = document(folder, host, f'url="URL/slow" deadline="20s" {how}/>')
+    journal = folder / "visit.jsonl"
+    words = ["--robot", ROBOT, "--ea", str(folder / "asks.xml"), "--services", str(path)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "live", *words, "-o", str(journal)],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    limit = time.monotonic() + 30
+    while not host.asked and time.monotonic() < limit:
+        time.sleep(0.02)
+    running.send_signal(signal.SIGKILL)
+    running.wait(30)
+    assert len(host.asked) == 1
+    return journal
+
+
+@pytest.mark.parametrize(
+    ("how", "times", "line"),
+    [
+        ('method="get"', 2, "It is I, Robot."),
+        ('idempotent="true"', 2, "It is I, Robot."),
+        ('method="post"', 1, "It fails."),
+    ],
+)
+def test_what_was_asked_is_asked_again_or_has_failed(
+    how: str, times: int, line: str, host: Host, tmp_path: Path
+) -> None:
+    journal = killed_while_asking(tmp_path, host, how)
+    on = prima("live", "--resume", str(journal), "--until", "30s")
+    assert on.returncode == 0, on.stderr
+    assert line in on.stdout
+    assert len(host.asked) == times
+    assert prima("replay", str(journal)).returncode == 0
+    if times == 1:
+        errors = [r for r in map(json.loads, journal.read_text().splitlines()) if r.get("event")]
+        (told,) = [r["data"]["message"] for r in errors if r["event"] == "error.service.library"]
+        assert "cut off" in told
+
+
+def test_what_the_cut_left_out_of_its_instant_was_never_asked(host: Host, tmp_path: Path) -> None:
+    journal = killed_while_asking(tmp_path, host, 'method="post"')
+    lines = journal.read_text().splitlines(keepends=True)
+    sends = next(i for i, text in enumerate(lines) if '"phase":"send"' in text)
+    journal.write_text("".join(lines[:sends]))
+    on = prima("live", "--resume", str(journal), "--until", "30s")
+    assert on.returncode == 0, on.stderr
+    assert "It is I, Robot." in on.stdout
+    assert len(host.asked) == 2
+
+
+def sends(serial: int, to: str = "library", app: str = "a", **more: object) -> Record:
+    data = {"to": to, **more}
+    return {
+        "time": 1,
+        "phase": "send",
+        "actor": "robot",
+        "app": app,
+        "serial": serial,
+        "data": data,
+    }
+
+
+def tells(event: str, app: str = "a") -> Record:
+    given = {"time": 2, "phase": "event", "actor": "environment", "inbound": True}
+    return {**given, "event": event, "app": app, "serial": 9}
+
+
+@pytest.mark.parametrize(
+    ("records", "left"),
+    [
+        ([sends(1), sends(2)], ["a!1", "a!2"]),
+        ([sends(1), sends(2), tells("reply.library")], ["a!2"]),
+        ([sends(1), sends(2), tells("error.service.library")], ["a!2"]),
+        ([sends(1), tells("reply.library", "b")], ["a!1"]),
+        ([sends(1), tells("reply.archive")], ["a!1"]),
+        ([sends(1, method="get"), {**tells("x"), "phase": "fetched", "data": {"serial": 1}}], []),
+        ([sends(1, transfer="bridge"), {**tells("x"), "phase": "transferred", "serial": 1}], []),
+        ([sends(1, transfer="bridge"), sends(2, transfer="over", call=1)], []),
+        ([sends(1), {**tells("x"), "phase": "load", "outcome": "", "data": {}}], []),
+    ],
+)
+def test_what_has_no_answer_is_known(records: list[Record], left: list[str]) -> None:
+    assert list(known(records).asked) == left
+
+
+# Scenarios ----------------------------------------------------------------------------------
+
+SCENARIO = "documents/scenarios/touched-on-the-way.xml"
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.999])
+def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(
+    share: float, tmp_path: Path
+) -> None:
+    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
+    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
+    text = whole.read_text()
+    ends = text.index("\n") + 1
+    journal.write_text(text[: max(int(len(text) * share), ends)])
+    on = prima("live", "--speed", "1000", "--resume", str(journal))
+    assert on.returncode == 0, on.stderr
+    assert journal.read_text() == text
+    assert prima("replay", str(journal)).returncode == 0
+
+
+def test_a_scenario_that_a_host_has_answered_does_not_go_on(tmp_path: Path) -> None:
+    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
+    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
+    first = whole.read_text().splitlines(keepends=True)[0]
+    fetched = {"time": 0.0, "phase": "fetched", "actor": "environment", "inbound": True}
+    fetched |= {"app": "guide", "data": {"serial": 1, "uri": "http://localhost/", "host": True}}
+    journal.write_text(first + json.dumps(fetched) + "\n")
+    on = prima("live", "--resume", str(journal))
+    assert on.returncode == 2
+    assert "visit.jsonl:2: a host has answered this scenario's run" in on.stderr
+    assert journal.read_text() == first + json.dumps(fetched) + "\n"
