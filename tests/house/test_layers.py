@@ -138,7 +138,7 @@ INSIDE = {
         {"__init__"},
     ],
     "certificate": [{"model"}, {"finding", "summary"}, {"__init__"}],
-    "report": [{"lanes", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
+    "report": [{"lanes", "parts", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
     "results": [
         {"statistics"},
         {"__init__"},
