@@ -17,8 +17,8 @@ Values = NDArray[np.float64]
 Groups = NDArray[np.int64]
 
 SEED = 1
-RESAMPLES = 2_000
-MOST_DISTINCT = 1_000
+RESAMPLES = 1_000
+MOST_DISTINCT = 500
 """Distinct values of a group up to which its interval is bootstrapped."""
 LEVEL = 0.95
 LEAST_GROUP = 5
@@ -118,7 +118,7 @@ def interval(known: Values) -> tuple[float, float, bool]:
 
     It is the percentile bootstrap's. Drawing values with replacement is drawing how often each
     distinct value comes, so equal values cost nothing. Where there are too many distinct ones, the
-    normal distribution gives the same to the digits that are shown.
+    normal distribution gives nearly the same.
     """
     distinct, counts = np.unique(known, return_counts=True)
     size = len(known)

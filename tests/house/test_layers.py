@@ -140,7 +140,12 @@ INSIDE = {
     "certificate": [{"model"}, {"finding", "summary"}, {"__init__"}],
     "report": [{"lanes", "parts", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
     "results": [
-        {"statistics"},
+        {"reading", "statistics"},
+        {"data"},
+        {"analysis", "ordermap"},
+        {"figures"},
+        {"tables"},
+        {"page"},
         {"__init__"},
     ],
     "testing": [
@@ -200,7 +205,7 @@ ALONE = {
     "_quickjs": {"script.engine", "script.sandbox", "script.syntax"},
     "pydantic": {"transcript.record", "transcript.lines", "experiments.studyfile"},
     "pyarrow": {"experiments.table"},
-    "scipy": {"experiments.design", "results.statistics"},
+    "scipy": {"experiments.design", "results"},
     "click": {"cli"},
     "mcap": {"exports.mcap"},
     "pygls": {"lsp.protocol", "lsp.server"},
