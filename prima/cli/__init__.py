@@ -27,7 +27,7 @@ COMMANDS = {
     "test": "Check what scenarios expect; cover documents.",
     "show": "Print a transcript as a table.",
     "diff": "Compare two runs by behaviour.",
-    "report": "Show a run, or compare two, as a page for the browser.",
+    "report": "Show a run, two compared, or a sweep as a page for the browser.",
     "graph": "Draw an application's states, or a run's trees and streams.",
     "replay": "Run a transcript's inbound events again.",
     "export": "Write a transcript for ELAN, Praat, a player, Foxglove, a table.",

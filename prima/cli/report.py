@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import sys
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.exceptions import Exit
 
 from prima.cli.common import (
+    Choice,
     check_output,
     suggesting,
     tell,
@@ -16,16 +19,19 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.cli.runs import Run, is_markup, run_of
-from prima.errors import UsageError
+from prima.errors import UsageError, counted, did_you_mean, one_of
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
+    from prima.results.figures import Figure
 
 
 @click.command()
-@click.argument("runs", metavar="TRANSCRIPT|SCENARIO...", nargs=-1, type=click.Path())
-@click.option("-o", "--output", type=click.Path(), help="Write the page here.")
+@click.argument("runs", metavar="TRANSCRIPT|SCENARIO...|TABLE", nargs=-1, type=click.Path())
+@click.option(
+    "-o", "--output", type=click.Path(), help="Write the page here, or a folder for figures."
+)
 @click.option(
     "--policy",
     "policies",
@@ -40,23 +46,52 @@ if TYPE_CHECKING:
     type=click.Path(),
     help="The scenario of a transcript: adds the map and the user's path. Twice for two.",
 )
+@click.option(
+    "--by",
+    "factors",
+    metavar="FACTOR",
+    multiple=True,
+    help="A factor of a sweep, for its map of orders; once or twice.",
+)
+@click.option(
+    "--to",
+    "form",
+    type=Choice(["html", "svg"]),
+    default="html",
+    help="A page (html), or a sweep's figures as files (svg).",
+)
+@click.option("--figure", metavar="NAME", help="With --to svg: this figure alone, as a measure.")
 def report(
     runs: tuple[str, ...],
     output: str | None,
     policies: tuple[str, ...],
     scenarios: tuple[str, ...],
+    factors: tuple[str, ...],
+    form: str,
+    figure: str | None,
 ) -> None:
-    """Show a run as a page for the browser, or compare two.
+    """Show a run as a page for the browser, compare two, or show the table of a sweep.
 
     A scenario is run first. The page has a timeline, the map with robot and user, and
-    the transcript with the reasons for every row. It is one file and needs no network.
+    the transcript with the reasons for every row. Of a sweep's table, or the folder that
+    has it, it shows distributions, tests and a map of orders. It is one file and needs no
+    network.
 
     \b
     prima report documents/scenarios/navigate-alone.xml -o navigate.html
     prima report visit.xml --policy prima --policy fifo -o both.html
     prima report mediated.jsonl fifo.jsonl -o both.html
     prima report fifo.jsonl --scenario documents/scenarios/navigate-alone.xml -o fifo.html
+    prima report sweep.csv -o sweep.html
+    prima report sweep.csv --to svg -o figures/
     """
+    if any(_is_table(one) for one in runs):
+        if len(runs) > 1 or policies or scenarios:
+            raise UsageError("Of a sweep, name its table alone, without --policy and --scenario.")
+        _report_table(runs[0], output, factors, form, figure)
+        return
+    if factors or figure or form != "html":
+        raise UsageError("--by, --to svg and --figure are for the table of a sweep.")
     from prima.report import make
 
     if not runs:
@@ -74,6 +109,79 @@ def report(
     transcripts = [run.transcript for run in shown]
     write_page(make(transcripts, _scenarios(shown, maps)), output)
     tell_cut(*transcripts)
+
+
+def _is_table(path: str) -> bool:
+    """Whether a path names a table, or a folder that may have one."""
+    named = Path(path)
+    return named.suffix.lower() in (".csv", ".parquet") or named.is_dir()
+
+
+def _report_table(
+    path: str, output: str | None, factors: tuple[str, ...], form: str, figure: str | None
+) -> None:
+    """Write the page of a sweep's table, or its figures.
+
+    Raises:
+        UsageError: it is no such table, or nothing can be written.
+    """
+    from prima import results
+
+    if len(factors) > 2:
+        raise UsageError("--by: the map of orders has at most two factors.")
+    if figure is not None and form != "svg":
+        raise UsageError("--figure needs --to svg.")
+    if output is None and sys.stdout.isatty():
+        raise UsageError("Name the file to write: -o sweep.html, or a folder: --to svg -o figures.")
+    output = None if output == "-" else output
+    if output is not None:
+        check_output(output, "page", *results.files(path))
+    data = results.read(path)
+    if form == "html":
+        folder = Path(output).parent if output is not None else Path()
+        write_page(results.make(data, folder, factors), output)
+    else:
+        _write_figures(results.draw(data, factors), output, figure)
+    if data.sheet.cut:
+        tell(f"prima: {data.sheet.path}: the table is not whole: {data.sheet.cut}.")
+        raise Exit(2)
+
+
+def _write_figures(figures: list[Figure], output: str | None, name: str | None) -> None:
+    """Write all figures into a folder, or the one that is named.
+
+    Raises:
+        UsageError: there is none of that name, or nothing can be written.
+    """
+    from prima.loading.writing import write_whole
+
+    if name is not None:
+        found = next((one for one in figures if one.name == name), None)
+        if found is None:
+            names = [one.name for one in figures]
+            listed = one_of(names) if names else "none, as no measure differs between runs"
+            message = (
+                f'--figure: no figure "{name}"; there is {listed}. {did_you_mean(name, names)}'
+            )
+            raise UsageError(message.strip())
+        if output is None:
+            write_for_programs()
+            click.echo(found.whole(), nl=False)
+            return
+        write_whole(output, found.whole())
+        tell(f"{output}: written")
+        return
+    if output is None:
+        raise UsageError("Name the folder for the figures: -o figures, or one: --figure NAME.")
+    folder = Path(output)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise UsageError(f"{output}: cannot be written: {told}.") from None
+    for one in figures:
+        write_whole(folder / f"{one.file}.svg", one.whole())
+    tell(f"{output}: {counted(len(figures), 'figure')}")
 
 
 def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:

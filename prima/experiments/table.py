@@ -209,3 +209,24 @@ def _batches(
     left = iter(rows)
     while batch := list(islice(left, BATCH)):
         yield RecordBatch.from_pylist(batch, schema=schema)
+
+
+def parquet_columns(path: Path, most: int) -> dict[str, list[Any]]:
+    """The columns of a Parquet file, as values of Python.
+
+    Raises:
+        UsageError: pyarrow is not installed.
+        ValueError: it is no such file, or has more rows than ``most``.
+    """
+    arrow = pyarrow_module()
+    from pyarrow.parquet import ParquetFile
+
+    try:
+        with ParquetFile(path) as file:
+            count: int = file.metadata.num_rows
+            if count > most:
+                raise ValueError(f"it has {count} rows, and {most} are read at most")
+            read = file.read()
+            return {name: read.column(name).to_pylist() for name in read.column_names}
+    except (arrow.ArrowException, KeyError) as error:
+        raise ValueError(f"it is no Parquet file that can be read: {error}") from None

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from html import escape
-from importlib.resources import files
 from string import Template
 from typing import Any
 
 from prima.errors import counted
 from prima.errors.visible import visible
-from prima.messages import Json
 from prima.report.lanes import Bar, Lanes
+from prima.report.parts import json_text, part, policy_of, style_of, text
 from prima.report.view import View
 from prima.scheduler.policy import BASELINES
 from prima.transcript import colours
@@ -24,6 +19,7 @@ from prima.transcript.diff import MARKS, Change, Difference, compare, remark, su
 from prima.transcript.row import Row
 from prima.transcript.rules import RULES
 
+ROOM = "prima.report"
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"
 LONGEST_NAME = 200
@@ -44,15 +40,12 @@ def page(views: Sequence[View]) -> str:
     """The page of one run, or of two with what differs."""
     difference = compare(views[0].rows, views[1].rows) if len(views) == 2 else None
     shades = colours.colours(app for view in views for app in view.lanes.every)
-    style, script = _style(), _part("report.js")
+    style, script = style_of(ROOM, "report.css"), part(ROOM, "report.js")
     title = " and ".join(view.title for view in views)
     body = {
         "title": text(title),
         "heading": text("Two runs compared" if difference else title),
-        "policy": (
-            "default-src 'none'; base-uri 'none'; form-action 'none';"
-            f" style-src '{_hash(style)}'; script-src '{_hash(script)}'"
-        ),
+        "policy": policy_of(style, script),
         "style": style,
         "script": script,
         "kind": "two" if difference else "one",
@@ -65,46 +58,7 @@ def page(views: Sequence[View]) -> str:
         ),
         "data": json_text(_data(views, difference, shades)),
     }
-    return Template(_part("template.html")).substitute(body)
-
-
-def text(what: str) -> str:
-    """Text that cannot be taken for markup."""
-    return escape(visible(what))
-
-
-def json_text(data: Json | dict[str, Any]) -> str:
-    """JSON that can stand in a script element: nothing in it ends or opens one."""
-    made = json.dumps(_seen(data), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    for letter in "<>&\u2028\u2029":
-        made = made.replace(letter, f"\\u{ord(letter):04x}")
-    return made
-
-
-def _part(name: str) -> str:
-    return (files("prima.report") / name).read_text(encoding="utf-8")
-
-
-def _style() -> str:
-    """The style, with the colours of applications put in."""
-    style = _part("report.css")
-    for name, dark in (("light", False), ("dark", True)):
-        made = "".join(
-            f"--fill{index}: {colours.fill(index, dark)}; --line{index}: {colours.stroke(index, dark)}; "
-            for index in range(len(colours.PALETTE))
-        )
-        style = style.replace(f"/* applications: {name} */", made.strip())
-    classes = "".join(
-        f".fill{n} {{ fill: var(--fill{n}); stroke: var(--line{n}); }} .line{n} {{ stroke: var(--line{n}); }}"
-        f" .app.app{n} {{ border-color: var(--line{n}); }}\n"
-        for n in range(len(colours.PALETTE))
-    )
-    return style.replace("/* applications */", classes.strip())
-
-
-def _hash(content: str) -> str:
-    """A source of the page's own, as a content security policy names it."""
-    return "sha256-" + base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
+    return Template(part(ROOM, "template.html")).substitute(body)
 
 
 # Heads ---------------------------------------------------------------------------------------
@@ -336,15 +290,6 @@ def _time(row: Row | None) -> str:
 
 
 # Data ----------------------------------------------------------------------------------------
-
-
-def _seen(data: Any) -> Any:
-    """Data in which every text is one that may be shown."""
-    if isinstance(data, str):
-        return visible(data, "\n")
-    if isinstance(data, dict):
-        return {visible(key): _seen(value) for key, value in data.items()}
-    return [_seen(one) for one in data] if isinstance(data, list | tuple) else data
 
 
 def _data(

@@ -221,7 +221,7 @@ def test_json_means_the_same() -> None:
 
 def test_no_text_in_the_data_of_a_page_turns_others() -> None:
     """Wherever in it: the reasons that a record gives as well."""
-    from prima.report.page import json_text
+    from prima.report.parts import json_text
 
     data = {"runs": [["a", {"by\u2066": "x\u202ey\x1b"}, 1.5, None, True]]}
     assert json_text(data) == '{"runs":[["a",{"by\ufffd":"x\ufffdy\ufffd"},1.5,null,true]]}'

@@ -31,7 +31,14 @@ def until(page: Page, condition: str, old: object = None) -> None:
 class Opened:
     """A page with all that it complained of and asked for."""
 
-    def __init__(self, browser: Browser, path: Path, size: tuple[int, int], **more: Any) -> None:
+    def __init__(
+        self,
+        browser: Browser,
+        path: Path,
+        size: tuple[int, int],
+        wait: str = "#play",
+        **more: Any,
+    ) -> None:
         viewport = {"width": size[0], "height": size[1]}
         self.context = browser.new_context(viewport=viewport, **more)  # type: ignore[arg-type]
         self.page: Page = self.context.new_page()
@@ -41,7 +48,7 @@ class Opened:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.goto(path.as_uri())
-        self.page.wait_for_selector("#play")
+        self.page.wait_for_selector(wait)
 
     def close(self) -> None:
         assert self.complaints == []

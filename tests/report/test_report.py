@@ -21,7 +21,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.report import MOST_ROWS, make
 from prima.report.lanes import make_lanes
-from prima.report.page import json_text, text
+from prima.report.parts import json_text, text
 from prima.report.view import language
 from prima.report.walk import Walk, reported, walk_of
 from prima.transcript.lines import read_lines

@@ -1,0 +1,252 @@
+"""A table as factors, measures and orders: arrays of numbers, and levels with their names."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from prima.errors import UsageError
+from prima.errors.visible import visible
+from prima.experiments.table import Column
+from prima.results.reading import Sheet
+from prima.results.statistics import Groups, Values
+
+NOTHING = "(nothing)"
+"""The level of runs in which nothing is written for a factor."""
+LONGEST = 80
+"""Letters of a level's or a column's name that are shown."""
+MOST_VALUE = 1e15
+"""Largest value of a measure or a factor."""
+MOST_FACTORS = 10
+"""Factors of which figures, tests and maps are made."""
+REPETITION = "seed"
+"""The factor that repeats runs with other draws."""
+LINK = re.compile(r"[\w][\w .()+-]*/orders/[0-9a-f]{1,64}\.jsonl")
+"""How the path of an order's transcript looks; nothing else becomes a link."""
+
+
+@dataclass(frozen=True, slots=True)
+class Levels:
+    """The levels of a factor, or ranges of its values, and which of them each run has."""
+
+    names: list[str]
+    codes: Groups
+    ranges: bool = False
+    """Whether each is a range of values that hold equally many runs."""
+
+
+class Factor:
+    """A factor: its column, and its value in each run."""
+
+    def __init__(self, column: Column, cells: Sequence[Any]) -> None:
+        self.column = column
+        self.name = shown(column.name)
+        self.numeric = column.type != "string"
+        self.values: Values = _numbers(column, cells) if self.numeric else np.empty(0)
+        self.words: list[str] = [] if self.numeric else [str(one or "") for one in cells]
+
+    @cached_property
+    def distinct(self) -> list[Any]:
+        """Its values: numbers in their order, words in that of the runs."""
+        if not self.numeric:
+            return list(dict.fromkeys(self.words))
+        known = self.values[~np.isnan(self.values)]
+        return [float(one) for one in np.unique(known)]
+
+    @cached_property
+    def missing(self) -> int:
+        """The number of runs in which nothing is written for it."""
+        return int(np.isnan(self.values).sum()) if self.numeric else self.words.count("")
+
+    @property
+    def count(self) -> int:
+        """The number of its levels, nothing among them."""
+        return len(self.distinct) + (1 if self.numeric and self.missing else 0)
+
+    def levels(self, most: int, ranges: int) -> Levels:
+        """Its levels; of a numeric factor with more than ``most``, so many ranges.
+
+        Of words with more levels, those behind are one level.
+        """
+        if not self.numeric:
+            return self._worded(most)
+        absent = np.isnan(self.values)
+        if len(self.distinct) > most:
+            edges = np.unique(np.quantile(self.values[~absent], np.linspace(0, 1, ranges + 1)))
+            codes = np.searchsorted(edges[1:-1], self.values, side="right")
+            ends = [number(one) for one in edges]
+            names = [f"{low} to {high}" for low, high in pairwise(ends)]
+        else:
+            codes = np.searchsorted(np.array(self.distinct), self.values)
+            names = [number(one) for one in self.distinct]
+        codes = np.where(absent, len(names), codes).astype(np.int64)
+        if self.missing:
+            names.append(NOTHING)
+        return Levels(names, codes, len(self.distinct) > most)
+
+    def _worded(self, most: int) -> Levels:
+        names = self.distinct
+        place = {name: index for index, name in enumerate(names)}
+        codes = np.array([place[one] for one in self.words], dtype=np.int64)
+        told = [shown(one) or NOTHING for one in names]
+        if len(names) > most:
+            told = [*told[: most - 1], f"{len(names) - most + 1} others"]
+            codes = np.minimum(codes, most - 1)
+        return Levels(told, codes)
+
+
+@dataclass(slots=True)
+class Measure:
+    """A measure, and its value in each run."""
+
+    column: Column
+    values: Values
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        self.name = shown(self.column.name)
+
+    @property
+    def unit(self) -> str:
+        """Its unit, with a space before it; nothing for a count."""
+        return f" {shown(self.column.unit)}" if self.column.unit else ""
+
+    @property
+    def constant(self) -> bool:
+        """Whether all its known values are the same, or there is none."""
+        known = self.values[~np.isnan(self.values)]
+        return not len(known) or bool(known.min() == known.max())
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """An order of events: its number by how often it came, and its transcript."""
+
+    number: int
+    signature: str
+    runs: int
+    first: str
+    """The number of the first run that had it."""
+    transcript: str
+    """Its path from the table's folder; empty if there is none."""
+
+    @property
+    def label(self) -> str:
+        """What it is called in the map."""
+        return str(self.number) if self.signature else "–"
+
+
+@dataclass
+class Data:
+    """All that a page is made from."""
+
+    sheet: Sheet
+    factors: list[Factor]
+    """All of them."""
+    measures: list[Measure]
+    orders: list[Order]
+    """The most frequent first."""
+    order_codes: Groups
+    """The place of each run's order among them."""
+    notes: list[str] = field(default_factory=list)
+
+    @cached_property
+    def varied(self) -> list[Factor]:
+        """The factors that have more than one level; seeds are repetitions."""
+        found = [one for one in self.factors if one.count > 1 and one.column.name != REPETITION]
+        return found[:MOST_FACTORS]
+
+    def __len__(self) -> int:
+        return len(self.sheet)
+
+
+def data_of(sheet: Sheet) -> Data:
+    """The data of a table.
+
+    Raises:
+        UsageError: a cell holds no number where there should be one.
+    """
+    factors, measures = [], []
+    try:
+        for column in sheet.columns:
+            cells = sheet.cells[column.name]
+            if column.role == "factor":
+                factors.append(Factor(column, cells))
+            elif column.role == "measure" or column.name == "expects_failed":
+                measures.append(Measure(column, _numbers(column, cells)))
+    except ValueError as error:
+        raise UsageError(f"{sheet.path}: {error}") from None
+    orders, codes = _orders(sheet)
+    made = Data(sheet, factors, measures, orders, codes, list(sheet.notes))
+    several = sum(one.count > 1 and one.column.name != REPETITION for one in factors)
+    if several > MOST_FACTORS:
+        made.notes.append(f"Of {several} factors the first {MOST_FACTORS} are shown and tested.")
+    return made
+
+
+def _numbers(column: Column, cells: Sequence[Any]) -> Values:
+    """The numbers of a column; NaN for what is missing.
+
+    Raises:
+        ValueError: a cell holds none, with its place.
+    """
+    made = np.empty(len(cells))
+    for index, cell in enumerate(cells):
+        if cell is None or cell == "":
+            made[index] = np.nan
+            continue
+        try:
+            made[index] = value = float(cell)
+        except (TypeError, ValueError, OverflowError):
+            value = np.inf
+        if not abs(value) <= MOST_VALUE:
+            told = f'"{shown(str(cell))}" is no number, or too large a one'
+            name = visible(column.name[:LONGEST])
+            raise ValueError(f'row {index + 1}, column "{name}": {told}; mend the table.')
+    return made
+
+
+def _orders(sheet: Sheet) -> tuple[list[Order], Groups]:
+    """The orders of a table, and that of each run."""
+    cells = [str(one or "") for one in sheet.cells["order"]]
+    runs, paths = sheet.cells["run"], sheet.cells.get("transcript", [""] * len(cells))
+    counts = Counter(cells)
+    firsts = {one: index for index, one in reversed(list(enumerate(cells)))}
+    ranked = sorted(counts, key=lambda one: (one == "", -counts[one], firsts[one]))
+    made = []
+    for place, signature in enumerate(ranked, 1):
+        first = firsts[signature]
+        path = str(paths[first] or "")
+        safe = signature and LINK.fullmatch(path) and ".." not in path
+        count = counts[signature]
+        first_run = shown(str(runs[first]))
+        made.append(Order(place, signature, count, first_run, path if safe else ""))
+    places = {one: index for index, one in enumerate(ranked)}
+    return made, np.array([places[one] for one in cells], dtype=np.int64)
+
+
+def shown(text: str) -> str:
+    """A name as it is shown: cut, and without what would turn or hide other text."""
+    return visible(text if len(text) <= LONGEST else text[:LONGEST] + "…")
+
+
+def number(value: float) -> str:
+    """A number with four digits, or with all before its point."""
+    if value == 0 or not np.isfinite(value):
+        return "0" if value == 0 else "–"
+    if abs(value) >= 1000:
+        return f"{value:.0f}"
+    text = f"{value:.4g}"
+    return text if "e" in text or "." not in text else text.rstrip("0").rstrip(".")
+
+
+def probability(p: float) -> str:
+    """A p-value with two digits."""
+    return "< 1e-300" if p < 1e-300 else f"{p:.2g}"

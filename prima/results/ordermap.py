@@ -1,0 +1,65 @@
+"""The map of orders: which order most runs have, at each level of one factor or of two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from prima.results.data import Data, Levels
+from prima.results.statistics import Groups
+
+MOST_LEVELS = 40
+"""Levels of a factor that the map shows one by one."""
+RANGES = 20
+MOST_LINKED = 500
+"""The most frequent orders, which have links and are told apart by the page."""
+
+Cell = tuple[int, int, int, int]
+"""The most frequent order's place, its runs, all runs, and the number of orders."""
+
+
+@dataclass(frozen=True, slots=True)
+class Map:
+    """Cells by two factors, row by row; None where no run was made."""
+
+    rows: Levels
+    columns: Levels | None
+    """None if there is one factor."""
+    cells: list[Cell | None]
+
+
+def order_map(data: Data, rows: Levels, columns: Levels | None) -> Map:
+    """The map of orders over one factor or two."""
+    wide = len(columns.names) if columns else 1
+    places = rows.codes * wide + (columns.codes if columns else 0)
+    return Map(rows, columns, _cells(places, data.order_codes, len(rows.names) * wide))
+
+
+def _cells(places: Groups, orders: Groups, count: int) -> list[Cell | None]:
+    """For each place its most frequent order; of two the one that is more frequent elsewhere."""
+    many = int(orders.max()) + 1
+    pairs, runs = np.unique(places * many + orders, return_counts=True)
+    found: list[Cell | None] = [None] * count
+    for pair, times in zip(pairs.tolist(), runs.tolist(), strict=True):
+        place, order = divmod(pair, many)
+        earlier = found[place]
+        if earlier is None:
+            found[place] = (order, times, times, 1)
+            continue
+        best, most, total, distinct = earlier
+        if times > most:
+            best, most = order, times
+        found[place] = (best, most, total + times, distinct + 1)
+    return found
+
+
+def map_levels(data: Data) -> list[Levels]:
+    """The levels of each factor that is varied, as the map shows them."""
+    return [one.levels(MOST_LEVELS, RANGES) for one in data.varied]
+
+
+def chosen(data: Data) -> tuple[int, ...]:
+    """The factors of the first map: the two with most levels. A page is longer than wide."""
+    by_count = sorted(range(len(data.varied)), key=lambda one: -data.varied[one].count)
+    return tuple(by_count[:2])

@@ -1,0 +1,259 @@
+"""A sweep's table as it was written, and the dictionary beside it.
+
+Nothing here trusts the files: they may be cut off, edited in a spreadsheet, or no table at all.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from prima.errors import UsageError, did_you_mean, one_of
+from prima.experiments.sweep import PLAN, ROWS
+from prima.experiments.table import HEAD, MEANINGS, MEASURES, OUTCOMES, Column, parquet_columns
+
+DICTIONARY = "dictionary.json"
+SUFFIXES = (".csv", ".parquet")
+REQUIRED = ("run", "exit", "order")
+ROLES = ("id", "factor", "outcome", "measure")
+MOST_ROWS = 1_000_000
+MOST_COLUMNS = 1_000
+MOST_BESIDE = 10_000_000
+"""Maximum length of a dictionary or plan (characters)."""
+
+
+@dataclass(slots=True)
+class Sheet:
+    """A table: the columns that are known, and their cells."""
+
+    path: Path
+    columns: list[Column]
+    cells: dict[str, list[Any]]
+    """By columns: texts in a CSV file, values in a Parquet file."""
+    plan: dict[str, Any] = field(default_factory=dict)
+    """What determined the sweep, as the file beside it says; empty if there is none."""
+    cut: str = ""
+    """Why the table is not whole."""
+    notes: list[str] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.cells["run"])
+
+
+def read(path: str | Path) -> Sheet:
+    """Read a sweep's table, or the one in a folder, or beside it.
+
+    Raises:
+        UsageError: it is no such table, or cannot be read.
+    """
+    table = table_of(Path(path))
+    try:
+        cut = ""
+        if table.suffix == ".parquet":
+            cells = parquet_columns(table, MOST_ROWS)
+        else:
+            cells, cut = _read_csv(table)
+    except OSError as error:
+        raise UsageError(f"{table}: cannot be read: {error.strerror or error}.") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{table}: not the table of a sweep: it is not UTF-8.") from None
+    except ValueError as error:
+        raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
+    _check(table, cells)
+    sheet = Sheet(table, [], cells, _beside(table, PLAN) or {}, cut)
+    sheet.columns = _columns(sheet)
+    if not any(one.role == "measure" for one in sheet.columns):
+        raise UsageError(f"{table}: not the table of a sweep: it has no column of a measure.")
+    if not len(sheet):
+        more = f" ({cut})" if cut else ""
+        raise UsageError(f"{table}: the table has no rows{more}; make its runs by prima sweep.")
+    return sheet
+
+
+def table_of(path: Path) -> Path:
+    """The table that a path means: itself, the one in a folder, or the one beside it.
+
+    Raises:
+        UsageError: there is none, or more than one.
+    """
+    if not path.is_dir():
+        if path.suffix not in SUFFIXES:
+            raise UsageError(f"{path}: name a table that ends with {one_of(SUFFIXES)}.")
+        return path
+    if (path / DICTIONARY).is_file():
+        beside = [path.with_suffix(one) for one in SUFFIXES]
+        named = (_beside(path, DICTIONARY) or {}).get("path")
+        if isinstance(named, str) and Path(named).name == named:
+            beside.insert(0, path.parent / named)
+        for one in beside:
+            if one.suffix in SUFFIXES and one.is_file():
+                return one
+    try:
+        found = sorted(one for one in path.iterdir() if one.suffix in SUFFIXES)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}.") from None
+    found = [one for one in found if one.is_file() and one.name != ROWS]
+    if not found:
+        what = f"no table in this folder ({one_of(SUFFIXES)})"
+        raise UsageError(f"{path}: {what}; make one: prima sweep SCENARIO -o sweep.csv.")
+    if len(found) > 1:
+        listed = ", ".join(one.name for one in found[:5])
+        raise UsageError(f"{path}: there are {len(found)} tables here; name one: {listed}.")
+    return found[0]
+
+
+def files_of(table: Path) -> list[Path]:
+    """The files that a page of a table is made from."""
+    folder = table.with_suffix("")
+    return [table, folder / DICTIONARY, folder / PLAN, folder / ROWS]
+
+
+def _read_csv(path: Path) -> tuple[dict[str, list[Any]], str]:
+    """The cells of a CSV file, and why it is not whole.
+
+    Raises:
+        ValueError: it is no table.
+    """
+    ended = _is_ended(path)
+    with path.open(encoding="utf-8-sig", newline="") as stream:
+        rows = _rows(stream)
+        head = next(rows, (0, []))[1]
+        if len(head) > MOST_COLUMNS:
+            raise ValueError(f"it has {len(head)} columns, and {MOST_COLUMNS} are read at most")
+        if len(head) == 1 and ";" in head[0]:
+            raise ValueError("its cells stand between ';'; save it with ',' between them")
+        _check_head(head)
+        columns: list[list[str]] = [[] for _ in head]
+        last: tuple[int, list[str]] | None = None
+        for line, row in rows:
+            if last is not None:
+                _append(columns, *last)
+            last = (line, row)
+            if len(columns[0]) >= MOST_ROWS:
+                raise ValueError(f"it has more than {MOST_ROWS} rows")
+        cut = ""
+        if last is not None and ended:
+            _append(columns, *last)
+        elif last is not None:
+            cut = f"line {last[0]} has no end, so it is left out"
+    return dict(zip(head, columns, strict=True)), cut
+
+
+def _append(columns: list[list[str]], line: int, row: list[str]) -> None:
+    if len(row) != len(columns):
+        raise ValueError(f"line {line} has {len(row)} cells, and its head has {len(columns)}")
+    for column, text in zip(columns, row, strict=True):
+        column.append(text)
+
+
+def _rows(stream: IO[str]) -> Iterator[tuple[int, list[str]]]:
+    """The rows that are not empty, with their lines."""
+    reader = csv.reader(stream)
+    try:
+        for row in reader:
+            if row:
+                yield reader.line_num, row
+    except csv.Error as error:
+        raise ValueError(f"line {reader.line_num}: {error}") from None
+
+
+def _is_ended(path: Path) -> bool:
+    """Whether a file's last line has an end."""
+    with path.open("rb") as stream:
+        if stream.seek(0, 2) == 0:
+            raise ValueError("it is empty")
+        stream.seek(-1, 2)
+        return stream.read(1) in (b"\n", b"\r")
+
+
+def _check_head(head: list[str]) -> None:
+    twice = next((one for one in head if head.count(one) > 1), None)
+    if twice is not None:
+        raise ValueError(f'it has two columns "{twice[:100]}"')
+
+
+def _check(table: Path, cells: dict[str, list[Any]]) -> None:
+    """Check that a table has what every sweep's table has.
+
+    Raises:
+        UsageError: a column is missing.
+    """
+    for name in REQUIRED:
+        if name not in cells:
+            guess = did_you_mean(name, [one[:100] for one in cells])
+            message = f'not the table of a sweep: it has no column "{name}".'
+            raise UsageError(f"{table}: {f'{message} {guess}'.strip()}")
+
+
+def _beside(table: Path, name: str) -> dict[str, Any] | None:
+    """A file of JSON in the folder beside a table, or in a folder; None if it has no object."""
+    folder = table if table.is_dir() else table.with_suffix("")
+    try:
+        with (folder / name).open(encoding="utf-8") as stream:
+            text = stream.read(MOST_BESIDE + 1)
+        read = json.loads(text) if len(text) <= MOST_BESIDE else None
+    except (OSError, ValueError, RecursionError):
+        return None
+    return read if isinstance(read, dict) else None
+
+
+def _columns(sheet: Sheet) -> list[Column]:
+    """What the columns are: as the dictionary says, or as their names do."""
+    known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
+    known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
+    data = _beside(sheet.path, DICTIONARY)
+    told = list(_told(data)) if data else []
+    if not told:
+        sheet.notes.append(
+            "There is no data dictionary beside the table: columns are known by their names, and"
+            " those that no measure has are taken for factors."
+        )
+        return [known.get(name) or _guessed(name, sheet.cells[name]) for name in sheet.cells]
+    lost = [one.name for one in told if one.name not in sheet.cells]
+    if lost:
+        sheet.notes.append(f"The table lacks columns of its dictionary: {', '.join(lost[:20])}.")
+    listed = {one.name for one in told} | set(known)
+    new = [name for name in sheet.cells if name not in listed]
+    if new:
+        sheet.notes.append(
+            f"Columns that no dictionary describes are left out: {', '.join(new[:20])}."
+        )
+    more = [one for name, one in known.items() if name not in {column.name for column in told}]
+    return [one for one in (*told, *more) if one.name in sheet.cells]
+
+
+def _told(data: dict[str, Any]) -> Iterator[Column]:
+    """The columns of a dictionary; what is no column is left out."""
+    fields = data.get("fields")
+    for one in fields if isinstance(fields, list) else []:
+        if not isinstance(one, dict) or one.get("role") not in ROLES:
+            continue
+        words = {key: one.get(key, "") for key in ("name", "type", "role", "description", "unit")}
+        if all(isinstance(word, str) for word in words.values()):
+            yield Column(**words)
+
+
+def _measure(name: str, meaning: str) -> Column:
+    return Column(
+        name, "number", "measure", meaning, "s" if name.endswith(("_mean", "_max")) else ""
+    )
+
+
+def _guessed(name: str, cells: list[Any]) -> Column:
+    numeric = all(
+        isinstance(one, int | float) or one in (None, "") or is_number(one) for one in cells
+    )
+    return Column(name, "number" if numeric else "string", "factor", "value of the scenario")
+
+
+def is_number(text: Any) -> bool:
+    """Whether a cell is written as a number."""
+    try:
+        float(text)
+    except (TypeError, ValueError):
+        return False
+    return True
