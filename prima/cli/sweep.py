@@ -64,6 +64,11 @@ MANY = 100_000
 @workers_option
 @on_option
 @click.option("--resume", is_flag=True, help="Go on behind the rows that are there already.")
+@click.option(
+    "--bundle",
+    type=click.Path(),
+    help="Write an archive (RO-Crate), too: the table with all that it was made from.",
+)
 @click.option("--plan", is_flag=True, help="Only tell how many runs these are, and how long.")
 @bound_option
 @duration_option("--patience", PATIENCE)
@@ -80,6 +85,7 @@ def sweep(
     workers: int | None,
     address: str | None,
     resume: bool,
+    bundle: str | None,
     plan: bool,
     bound: int | None,
     patience: int | None,
@@ -96,7 +102,9 @@ def sweep(
     prima sweep visit.xml --vary "when[2].after=0s..20s/200ms" --policy prima --policy fifo -o sweep.csv
     prima sweep visit.xml --vary "person.speed=normal(1,0.2)" --seeds 100 -o sweep.parquet
     prima sweep study.toml -o sweep.parquet --resume
+    prima sweep study.toml -o sweep.csv --bundle sweep.zip
     """
+    from prima.experiments.bundle import check_bundle, write_bundle
     from prima.experiments.cluster import pool_of
     from prima.experiments.studyfile import question_of
     from prima.experiments.sweep import Output, Sweep
@@ -115,6 +123,8 @@ def sweep(
     )
     if resume and output is None:
         raise UsageError("--resume needs the table: -o sweep.csv.")
+    if bundle is not None and output in (None, "-"):
+        raise UsageError("--bundle needs the table: -o sweep.csv.")
     made = Sweep(question)
     _tell_cost(made, workers, plan)
     if plan:
@@ -124,7 +134,20 @@ def sweep(
         _print(made, pool)
         return
     check_output(output, "table", *scenarios, *question.scenarios)
-    _write(Output(made, output, pool), resume)
+    out = Output(made, output, pool)
+    if bundle is None:
+        _write(out, resume)
+        return
+    check_output(bundle, "archive", *scenarios, *question.scenarios)
+    check_bundle(out)
+    ended = None
+    try:
+        _write(out, resume)
+    except Exit as not_fine:
+        ended = not_fine
+    tell(f"{bundle}: {counted(write_bundle(bundle, out), 'file')}")
+    if ended is not None:
+        raise ended
 
 
 def _vary(varied: tuple[str, ...]) -> dict[str, str]:

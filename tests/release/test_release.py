@@ -100,3 +100,10 @@ def test_what_security_md_points_to_is_there() -> None:
     text = (ROOT / "SECURITY.md").read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
         assert (ROOT / target).exists(), target
+
+
+def test_the_citation_names_this_version_and_the_thesis() -> None:
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {PROJECT['version']}" in lines
+    assert f"license: {PROJECT['license']}" in lines
+    assert {"cff-version: 1.2.0", "authors:", "references:", "  - type: thesis"} <= set(lines)

@@ -1,0 +1,104 @@
+"""Bundles: a table with all that it was made from, which gives the same table again."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests import ROOT
+from tests.helpers.command import prima
+from tests.helpers.sweeps import VISIT, write_visit
+
+SWEEP = ["sweep", "visit.xml", "--vary", "touch=empirical(delays.csv)", "--seeds", "3"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    made = tmp_path / "one"
+    made.mkdir()
+    write_visit(made, VISIT.replace(f"{ROOT}/documents/", ""))
+    for name in ("worlds/room.xml", "robots/papero.xml"):
+        (made / name).parent.mkdir()
+        shutil.copy(ROOT / "documents" / name, made / name)
+    (made / "delays.csv").write_text("1\n2\n3.5\n")
+    monkeypatch.chdir(made)
+    return made
+
+
+def unpacked(bundle: Path, into: Path) -> dict[str, bytes]:
+    into.mkdir()
+    with zipfile.ZipFile(bundle) as archive:
+        archive.extractall(into)
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_a_bundle_gives_the_same_table_byte_for_byte(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    policies = ["--policy", "prima", "--policy", "fifo"]
+    done = prima(*SWEEP, *policies, "-o", "out/table.csv", "--bundle", "table.zip")
+    assert done.returncode == 0, done.stderr
+    files = unpacked(folder / "table.zip", tmp_path / "two")
+    monkeypatch.chdir(tmp_path / "two")
+    again = prima("sweep", "study.toml", "-o", "again/table.csv")
+    assert again.returncode == 0, again.stderr
+    assert Path("again/table.csv").read_bytes() == files["table.csv"]
+    for name, data in files.items():
+        if name.startswith("table/"):
+            assert Path("again", name).read_bytes() == data, name
+    orders = [name for name in files if name.startswith("table/orders/")]
+    assert any(name.endswith(".jsonl") for name in orders)
+
+
+def test_equal_sweeps_give_equal_bundles(folder: Path) -> None:
+    for name in ("a.zip", "b.zip"):
+        prima(*SWEEP, "-o", "table.csv", "--bundle", name)
+    assert Path("a.zip").read_bytes() == Path("b.zip").read_bytes()
+
+
+def test_its_metadata_name_every_file_as_ro_crate_does(folder: Path) -> None:
+    prima(*SWEEP, "-o", "table.csv", "--bundle", "table.zip")
+    with zipfile.ZipFile("table.zip") as archive:
+        names = set(archive.namelist())
+        crate = json.loads(archive.read("ro-crate-metadata.json"))
+    assert crate["@context"] == "https://w3id.org/ro/crate/1.1/context"
+    graph = {one["@id"]: one for one in crate["@graph"]}
+    assert graph["ro-crate-metadata.json"]["about"] == {"@id": "./"}
+    parts = {one["@id"] for one in graph["./"]["hasPart"]}
+    assert parts | {"ro-crate-metadata.json"} == names <= set(graph)
+    made_of = {one["@id"] for one in graph["#sweep"]["object"]}
+    assert {"visit.xml", "delays.csv", "study.toml"} <= made_of
+    assert graph["#sweep"]["result"] == [{"@id": "table.csv"}]
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "why"),
+    [
+        (["--bundle", "t.zip"], 2, "--bundle needs the table"),
+        (["-o", "t.csv", "--bundle", "nowhere/t.zip"], 2, "nowhere"),
+        (["-o", "t.csv", "--bundle", "visit.xml"], 2, "visit.xml"),
+    ],
+)
+def test_bundles_that_cannot_be_written(
+    folder: Path, words: list[str], code: int, why: str
+) -> None:
+    before = Path("visit.xml").read_bytes()
+    done = prima(*SWEEP, *words)
+    assert done.returncode == code
+    assert why in done.stderr
+    assert Path("visit.xml").read_bytes() == before
+
+
+def test_files_above_the_folder_cannot_be_bundled(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "inner").mkdir()
+    monkeypatch.chdir(folder / "inner")
+    done = prima("sweep", "../visit.xml", "-o", "t.csv", "--bundle", "t.zip")
+    assert done.returncode == 2
+    assert "Call prima from a folder that holds all of them." in done.stderr
+    assert not Path("t.csv").exists()
