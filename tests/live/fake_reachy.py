@@ -27,6 +27,7 @@ class FakeReachy:
         self.answers: dict[str, tuple[int, Any]] = {}
         self.state: dict[str, Any] = dict(UPRIGHT)
         self.mode = "enabled"
+        self.doa: Any = None
         self.ends = "move_completed"
         """How moves end; nothing if they go on until they are stopped."""
         self.moves = True
@@ -78,6 +79,8 @@ class FakeReachy:
             return {"mode": self.mode}
         if path == "/api/state/full":
             return self.state
+        if path == "/api/state/doa":
+            return self.doa
         if path == "/api/move/running":
             return [{"uuid": one} for one in self.running]
         if path == "/api/move/stop":

@@ -18,7 +18,8 @@ from prima.live.drivers import driver_class
 from prima.live.drivers.reachy import DRIVER, driver
 from prima.live.drivers.reachy.link import read_address
 from prima.live.drivers.reachy.pose import Pose, read_pose, read_step
-from prima.messages import Command
+from prima.live.told import Teller
+from prima.messages import Command, Occurred, Sensed
 from prima.sim.map import Map
 from tests.live.fake_reachy import UPRIGHT, FakeReachy, fake_reachy
 
@@ -42,6 +43,7 @@ class Run:
         self.told: list[Report | News] = []
         self.driver.attach(self.told.append)
         self._keys = 0
+        self.teller = Teller()
 
     def begin(self, kind: str, **args: Any) -> str:
         self._keys += 1
@@ -317,7 +319,7 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPa
         ('<option name="speed" value="1"/>', 'The driver reachy has no option "speed"'),
         ('<option name="at" value="moon"/>', 'There is no place "moon", where the robot stands.'),
         ('<does gesture="nod" by="nod"/>', 'by="nod" is neither "goto" nor a recorded'),
-        ('<senses event="touch" by="/x"/>', "The driver reachy senses nothing; remove it."),
+        ('<senses event="touch" by="/x"/>', 'by="/x" is nothing that the daemon tells'),
         ('<does gesture="nod"/>', 'by="" is neither "goto" nor a recorded move, DATASET/MOVE.'),
         (
             '<does gesture="nod" by="goto"><set name="a" value="15"/></does>',
@@ -397,3 +399,41 @@ def test_a_step_has_numbers_alone() -> None:
     for wrong in (True, None, float("nan"), "3"):
         with pytest.raises(Refused, match="is no number"):
             read_step("a", {"tilt": wrong})
+
+
+DOA = """<senses sensor="sound" by="/api/state/doa" field="angle"/>
+    <senses event="speech.begins" by="/api/state/doa" field="speech_detected" when="true"/>
+"""
+
+
+def test_what_the_daemon_senses_is_told_when_it_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(driver, "SENSE_S", 60.0)  # it is asked here
+
+    async def test() -> None:
+        async with fake_reachy() as fake:
+            run = Run(fake, DOA)
+            await run.driver.open()
+            assert not [one for one in run.told if isinstance(one, Sensed | Occurred)]
+            for angle, speaks in ((1.5, False), (1.5, True), (1.5, True), (2.0, True)):
+                fake.doa = {"angle": angle, "speech_detected": speaks}
+                await run.driver._sense(run.driver._link, run.teller)  # type: ignore[arg-type]
+            await run.driver.close()
+            told = [one for one in run.told if isinstance(one, Sensed | Occurred)]
+            assert told == [
+                Sensed({"sound": 1.5}),
+                Occurred("speech.begins", "user"),
+                Sensed({"sound": 2.0}),
+            ]
+
+    play(test())
+
+
+def test_what_the_daemon_does_not_have_is_a_wrong_setting() -> None:
+    async def test() -> None:
+        async with fake_reachy() as fake:
+            fake.answers["/api/state/smell"] = (404, {"detail": "Not Found"})
+            run = Run(fake, '<senses sensor="smell" by="/api/state/smell"/>')
+            with pytest.raises(Unusable, match=r"/api/state/smell.*Not Found"):
+                await run.driver.open()
+
+    play(test())

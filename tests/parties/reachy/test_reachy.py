@@ -16,7 +16,8 @@ from typing import Any
 import pytest
 
 from prima.devices.goals import Accepted, Broke, Done, Lost, Stopped
-from prima.live.driver import Unreachable
+from prima.live.driver import Unreachable, Unusable
+from prima.messages import Sensed
 from tests.parties.reachy.daemon import Daemon, Run, daemon, until
 
 LONGEST_S = 60
@@ -227,6 +228,27 @@ def test_a_pose_that_the_neck_does_not_reach_is_not_done(party: Daemon) -> None:
             assert isinstance(end, Broke) and end.device == "neck"
             assert "instead of 65" in end.reason
             assert isinstance(await run.do("move-head", pan=0.0, tilt=0.0), Done)
+
+    play(test())
+
+
+def test_the_daemon_tells_of_its_sensors(party: Daemon) -> None:
+    senses = """<senses sensor="body" by="/api/state/present_body_yaw"/>
+    <senses sensor="sound" by="/api/state/doa" field="angle"/>
+    <senses sensor="upright" by="/api/state/imu" field="quaternion"/>
+    """
+
+    async def test() -> None:
+        async with connected(party.address, senses) as run:
+            assert isinstance(await run.do("turn", angle=30.0), Done)
+            await asyncio.sleep(0.5)
+            told = [one.values for one in run.told if isinstance(one, Sensed)]
+            assert {name for values in told for name in values} == {"body"}, "MuJoCo has no others"
+            assert degrees(told[-1]["body"]) == pytest.approx(30, abs=5)
+            assert isinstance(await run.do("turn-to", heading=0.0), Done)
+        with pytest.raises(Unusable, match="Not Found"):
+            async with connected(party.address, '<senses sensor="x" by="/api/state/smell"/>'):
+                pass
 
     play(test())
 

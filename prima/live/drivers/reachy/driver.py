@@ -6,7 +6,7 @@ import asyncio
 import math
 from collections.abc import Callable
 from importlib.util import find_spec
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from prima.devices.goals import At, Begin
 from prima.devices.profile import POINTING_MS, Profile
@@ -16,6 +16,7 @@ from prima.errors import UsageError
 from prima.live.driver import Refused, TaskDriver, Unreachable, Unusable
 from prima.live.drivers.reachy.link import Link, read_address
 from prima.live.drivers.reachy.pose import LIMITS, NEAR, Pose, read_pose, read_step, wrapped
+from prima.live.told import Teller
 from prima.messages import Data
 from prima.sim.map import Map
 
@@ -25,6 +26,10 @@ QUICKEST_S = 0.2
 """How long a movement takes at least."""
 SETTLE_S = 1.0
 """How long parts may take to come to rest after a move."""
+SENSE_S = 0.2
+"""How often the daemon is asked what its sensors say."""
+STATES = ("/api/state/", "/api/media/tracking/")
+"""What the daemon tells of itself: the beginnings of its addresses."""
 SAFE_S = 2.0
 """How long it may take to stop everything."""
 GOTO = "goto"
@@ -53,6 +58,7 @@ class ReachyDriver(TaskDriver):
         self._link: Link | None = None
         self._sent: Pose | None = None
         """Where all parts were sent last; None where that was not reached."""
+        self._sensing: asyncio.Task[None] | None = None
         self._address = address_of(settings)
         self._stands = stands(settings, site)
         check_ways(settings)
@@ -71,9 +77,41 @@ class ReachyDriver(TaskDriver):
         self._link = Link(self._address, self.lose)
         try:
             await self._wake(self._link)
+            if self.settings.senses:
+                teller = Teller()
+                await self._sense(self._link, teller)
+                self._sensing = asyncio.create_task(self._sense_on(self._link, teller))
         except BaseException:
             await self._leave()
             raise
+
+    async def _sense(self, link: Link, teller: Teller) -> None:
+        """Ask the daemon for what its sensors say now, and tell what has changed.
+
+        Raises:
+            Unusable: the daemon has no such thing to say.
+        """
+        answers: dict[str, Any] = {}
+        for senses in self.settings.senses:
+            try:
+                if senses.by not in answers:
+                    answers[senses.by] = await link.ask("GET", senses.by)
+            except Refused as error:
+                raise Unusable(f'<senses by="{senses.by}">: {error}') from None
+            if answers[senses.by] is not None:  # it has no such sensor, or nothing to say yet
+                teller.take(senses, answers[senses.by])
+        for news in teller.drain():
+            self.tell(news)
+
+    async def _sense_on(self, link: Link, teller: Teller) -> None:
+        """Ask again and again, for as long as the daemon answers."""
+        while True:
+            await asyncio.sleep(SENSE_S)
+            try:
+                await self._sense(link, teller)
+            except (Unreachable, Unusable) as error:
+                self.lose(str(error))
+                return
 
     async def _wake(self, link: Link) -> None:
         await link.connect()
@@ -215,6 +253,9 @@ class ReachyDriver(TaskDriver):
         await self._leave()
 
     async def _leave(self) -> None:
+        sensing, self._sensing = self._sensing, None
+        if sensing is not None and sensing is not asyncio.current_task():
+            sensing.cancel()
         link, self._link = self._link, None
         if link is not None:
             await link.close()
@@ -254,14 +295,21 @@ def stands(settings: DriverSettings, site: Map) -> Place:
 
 
 def check_ways(settings: DriverSettings) -> None:
-    """Look at how Commands and gestures are carried out, and that nothing is to be sensed.
+    """Look at how Commands and gestures are carried out, and at what is to be sensed.
 
     Raises:
         UsageError: that cannot be done.
     """
     for senses in settings.senses:
-        message = "The driver reachy senses nothing; remove it."
-        raise UsageError(f"{senses.place}: {message}")
+        message = ""
+        if not senses.by.startswith(STATES):
+            message = f'by="{senses.by}" is nothing that the daemon tells: write "/api/state/doa".'
+        elif senses.what == "event" and not senses.when:
+            message = 'An event needs when="...": the daemon is asked again and again.'
+        elif senses.what == "heard":
+            message = "The daemon does not tell what users say; another driver does."
+        if message:
+            raise UsageError(f"{senses.place}: {message}")
     for does in settings.does:
         try:
             _check_way(does)
