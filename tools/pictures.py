@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from prima import api, graph
 from prima.graph.svg import applications as applications_style
@@ -393,6 +394,18 @@ PICTURES: dict[str, tuple[str, Draw, str, str]] = {
 """Each picture's scenario in documents/tutorial, how it is drawn, its title and description."""
 
 
+def swept(path: Path) -> str:
+    """How long the robot takes, by policy, the time of the touch, and the user's answer."""
+    from prima import results, sweep
+
+    with TemporaryDirectory() as folder:
+        table = Path(folder) / "sweep.csv"
+        vary = {"when.at": "0s..30s/2s", "answer": ["Never mind.", "Come on, follow me."]}
+        sweep(path, vary, policies=["prima", "fifo"], output=table, workers=1)
+        figures = results.draw(results.read(table))
+    return next(one for one in figures if one.name == "seconds").whole()
+
+
 GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
     "graph-museum": ("ea/museum.xml", graph.picture),
     "graph-office": ("worlds/office.xml", graph.picture),
@@ -408,8 +421,9 @@ GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
         "scenarios/three-applications.xml",
         lambda path: graph.streams(api.rehearse(path)),
     ),
+    "sweep": ("scenarios/touched-on-the-way.xml", swept),
 }
-"""The pictures of docs/graphs.md and the README: each one's document, and how it is drawn."""
+"""The pictures of other pages: each one's document, and how it is drawn."""
 
 
 def outputs(root: Path) -> dict[Path, str]:

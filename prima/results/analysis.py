@@ -46,6 +46,11 @@ class Distribution:
     """Runs between each two edges."""
     panels: list[Panel]
 
+    @property
+    def whole_numbers(self) -> bool:
+        """Whether each bin is a whole number."""
+        return self.edges[0] % 1 == 0.5 and self.edges[1] - self.edges[0] == 1
+
 
 @dataclass(slots=True)
 class Analysis:

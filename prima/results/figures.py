@@ -93,9 +93,9 @@ class Scale:
         """The place of a value."""
         return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
 
-    def ticks(self) -> list[float]:
-        """Four to eight round values between the ends."""
-        rough = (self.high - self.low) / 5
+    def ticks(self, least: float = 0.0) -> list[float]:
+        """At most eight round values between the ends, so far apart at least."""
+        rough = max((self.high - self.low) / 5, least)
         power = 10.0 ** floor(log10(rough))
         step = next(one * power for one in (1, 2, 5, 10) if one * power >= rough)
         first, last = ceil(self.low / step - 1e-9), floor(self.high / step + 1e-9)
@@ -116,8 +116,9 @@ def distribution(made: Distribution) -> Figure:
     for panel in made.panels:
         panels += _panel(panel, scale, y)
         y += 32 + ROW * len(panel.levels.names)
-    grid = [line(scale.at(one), 30, scale.at(one), y, "tick") for one in scale.ticks()]
-    labels = [_middle(scale.at(one), y + 14, number(one)) for one in scale.ticks()]
+    ticks = scale.ticks(1.0 if made.whole_numbers else 0.0)
+    grid = [line(scale.at(one), 30, scale.at(one), y, "tick") for one in ticks]
+    labels = [_middle(scale.at(one), y + 14, number(one)) for one in ticks]
     unit = made.measure.column.unit
     title = f"{made.measure.name} ({unit})" if unit else made.measure.name
     labels.append(_middle((LEFT + WIDTH - RIGHT) / 2, y + 32, title))

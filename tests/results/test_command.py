@@ -49,6 +49,13 @@ def test_figures_are_written_as_svg(desk: Path) -> None:
             assert 0 <= y <= y + float(one.get("height", "0")) <= height, (name, one.attrib)
 
 
+def test_counts_have_whole_numbers_on_their_axis(desk: Path) -> None:
+    words = ("report", "sweep.csv", "--to", "svg", "--figure", "broken")
+    drawn = etree.fromstring(prima(*words, cwd=desk).stdout.encode())
+    texts = [one.text or "" for one in drawn.iter(f"{SVG}text")]
+    assert texts[-3:] == ["0", "1", "broken"]
+
+
 def test_one_figure_may_be_named(desk: Path) -> None:
     done = prima(
         "report", "sweep.csv", "--to", "svg", "--figure", "seconds", "-o", "s.svg", cwd=desk
