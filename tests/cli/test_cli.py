@@ -244,6 +244,26 @@ def test_a_hint_that_can_have_no_effect_is_told(tmp_path: Path) -> None:
     assert checked.stdout.count("[idle-hint]") == 2
 
 
+@pytest.mark.parametrize(
+    ("handler", "told"),
+    [
+        ('event="touch"', 0),
+        ('event="touch" reactive="false"', 1),
+        ('event="end.speak"', 1),
+        ('event="end.speak" reactive="true"', 0),
+        ('event="end touch"', 0),
+    ],
+)
+def test_a_time_for_what_is_no_reaction_is_told(tmp_path: Path, handler: str, told: int) -> None:
+    document = tmp_path / "a.xml"
+    document.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="f">'
+        f'<on {handler} fresh-for="2s"><speak>Hm.</speak><exit/></on></form></prima>'
+    )
+    checked = prima("validate", document)
+    assert checked.stdout.count("[idle-hint]") == told
+
+
 def test_applications_run_without_a_scenario(tmp_path: Path) -> None:
     library = ROOT / "documents" / "ea" / "library.xml"
     ran = prima("run", "--ea", library, "--say", "The C Primer")

@@ -1,4 +1,4 @@
-"""Hints that can have no effect, and what a held stream costs others (X3, X4)."""
+"""Hints that can have no effect, and what a held stream costs others (X3, X4, X8)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,17 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.tree import Node
 
+NO_CAUSES = frozenset(
+    ["end", "cancel", "interrupted", "expired", "suspended", "resumed", "noinput", "nomatch"]
+)
+"""How events begin that nobody reacts to (C5)."""
 IDLE_HINT = Diagnosis(
     "idle-hint",
     "Hint without effect",
     "A hint that can never have an effect: hold-for without stream, or a stream held in a state"
-    " that handles no event to wait for, or that asks for no Command.",
-    rule="X3, X4",
+    " that handles no event to wait for, or that asks for no Command, or the time of a reaction"
+    " that is none.",
+    rule="X3, X4, X8",
     severity="warning",
 )
 NOTHING_HELD = IDLE_HINT.says("hold-for says how long, but nothing is held.", 'Add stream="hold".')
@@ -26,6 +31,10 @@ NO_EVENT = IDLE_HINT.says(
 )
 NO_WORD = IDLE_HINT.says(
     "The robot is to turn to the user before its first word, but says none here.",
+    "Remove the hint.",
+)
+NO_REACTION = IDLE_HINT.says(
+    "fresh-for says for how long a reaction is worth starting, but what is done here is none.",
     "Remove the hint.",
 )
 HOLD_PRICE = Diagnosis(
@@ -42,8 +51,11 @@ HOLD_PRICE = Diagnosis(
 
 
 def check_hints(facts: Facts) -> Iterator[Problem]:
-    """X3, X4: hints of forms and items."""
+    """X3, X4, X8: hints of forms, items and handlers."""
     speaking = _speaking(facts)
+    for node in facts.document.node.walk():
+        if node.tag == "on" and "fresh-for" in node.attributes and _is_no_reaction(node):
+            yield NO_REACTION.at(node.place_of("fresh-for"))
     for form, items in facts.forms:
         yield from _stream(facts, form, form)
         for item in items:
@@ -64,6 +76,13 @@ def _stream(facts: Facts, form: Form, one: Form | Item) -> Iterator[Problem]:
         yield HOLD_PRICE.at(node.place_of("stream"), seconds=f"{one.hold / 1000:g}")
     else:
         yield NO_EVENT.at(node.place_of("stream"))
+
+
+def _is_no_reaction(node: Node) -> bool:
+    """Whether a handler's author, or each of its events, says so (C5)."""
+    said = node.get("reactive")
+    own = {name.partition(".")[0] for name in node.get("event", "").split()} <= NO_CAUSES
+    return said == "false" or (said != "true" and own)
 
 
 def _asks(items: Sequence[Item]) -> bool:
