@@ -19,6 +19,7 @@ from prima.cli import COMMANDS
 from prima.errors.visible import HARMFUL, escaped, visible
 from prima.transcript.lines import finished, line
 from tests import ROOT
+from tests.helpers.swept import runs, write
 from tests.helpers.voice import vxml
 
 IN_XML = "&#x9b;31m&#x7f;&#x202e;&#x2066;&#x200f;&#x2028;&#13;x"
@@ -94,6 +95,11 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "nix.xml": SCENARIO.format(f"nix{IN_XML}", "nix"),
     }.items():  # fmt: skip
         (folder / name).write_text(text, encoding="utf-8")
+    strange = [
+        row | {"answer": f"{RAW}{row['answer']}", "failures": RAW, "order": RAW} for row in runs()
+    ]
+    write(folder, strange, "swept.csv")
+    (folder / "bad.csv").write_text(f"run,{RAW}\r\n", encoding="utf-8")
     with (folder / "f.jsonl").open("w", encoding="utf-8") as stream:
         stream.writelines(json.dumps(one, ensure_ascii=False) + "\n" for one in FOREIGN)
     api.rehearse(folder / "s.xml", sink=(folder / "t.jsonl").open("a", encoding="utf-8").write)
@@ -126,6 +132,8 @@ VERBS = [
     *("diff t.jsonl f.jsonl --format json", "diff t.jsonl f.jsonl --format html -o made.html"),
     *("diff s.xml --policy prima --policy fifo", "report t.jsonl -o made.html", "report f.jsonl -o made.html"),
     *("report t.jsonl f.jsonl -o made.html", "report s.xml -o made.html"),
+    *("report swept.csv -o made.html", "report swept.csv --to svg --figure orders -o made.svg", "report {raw}.csv", "report bad.csv"),
+    *("report swept.csv --by {raw} -o made.html", "report swept.csv --to svg --figure {raw}", "report ."),
     *("replay t.jsonl s.xml", "replay f.jsonl s.xml", "replay t.jsonl s.xml -o -"),
     *("explain t.jsonl 3", "explain f.jsonl 1", "explain f.jsonl 3 --format json", "explain {raw}"),
     *("talk s.xml", "talk s.xml --format json", "new ea {raw}", "new scenario x{raw}", "new {raw} x"),
