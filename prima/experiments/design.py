@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import product
-from random import Random
 
 from prima.errors import UsageError, one_of
 from prima.experiments.levels import Factor
+from prima.language.distributions import share
 
 DESIGNS = ("full", "random", "lhs")
 MOST_RUNS = 100_000_000
@@ -69,7 +69,7 @@ class Design:
                 yield (
                     seed,
                     tuple(
-                        one.drawn(_share(seed, one.path)) if one.quantile else level
+                        one.drawn(share(seed, one.path)) if one.quantile else level
                         for one, level in pairs
                     ),
                 )
@@ -78,14 +78,9 @@ class Design:
         rows = _hypercube(len(self.factors), self.count, self.seeds) if self.kind == "lhs" else None
         for number in range(1, self.count + 1):
             seed = number + self.seeds - 1
-            shares = rows[number - 1] if rows else [_share(seed, one.path) for one in self.factors]
+            shares = rows[number - 1] if rows else [share(seed, one.path) for one in self.factors]
             pairs = zip(self.factors, shares, strict=True)
             yield number, tuple(one.drawn(share) for one, share in pairs)
-
-
-def _share(seed: int, path: str) -> float:
-    """A number from 0 to 1, as a function of a seed and a factor."""
-    return Random(f"{seed}/{path}").random()
 
 
 def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:

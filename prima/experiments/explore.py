@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 from prima import __version__
 from prima.errors import UsageError
 from prima.experiments.examine import Examiner, Finding, Seen
-from prima.experiments.levels import written
 from prima.experiments.lines import Line, Piece, Point, Search, moved, pieces, shift, shrunk
 from prima.experiments.pools import Pool, Runs
 from prima.experiments.variants import Made, Settings, Variant
+from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died
 

@@ -9,6 +9,7 @@ import pytest
 
 from prima.errors import UsageError
 from prima.experiments.levels import Factor, cell, read_factor
+from prima.language.distributions import Distributions, share
 from prima.sim.paths import find
 from prima.sim.scenario import look_at_scenario
 from tests.helpers.sweeps import VISIT
@@ -56,6 +57,8 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
         ("touch", "1s|0s..20s", r"The range \"0s..20s\" has no step: write 0s..20s/STEP"),
         ("touch", "normal(1s)", r"Write normal\(MEAN,DEVIATION\)"),
         ("touch", "normal(1s,0s)", "has to be above 0"),
+        ("touch", "lognormal(1s,nan)", '"nan" is not the standard deviation of a logarithm'),
+        ("touch", "lognormal(1s,inf)", '"inf" is not the standard deviation of a logarithm'),
         ("touch", "normal(1s,-1s)", "out of range|is not|has to"),
         ("touch", "nromal(1s,1s)", 'Did you mean "normal"'),
         ("touch", "lognormal(1s,x)", '"x" is not the standard deviation of a logarithm'),
@@ -112,3 +115,19 @@ def test_what_a_table_shows_of_a_level() -> None:
     assert cell("duration", "") is None
     assert cell("integer", "3") == 3
     assert cell("text", "") == ""
+
+
+def test_shares_depend_on_seed_and_path_alone() -> None:
+    assert share(1, "answer[1].after") == 0.952778272794054
+    shares = [share(seed, "answer[1].after") for seed in range(1, 2001)]
+    assert 0.45 < mean(shares) < 0.55
+    assert 0.26 < stdev(shares) < 0.32
+    assert share(7, "answer[1].after") != share(7, "answer[2].after")
+
+
+def test_distributions_need_no_scenario() -> None:
+    quantile = Distributions("duration", high=10_000).read("normal(2s,500ms)")
+    assert quantile is not None
+    assert quantile(0.5) == 2000.0
+    with pytest.raises(ValueError, match='"11s" is out of range: from 0ms to 10000ms'):
+        Distributions("duration", high=10_000).read("uniform(0s,11s)")

@@ -66,7 +66,7 @@ INSIDE = {
         {"diagnoses", "rendering"},
         {"__init__"},
     ],
-    "language": [{"values"}, {"commands"}, {"__init__"}],
+    "language": [{"values"}, {"commands", "distributions"}, {"__init__"}],
     "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
     "experiments": [
         {"levels", "plan", "study", "variants"},

@@ -1,0 +1,176 @@
+"""Distributions as they are written, and what is drawn from them by seed.
+
+``normal(5s,1s)``: mean and standard deviation; ``lognormal(5s,0.4)``: median and the standard
+deviation of the logarithm; ``uniform(0s,20s)`` or ``0s..20s``; ``exponential(5s)``: mean;
+``empirical(delays.csv)``: a value a line, or a column as ``delays.csv:seconds``.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Callable
+from itertools import islice
+from pathlib import Path
+from random import Random
+from statistics import NormalDist
+
+from prima.errors import counted, did_you_mean
+from prima.language.values import LONGEST_MS, read_value
+
+MEASURED = ("duration", "number", "integer")
+"""Kinds that may be drawn."""
+MOST_VALUES = 1_000_000
+"""Values that a distribution's file may have."""
+RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
+CALL = re.compile(r"(?P<name>[a-z]+)\((?P<arguments>.*)\)")
+
+Quantile = Callable[[float], float]
+"""The value (ms for times) below which a share, between 0 and 1, of all values lies."""
+
+
+def share(seed: int, path: str) -> float:
+    """A number from 0 to 1 of a seed and the path of what is drawn.
+
+    Each path has a stream of its own: what else is drawn does not change it.
+    """
+    return Random(f"{seed}/{path}").random()
+
+
+def written(kind: str, value: float) -> str:
+    """A number as an attribute has it; times are given in ms."""
+    if kind == "duration":
+        return f"{round(value)}ms"
+    return str(round(value)) if kind == "integer" else f"{value:.6g}"
+
+
+class Distributions:
+    """Reads the distributions of one kind of values within bounds."""
+
+    def __init__(
+        self, kind: str, low: float | None = None, high: float | None = None, folder: str = ""
+    ) -> None:
+        """Set what may be written.
+
+        Args:
+            kind: one of :data:`MEASURED`.
+            low: the least value (ms for times); by default the kind's own.
+            high: the greatest value (ms for times); by default the kind's own.
+            folder: where files of values are.
+        """
+        self.kind = kind
+        self.folder = folder
+        least, most = (0.0, float(LONGEST_MS)) if kind == "duration" else (-1e12, 1e12)
+        self.low = least if low is None else float(low)
+        self.high = most if high is None else float(high)
+
+    def value(self, text: str) -> float:
+        """A number, or a time in ms.
+
+        Raises:
+            ValueError: it is not of the kind, or out of range; the message is a sentence.
+        """
+        try:
+            value = read_value(self.kind, text)
+        except ValueError as error:
+            raise ValueError(f'"{text}" {error}') from None
+        assert isinstance(value, int | float)
+        if not self.low <= value <= self.high:
+            low, high = written(self.kind, self.low), written(self.kind, self.high)
+            raise ValueError(f'"{text}" is out of range: from {low} to {high}.')
+        return float(value)
+
+    def read(self, piece: str) -> Quantile | None:
+        """The quantiles of a distribution, in ms for times, or None if the text is not one.
+
+        Raises:
+            ValueError: it is malformed, unknown or out of range; the message is a sentence.
+        """
+        match = RANGE.fullmatch(piece)
+        if match is not None and match["step"] is None:
+            return self._uniform([match["low"].strip(), match["high"].strip()])
+        call = CALL.fullmatch(piece)
+        if call is None:
+            return None
+        kinds = {
+            "normal": self._normal,
+            "lognormal": self._lognormal,
+            "uniform": self._uniform,
+            "exponential": self._exponential,
+            "empirical": self._empirical,
+        }
+        if call["name"] not in kinds:
+            hint = did_you_mean(call["name"], kinds) or f"There are {', '.join(kinds)}."
+            raise ValueError(f'There is no distribution "{call["name"]}". {hint}')
+        return kinds[call["name"]]([one.strip() for one in call["arguments"].split(",")])
+
+    def _arguments(self, name: str, given: list[str], *meanings: str) -> list[str]:
+        if len(given) != len(meanings) or not all(given):
+            raise ValueError(f"Write {name}({','.join(meanings)}).")
+        return given
+
+    def _spread(self, name: str, text: str) -> float:
+        """A standard deviation of a distribution: above 0."""
+        value = self.value(text)
+        if value <= 0:
+            raise ValueError(f"The standard deviation of {name}(...) has to be above 0.")
+        return value
+
+    def _normal(self, given: list[str]) -> Quantile:
+        mean, deviation = self._arguments("normal", given, "MEAN", "DEVIATION")
+        made = NormalDist(self.value(mean), self._spread("normal", deviation))
+        return made.inv_cdf
+
+    def _lognormal(self, given: list[str]) -> Quantile:
+        median, deviation = self._arguments("lognormal", given, "MEDIAN", "DEVIATION")
+        middle = self.value(median)
+        try:
+            made = NormalDist(0.0, float(deviation))
+            sound = math.isfinite(made.inv_cdf(0.5))
+        except ValueError:
+            sound = False
+        if not sound:
+            raise ValueError(f'"{deviation}" is not the standard deviation of a logarithm.')
+        return lambda share: middle * math.exp(min(made.inv_cdf(share), 100.0))
+
+    def _uniform(self, given: list[str]) -> Quantile:
+        low, high = (self.value(one) for one in self._arguments("uniform", given, "LOW", "HIGH"))
+        if low > high:
+            raise ValueError("The range ends before it begins.")
+        return lambda share: low + (high - low) * share
+
+    def _exponential(self, given: list[str]) -> Quantile:
+        mean = self.value(self._arguments("exponential", given, "MEAN")[0])
+        return lambda share: -mean * math.log(1 - share)
+
+    def _empirical(self, given: list[str]) -> Quantile:
+        name, _, column = self._arguments("empirical", given, "FILE.csv")[0].partition(":")
+        values = sorted(self.value(one) for one in self._cells(name, column))
+        if not values:
+            raise ValueError(f"{name} has no values.")
+        return lambda share: values[int(share * len(values))]
+
+    def _cells(self, name: str, column: str) -> list[str]:
+        """The texts of a column of a CSV file; without its name, of the first one.
+
+        Bare numbers are seconds where times are wanted.
+        """
+        try:
+            with (Path(self.folder) / name).open(encoding="utf-8-sig", newline="") as stream:
+                lines = [row for row in islice(csv.reader(stream), MOST_VALUES + 2) if row]
+        except (OSError, ValueError, csv.Error) as error:
+            why = getattr(error, "strerror", None) or error
+            raise ValueError(f"{name} cannot be read: {why}.") from None
+        if len(lines) > MOST_VALUES:
+            raise ValueError(f"{name} has more than {counted(MOST_VALUES, 'value')}.")
+        place = 0
+        if column:
+            if not lines or column not in lines[0]:
+                raise ValueError(f'{name} has no column "{column}".')
+            place = lines[0].index(column)
+        if column or (lines and not re.match(r"[-+.\d]", lines[0][0])):
+            lines = lines[1:]
+        unit = "s" if self.kind == "duration" else ""
+        texts = [row[place].strip() for row in lines if place < len(row)]
+        return [f"{one}{unit}" if re.fullmatch(r"[\d.]+", one) else one for one in texts if one]
