@@ -130,6 +130,9 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
     """The measures of docs/measures.md."""
     found, starved = run.criteria, len(run.of("starve"))
     waiting = "behaviours that another application has kept waiting for too long (E4, E6)"
+    stolen = "answers after which another application spoke before the asker"
+    astray = "late answers that another application took"
+    late = "reactions more than 3 s after their event"
     reaction = f"{found.reaction_mean:.2f} / {found.reaction_max:.2f} s"
     response = f"{found.response_mean:.2f} / {found.response_max:.2f} s"
     return [
@@ -139,11 +142,11 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
         ("Waiting", str(found.broken_waiting), "waits for a server that were broken"),
         ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
         ("Left", str(found.left), "conversations that the robot left"),
-        ("Stolen", str(found.third_turns), "third turns: answers to which another spoke first"),
-        ("Astray", str(found.misanswered), "late answers that another application took"),
+        *([("Stolen", str(found.third_turns), stolen)] if found.third_turns else []),
+        *([("Astray", str(found.misanswered), astray)] if found.misanswered else []),
         *([("Starved", str(starved), waiting)] if starved else []),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
-        ("Late", str(found.late_reactions), "reactions more than 3 s after their event"),
+        *([("Late", str(found.late_reactions), late)] if found.late_reactions else []),
         ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
         (
             "Response time",

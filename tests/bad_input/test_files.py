@@ -41,7 +41,7 @@ def test_a_file_that_is_too_large_is_told_wherever_it_is_named(
 
 @pytest.mark.parametrize(
     "wrong",
-    [["--policy", "pirma"], ["--policy", "prima+x9"], ["--policy", "fixed:nope"], ["--allow-host", "a:b"]],
+    [["--policy", "pirma"], ["--policy", "prima+x99"], ["--policy", "fixed:nope"], ["--allow-host", "a:b"]],
 )  # fmt: skip
 def test_wrong_usage_leaves_a_transcript_as_it_was(wrong: list[str], tmp_path: Path) -> None:
     scenario = str(ROOT / "documents" / "scenarios" / "follow-alone.xml")
