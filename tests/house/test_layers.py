@@ -72,7 +72,7 @@ INSIDE = {
         {"levels", "plan", "study", "variants"},
         {"design", "examine", "ledger", "pools", "rows", "table"},
         {"batch", "cluster", "lines", "sweep"},
-        {"explore", "studyfile"},
+        {"bundle", "explore", "studyfile"},
         {"explored"},
         {"functions"},
         {"__init__"},

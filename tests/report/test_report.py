@@ -357,7 +357,7 @@ def test_another_scenario_is_refused() -> None:
 
 def test_rules_are_those_of_the_page_on_transcripts() -> None:
     page = (ROOT / "docs" / "transcripts.md").read_text(encoding="utf-8")
-    told = dict(re.findall(r"^\| ([A-Z]\d[a-f]?|U4, U5) \| (.*?) \|$", page, re.MULTILINE))
+    told = dict(re.findall(r"^\| ([A-Z]\d+[a-f]?|U4, U5) \| (.*?) \|$", page, re.MULTILINE))
     for names in list(told):
         for name in names.split(", "):
             told.setdefault(name, told[names])
