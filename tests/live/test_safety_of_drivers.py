@@ -322,3 +322,23 @@ def test_the_simulated_robot_stops_everything(tmp_path: Path) -> None:
     asyncio.run(play())
     names = [type(one).__name__ for one in told]
     assert (names.count("Stopped"), names.count("Done")) == (3, 0)
+
+
+@pytest.mark.parametrize("late", [300, 700, 5000])
+def test_a_late_run_leaves_the_simulated_robot_its_aim(late: int) -> None:
+    """Instants that come late, as on a busy machine, once let it turn to and fro for ever."""
+    profile = read_robot("r.xml", ROBOT.format('<driver kind="sim"/>').encode())
+    told: list[Any] = []
+
+    async def play() -> None:
+        driver = SimDriver(profile.drivers[0], profile, Map("nowhere"))
+        driver.attach(told.append)
+        await driver.open()
+        turn = Command("turn", {"angle": 90.0})
+        driver.start(Begin("turn", "turn", turn, frozenset({"locomotion"})))
+        for now in range(late, 10_001, late):
+            driver.sample(now)
+        assert driver.world.heading == pytest.approx(90.0, abs=2.0)
+
+    asyncio.run(play())
+    assert [type(one).__name__ for one in told].count("Done") == 1

@@ -57,11 +57,12 @@ def test_a_killed_run_goes_on(seed: int, tmp_path: Path) -> None:
     words = ["--robot", str(ROBOT), "--ea", str(TOUR), "-o", str(journal), "--speed", "5"]
     for _ in range(KILLS):
         if not killed_after(chance.uniform(0, 0.4), journal, *words):
-            break
+            break  # on a busy machine it may have come to its end
         words = ["--resume", str(journal), "--speed", "5"]
-    last = prima("live", "--resume", str(journal), "--speed", "100")
-    _, told = last.communicate(timeout=LONGEST_S)
-    assert last.returncode == 0, told.decode()
+    else:
+        last = prima("live", "--resume", str(journal), "--speed", "100")
+        _, told = last.communicate(timeout=LONGEST_S)
+        assert last.returncode == 0, told.decode()
     records = records_of(journal)
     assert records[-1]["phase"] == "over"
     again = prima("replay", str(journal))

@@ -112,7 +112,15 @@ class SimDriver(Driver):
         return min((time for time in times if time is not None), default=None)
 
     def sample(self, now: int) -> None:
-        """Let the body get on, and tell what has come of it."""
+        """Let the body get on, and tell what has come of it.
+
+        Where the run is late, the body has steered all the same: it has a controller of its own.
+        """
+        while self.world.time < (then := self.due() or now) < now:
+            self._get_on(then)
+        self._get_on(now)
+
+    def _get_on(self, now: int) -> None:
         self.world.advance(now)
         ready = [report for when, report in self._later if when <= now]
         self._later = [one for one in self._later if one[0] > now]
