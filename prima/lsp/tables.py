@@ -16,7 +16,7 @@ from prima.markup.vocabulary import (
     attribute,
     attributes_by_name,
 )
-from prima.sim.vocabulary import SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 
@@ -89,7 +89,7 @@ GRAMMAR = Vocabulary(
 )
 """SRGS in XML, as used in VoiceXML documents."""
 
-VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES, VOICEXML, GRAMMAR)
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES, VOICEXML, GRAMMAR)
 BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
 BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
 
