@@ -93,8 +93,9 @@ class Game:
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
         scenario = self._read([])
         scenario.services = cast.scenario.services  # with their answers
-        for name, user in cast.scenario.users.items():
-            scenario.take(name, user)
+        if scripted:
+            for name, user in cast.scenario.users.items():
+                scenario.take(name, user)
         self.cast: Cast = replace(cast, scenario=scenario)
         self.names = _names(self.cast)
         self._web = web
