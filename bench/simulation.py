@@ -89,7 +89,7 @@ class Quiet:
 
     def come(self, time: int) -> None:
         """The user comes at that time."""
-        self.rehearsal.devices.person.play(time, self.visit)
+        self.rehearsal.devices.people.play(time, self.visit)
 
     def check(self, visits: int) -> None:
         """Whether every visit was seen and answered.

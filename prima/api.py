@@ -22,6 +22,7 @@ from prima.loading import (
     documents_folder,
     load,
     load_scenario,
+    seeded,
     stage,
     validate,
 )
@@ -159,6 +160,7 @@ def rehearse(
     patience: int | None = None,
     visits: bool = False,
     rows: bool = False,
+    seed: int | None = None,
 ) -> Transcript:
     """Run a scenario in simulation.
 
@@ -178,6 +180,7 @@ def rehearse(
             speaker, 0 for no bound; by default the scenario's own.
         visits: whether to keep the elements that applications reach in their documents.
         rows: whether to make the table's rows even if the records are not kept.
+        seed: what is drawn in the run depends on it alone; by default the scenario's own.
 
     Raises:
         DocumentError: documents have errors.
@@ -191,6 +194,7 @@ def rehearse(
     from prima.transcript.record import Entry
 
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
+    loaded = seeded(loaded, seed)
     cast = loaded.cast
     name = cast.scenario.policy if policy is None else policy
     chosen = chosen_policy(name, loaded)

@@ -51,14 +51,14 @@ from prima.markup.schema import (
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, prelude, syntax
-from prima.sim.vocabulary import SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.transcript import lines
 from prima.transcript.record import PHASES, model
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
 ROOT = Path(__file__).resolve().parent.parent
-VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)
 MARKER = re.compile(
     r"(<!-- generated: (?P<name>[\w-]+) -->\n).*?(<!-- end: (?P=name) -->)", re.DOTALL
 )
@@ -570,6 +570,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "world": lambda: elements(WORLD, 4),
     "robot": lambda: elements(ROBOT, 4),
     "scenario": lambda: elements(SCENARIO, 4),
+    "user": lambda: elements(USER, 4),
     "services": lambda: elements(SERVICES, 4),
     "fields": fields,
     "phases": phases,

@@ -64,6 +64,11 @@ FOLDER_ENDINGS = ("/", os.sep)
 )
 @bound_option
 @duration_option("--patience", PATIENCE)
+@click.option(
+    "--seed",
+    type=click.IntRange(0),
+    help="Draw what the scenario leaves to chance by this number, instead of its own.",
+)
 @why_option
 @hosts_option
 @isolate_option
@@ -89,6 +94,7 @@ def run(
     policies: tuple[str, ...],
     bound: int | None,
     patience: int | None,
+    seed: int | None,
     why: bool,
     hosts: tuple[str, ...],
     isolate: str,
@@ -123,7 +129,7 @@ def run(
     raise_limits(limits)
     applications = bool(fas or eas)
     _check_source(bool(scenarios or lists), applications, bool(says), bool(maps))
-    options = Options(bound, hosts, resume, isolate=isolate, patience=patience)
+    options = Options(bound, hosts, resume, isolate=isolate, patience=patience, seed=seed)
     if lists or workers or resume or _are_several(scenarios, policies, output):
         _check_batch(applications, why, resume, output)
         from prima.cli.batch import listed, run_all
@@ -223,7 +229,7 @@ def _run_one(
 
     def rehearse(sink: api.Sink | None, keep: bool = False) -> Transcript:
         given = options.bound, sink, keep, options.hosts, options.isolate, options.patience
-        return api.rehearse(loaded, policy, *given)
+        return api.rehearse(loaded, policy, *given, seed=options.seed)
 
     if output is not None:
         transcript = run_into(output, rehearse)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from prima.errors import DocumentError, Hint, Problem, Severity
 from prima.interpreter.surroundings import nearest as nearest_name
-from prima.language.values import nearest, outside, read_value, within
+from prima.language.values import DRAWABLE, nearest, outside, read_value, within
 from prima.markup.reader import read_tree
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Vocabulary
+from prima.markup.vocabulary import Attribute, Vocabulary
+
+if TYPE_CHECKING:
+    from prima.language.distributions import Quantile
 
 RENAME = "Rename one."
 
@@ -24,7 +27,7 @@ class Reader:
         self.root, self.problems = read_tree(file, data, vocabulary)
 
     def get(self, node: Node, name: str) -> Any:
-        """An attribute's value, its default, or None."""
+        """An attribute's value, its default, or None; of a distribution, its quantiles."""
         element = self.vocabulary.elements.get(node.key)
         item = (
             next((item for item in element.attributes if item.name == name), None)
@@ -40,6 +43,8 @@ class Reader:
             value = read_value(item.kind, text)
         except ValueError:
             return None  # told already, as a problem of the schema
+        if item.kind in DRAWABLE and isinstance(value, str):
+            return self._quantile(node, item, value)
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and not within(float(value), item.low, item.high):
             message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
@@ -47,6 +52,18 @@ class Reader:
             remedy = nearest(item.kind, float(value), item.low, item.high, *spans)
             self.problem(node, "out-of-range", message, name, remedy)
         return value
+
+    def _quantile(self, node: Node, item: Attribute, text: str) -> Quantile | None:
+        """The quantiles of a distribution, or None where it is wrong."""
+        from prima.language.distributions import Distributions  # few documents draw anything
+
+        values = Distributions(DRAWABLE[item.kind], item.low, item.high, folder=None)
+        try:
+            return values.read(text)
+        except ValueError as error:
+            message = f'{item.name} "{text}" cannot be drawn.'
+            self.problem(node, "bad-value", message, item.name, str(error))
+            return None
 
     def given(self, node: Node | None, name: str) -> Any:
         """An attribute's value where it is written, else None."""

@@ -273,4 +273,4 @@ def _rehearse(
     from prima import api
 
     more = options.hosts, options.isolate, options.patience
-    return api.rehearse(loaded, policy, options.bound, sink, False, *more)
+    return api.rehearse(loaded, policy, options.bound, sink, False, *more, seed=options.seed)

@@ -15,6 +15,7 @@ from prima.experiments.variants import Made, Settings, Variant
 from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died
+from prima.sim.paths import find
 
 MOST_DEPTH = 4
 MOST_MOVES = 32
@@ -81,7 +82,7 @@ class Exploration:
         settings = Settings(isolate=plan.isolate)
         moves = list(plan.moves) or _events(plan.scenario, settings)
         if not moves:
-            raise UsageError(f"{plan.scenario}: there is nothing to move: it has no <when>.")
+            raise UsageError(f"{plan.scenario}: there is nothing to move: no <when> has a time.")
         if len(moves) > MOST_MOVES:
             raise UsageError(f"{len(moves)} events are too many to move; name some: --move PATH.")
         self.stage = Examiner.of([plan.scenario], moves, settings)
@@ -90,6 +91,9 @@ class Exploration:
             if target.kind != "duration":
                 message = f"{target.path}: only times can be moved; vary others by prima sweep."
                 raise UsageError(message)
+            if not isinstance(read_value("delay", target.written), int):
+                message = f'{target.path}: "{target.written}" is drawn, and cannot be moved.'
+                raise UsageError(f"{message} Write a time, such as 5s.")
         self.base: Point = tuple(int(read_value("duration", one.written)) for one in self.targets)
         self.seen: dict[Point, Seen] = {}
         self.orders: list[Order] = []
@@ -300,4 +304,5 @@ def _seen(made: Made | Died) -> Seen:
 def _events(scenario: str, settings: Settings) -> list[str]:
     """The paths of all times of a scenario's events."""
     root = Examiner.of([scenario], [], settings).scripts[0].root
-    return [f"when[{number}]" for number in range(1, len(root.all("when")) + 1)]
+    paths = [f"when[{number}]" for number in range(1, len(root.all("when")) + 1)]
+    return [one for one in paths if isinstance(read_value("delay", find(root, one).written), int)]

@@ -72,6 +72,7 @@ def key_of(options: Options, job: Job) -> dict[str, Any]:
         "policy": job.policy,
         "bound": options.bound,
         "patience": options.patience,
+        "seed": options.seed,
         "hosts": list(options.hosts),
         "limits": dict(options.limits),
     }

@@ -22,8 +22,6 @@ from prima.sim.paths import Target
 
 MOST_LEVELS = 100_000
 SPLIT = re.compile(r"(?<!\\)\|")
-EDGE = 1e-9
-"""How near quantiles come to 0 and 1."""
 
 
 @dataclass(frozen=True)
@@ -36,15 +34,12 @@ class Factor:
     levels: tuple[str, ...] = ()
     quantile: Quantile | None = None
     """The value (ms for times) below which a share of all values lies, if they are drawn."""
-    low: float = -math.inf
-    high: float = math.inf
 
     def drawn(self, share: float) -> str:
         """The value at a share, from 0 to 1, of all values."""
         if self.quantile is None:
             return self.levels[min(int(share * len(self.levels)), len(self.levels) - 1)]
-        value = self.quantile(min(max(share, EDGE), 1 - EDGE))
-        return written(self.kind, min(max(value, self.low), self.high))
+        return written(self.kind, self.quantile(share))
 
 
 def cell(kind: str, text: str) -> str | float | int | None:
@@ -92,7 +87,7 @@ class _Levels:
         if kind not in MEASURED:
             return Factor(path, kind, self.checked(pieces))
         if len(pieces) == 1 and (drawn := self.distribution(pieces[0].strip())):
-            return Factor(path, kind, (), drawn, self.values.low, self.values.high)
+            return Factor(path, kind, (), drawn)
         levels: list[str] = []
         for piece in pieces:
             levels += self.several(piece.strip())

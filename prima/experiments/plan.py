@@ -67,6 +67,8 @@ class Options:
     """The folder for unfinished transcripts."""
     patience: int | None = None
     """Rule E6's bound (ms), if not the scenario's."""
+    seed: int | None = None
+    """By which runs are drawn, if not by the scenario's own."""
 
 
 class Plan(Iterable[Job]):

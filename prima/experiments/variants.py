@@ -51,6 +51,7 @@ class Variant(NamedTuple):
     policy: str
     """Empty for the scenario's own."""
     seed: int
+    """By which the run is drawn; 0 for the scenario's own."""
     values: tuple[str, ...]
 
 
@@ -99,6 +100,12 @@ class Script:
         except UsageError as error:
             raise UsageError(f"{path}: {error}") from None
         self._check_apart()
+        users = [one for one in self.root.all("person") if "user" in one.attributes]
+        self._drawn = "seed" not in paths and (
+            scenario.draws.any
+            or bool(users)
+            or any(one.attribute and one.attribute.name == "user" for one in self.targets)
+        )
 
     def _check_apart(self) -> None:
         """Refuse two paths of one value."""
@@ -109,15 +116,22 @@ class Script:
                 raise UsageError(f'"{seen[key]}" and "{target.path}" are the same value.')
             seen[key] = target.path
 
-    def text(self, values: Sequence[str], more: Sequence[Edit] = ()) -> bytes:
-        """The scenario with values."""
-        pairs = zip(self.targets, values, strict=True)
+    def text(self, variant: Variant) -> bytes:
+        """The scenario of a run."""
+        pairs = zip(self.targets, variant.values, strict=True)
         edits = [one.edit(value) for one, value in pairs if value != one.written]
-        return edited(self.root.source.text, [*edits, *more])
+        return edited(self.root.source.text, [*edits, *self._seeded(variant)])
 
-    def moved(self, values: Sequence[str], policy: str, folder: str) -> bytes:
-        """The scenario with values and a policy, as a file of another folder."""
-        more = [set_attribute(self.root, "policy", policy)] if policy else []
+    def _seeded(self, variant: Variant) -> list[Edit]:
+        """The edit that lets a run be drawn by its seed, if anything is drawn."""
+        if not (self._drawn and variant.seed):
+            return []
+        return [set_attribute(self.root, "seed", str(variant.seed))]
+
+    def moved(self, variant: Variant, folder: str) -> bytes:
+        """The scenario of a run with its policy, as a file of another folder."""
+        values, policy, more = variant.values, variant.policy, self._seeded(variant)
+        more += [set_attribute(self.root, "policy", policy)] if policy else []
         varied = {
             (one.node.index, one.attribute.name): value
             for one, value in zip(self.targets, values, strict=True)
@@ -270,7 +284,7 @@ class Stage:
             DocumentError: they do not go together.
         """
         script = self.scripts[variant.scenario]
-        data = script.text(variant.values)
+        data = script.text(variant)
         pairs = zip(script.targets, variant.values, strict=True)
         key = variant.scenario, tuple(value for one, value in pairs if one.loads)
         if key not in self._cast:
@@ -350,7 +364,7 @@ class Stage:
         """
         script = self.scripts[variant.scenario]
         with in_place_of_files(self.files):
-            data = script.moved(variant.values, variant.policy, folder)
+            data = script.moved(variant, folder)
             loaded = load_text(os.path.join(folder, f"{name}.xml"), data)
             lines: list[str] = []
             self.rehearsed(variant, loaded, lines.append)

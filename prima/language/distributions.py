@@ -25,6 +25,8 @@ MOST_VALUES = 1_000_000
 """Values that a distribution's file may have."""
 RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<arguments>.*)\)")
+EDGE = 1e-9
+"""How near shares come to 0 and 1."""
 
 Quantile = Callable[[float], float]
 """The value (ms for times) below which a share, between 0 and 1, of all values lies."""
@@ -49,7 +51,11 @@ class Distributions:
     """Reads the distributions of one kind of values within bounds."""
 
     def __init__(
-        self, kind: str, low: float | None = None, high: float | None = None, folder: str = ""
+        self,
+        kind: str,
+        low: float | None = None,
+        high: float | None = None,
+        folder: str | None = "",
     ) -> None:
         """Set what may be written.
 
@@ -57,7 +63,7 @@ class Distributions:
             kind: one of :data:`MEASURED`.
             low: the least value (ms for times); by default the kind's own.
             high: the greatest value (ms for times); by default the kind's own.
-            folder: where files of values are.
+            folder: where files of values are; None where none may be named.
         """
         self.kind = kind
         self.folder = folder
@@ -84,9 +90,17 @@ class Distributions:
     def read(self, piece: str) -> Quantile | None:
         """The quantiles of a distribution, in ms for times, or None if the text is not one.
 
+        They stay within the bounds.
+
         Raises:
             ValueError: it is malformed, unknown or out of range; the message is a sentence.
         """
+        made = self._read(piece)
+        if made is None:
+            return None
+        return lambda share: min(max(made(min(max(share, EDGE), 1 - EDGE)), self.low), self.high)
+
+    def _read(self, piece: str) -> Quantile | None:
         match = RANGE.fullmatch(piece)
         if match is not None and match["step"] is None:
             return self._uniform([match["low"].strip(), match["high"].strip()])
@@ -146,6 +160,9 @@ class Distributions:
 
     def _empirical(self, given: list[str]) -> Quantile:
         name, _, column = self._arguments("empirical", given, "FILE.csv")[0].partition(":")
+        if self.folder is None:
+            remedy = f"vary it: prima sweep --vary PATH=empirical({name})"
+            raise ValueError(f"A document draws nothing from a file; {remedy}.")
         values = sorted(self.value(one) for one in self._cells(name, column))
         if not values:
             raise ValueError(f"{name} has no values.")
@@ -157,7 +174,7 @@ class Distributions:
         Bare numbers are seconds where times are wanted.
         """
         try:
-            with (Path(self.folder) / name).open(encoding="utf-8-sig", newline="") as stream:
+            with (Path(self.folder or "") / name).open(encoding="utf-8-sig", newline="") as stream:
                 lines = [row for row in islice(csv.reader(stream), MOST_VALUES + 2) if row]
         except (OSError, ValueError, csv.Error) as error:
             why = getattr(error, "strerror", None) or error

@@ -204,18 +204,42 @@ class Kind:
     doc: str
 
 
+DRAWABLE = {"delay": "duration", "quantity": "number"}
+"""Kinds of values that may be drawn from a distribution, and the kind of what is drawn."""
+
+
+def _drawable(plain: Callable[[str], Value], pattern: str, doc: str) -> Kind:
+    """The kind of what is either plain or a distribution: of that the text, as bounds count too.
+
+    :class:`prima.language.distributions.Distributions` reads it.
+    """
+    drawn = rf"{pattern} *\.\. *{pattern}|[a-z]+\([^()]*\)"
+    is_drawn = re.compile(drawn)
+    return Kind(
+        lambda text: text if is_drawn.fullmatch(text) else plain(text),
+        "xs:string",
+        f"{pattern}|{drawn}",
+        doc,
+    )
+
+
+_XSD_DURATION = r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(ms|s)"
+_XSD_NUMBER = r"[+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?"
+
 KINDS: dict[str, Kind] = {
     "duration": Kind(
-        _duration,
-        "xs:string",
-        r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(ms|s)",
-        "a time with its unit, as in 2s or 500ms",
+        _duration, "xs:string", _XSD_DURATION, "a time with its unit, as in 2s or 500ms"
     ),
-    "number": Kind(
+    "delay": _drawable(
+        _duration,
+        _XSD_DURATION,
+        "a time, as in 2s, or a distribution of times, as in normal(5s,1s) or 0s..20s",
+    ),
+    "number": Kind(_number, "xs:string", _XSD_NUMBER, "a number, as in 1.5"),
+    "quantity": _drawable(
         _number,
-        "xs:string",
-        r"[+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?",
-        "a number, as in 1.5",
+        _XSD_NUMBER,
+        "a number, as in 1.5, or a distribution of numbers, as in normal(1,0.2) or 0.5..2",
     ),
     "integer": Kind(_integer, "xs:string", r"[+\-]?[0-9]{1,9}", "a whole number"),
     "boolean": Kind(_boolean, "xs:string", "true|false", "true or false"),
@@ -333,7 +357,7 @@ def nearest(kind: str, value: float, low: float | None, high: float | None, *spa
 
 def _written(kind: str, value: float) -> str:
     """A number, or a time in ms with its unit."""
-    if kind != "duration":
+    if DRAWABLE.get(kind, kind) != "duration":
         return f"{value:g}"
     return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
 

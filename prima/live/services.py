@@ -166,7 +166,7 @@ class LiveServices:
         if fetches and not endpoint.model:
             return await self._fetch(endpoint, order, params)
         data = await self._data(endpoint, params)
-        return fetched_of(order, Reply(0, data)) if fetches else event_of(order, Reply(0, data))
+        return fetched_of(order, Reply(data)) if fetches else event_of(order, Reply(data))
 
     def _of(self, uri: str) -> Endpoint | None:
         """The service that a URI is of: the one named, or the one with the longest address."""
@@ -343,8 +343,8 @@ def _request(endpoint: Endpoint, what: Data) -> Request:
 def _failed(order: Order, why: str) -> Inbound:
     """The answer to an order of which nothing came."""
     if "method" in order.data:
-        return fetched_of(order, Reply(0, error=why))
-    return event_of(order, Reply(0, error=why))
+        return fetched_of(order, Reply(error=why))
+    return event_of(order, Reply(error=why))
 
 
 async def in_thread(work: Callable[[], T]) -> T:

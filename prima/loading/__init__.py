@@ -11,6 +11,7 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import islice
 from os.path import exists, normpath
 from typing import TYPE_CHECKING, TypeVar
@@ -243,9 +244,9 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
         from prima.devices.profile import read_robot
         from prima.devices.vocabulary import ROBOT, SERVICES
         from prima.sim.map import read_world
-        from prima.sim.vocabulary import SCENARIO, WORLD
+        from prima.sim.vocabulary import SCENARIO, USER, WORLD
 
-        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)
+        kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)
         vocabulary = check_root(parse(path, data, kinds), kinds)
         if vocabulary is DIALOGUE:
             return _application_problems(path, data)
@@ -260,6 +261,11 @@ def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
             return read_robot(path, data).warnings
         elif vocabulary is SERVICES:
             _services(path, data)
+            return []
+        elif vocabulary is USER:
+            from prima.sim.user import read_user
+
+            read_user(path, data)
             return []
         else:
             return _load(path_of(path), data, whole=True).problems
@@ -517,8 +523,20 @@ def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
     for service, before in zip(scenario.services, loaded.cast.scenario.services, strict=True):
         for reply, old in zip(service.replies, before.replies, strict=True):
             reply.body = old.body
+    for name, user in loaded.cast.scenario.users.items():
+        scenario.take(name, user)
     files = {**loaded.files, path_of(path).name: _digest(data)}
     return Loaded(replace(loaded.cast, scenario=scenario), files, loaded.problems)
+
+
+def seeded(loaded: Loaded, seed: int | None) -> Loaded:
+    """What was loaded, drawn by another seed; None for the scenario's own."""
+    from dataclasses import replace
+
+    if seed is None:
+        return loaded
+    scenario = replace(loaded.cast.scenario, seed=seed)
+    return Loaded(replace(loaded.cast, scenario=scenario), loaded.files, loaded.problems)
 
 
 def _without_ignored(loaded: Loaded) -> Loaded:
@@ -666,6 +684,7 @@ def _load(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Load
     root = scenario.node
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
+    reading.users(scenario)
     world = reading.read(scenario.world, root.attribute_place("world"), read_world)
     profile = reading.read(scenario.robot, root.attribute_place("robot"), read_robot)
     if world is not None:
@@ -797,6 +816,20 @@ class _Reading:
             if document is not None:
                 made.append((area, document.id))
         return made
+
+    def users(self, scenario: Scenario) -> None:
+        """The documents of how persons behave."""
+        from prima.sim.user import read_user
+
+        wrong: set[str] = set()
+        for person in scenario.persons:
+            if person.user and person.user not in wrong and person.node is not None:
+                place = person.node.attribute_place("user")
+                user = self.read(person.user, place, partial(read_user, person=person.name))
+                if user is None:
+                    wrong.add(person.user)  # told once
+                else:
+                    scenario.take(person.name, user)
 
     def replies(self, scenario: Scenario) -> None:
         """What services answer fetches with."""

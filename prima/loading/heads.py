@@ -53,6 +53,7 @@ def run_record(
             "bound": bound,
             **({} if absence == ABSENCE_MS else {"absence": absence / 1000}),
             **({} if patience == PATIENCE_MS else {"patience": patience / 1000}),
+            **({"seed": cast.scenario.seed} if cast.scenario.drawn else {}),
             "date": cast.scenario.date,
             "applications": [doc.id for doc in cast.documents],
             "files": loaded.files,

@@ -16,7 +16,7 @@ from prima.markup.vocabulary import (
     attribute,
     attributes_by_name,
 )
-from prima.sim.vocabulary import SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 
@@ -89,7 +89,7 @@ GRAMMAR = Vocabulary(
 )
 """SRGS in XML, as used in VoiceXML documents."""
 
-VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES, VOICEXML, GRAMMAR)
+VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES, VOICEXML, GRAMMAR)
 BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
 BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
 
@@ -274,6 +274,7 @@ DEFINES: dict[tuple[str, str, str], str] = {
     ("robot", "gesture", "name"): "gesture",
     ("robot", "adds", "command"): "command",
     ("scenario", "application", "id"): "application",
+    ("scenario", "person", "id"): "person",
     ("scenario", "service", "name"): "service",
     ("scenario", "event", "name"): "event",
     ("scenario", "sensor", "name"): "reading",
@@ -329,6 +330,8 @@ REFERS: dict[tuple[str, str, str], Use] = {
     ("scenario", "unload", "application"): Use(("application",)),
     ("scenario", "service", "application"): Use(("application",)),
     ("scenario", "message", "to"): Use(("application",)),
+    ("scenario", "when", "person"): Use(("person",)),
+    ("scenario", "answer", "person"): Use(("person",)),
     ("voicexml", "goto", "next"): Use(("form",), "uri"),
     ("voicexml", "link", "next"): Use(("form",), "uri"),
     ("voicexml", "choice", "next"): Use(("form",), "uri"),
@@ -360,6 +363,7 @@ FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("scenario", "scenario", "world"): ("world",),
     ("scenario", "scenario", "robot"): ("robot",),
     ("scenario", "application", "src"): ("dialogue", "voicexml"),
+    ("scenario", "person", "user"): ("user",),
     ("scenario", "reply", "src"): (),
     ("world", "area", "application"): ("dialogue", "voicexml"),
     ("voicexml", "vxml", "application"): ("voicexml",),

@@ -39,6 +39,7 @@ DOCUMENTS = {
     "urn:prima:world:1": "a world",
     "urn:prima:robot:1": "a robot",
     "urn:prima:scenario:1": "a scenario",
+    "urn:prima:user:1": "a user",
 }
 """What documents are, by their namespaces."""
 VOICEXML = "a VoiceXML document"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from prima.errors import one_of
-from prima.language.values import read_value
+from prima.language.values import DRAWABLE, read_value
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 
@@ -69,6 +69,7 @@ LONG_SECONDS = 100
 
 
 def _guess(kind: str, text: str) -> str:
+    kind = DRAWABLE.get(kind, kind)
     if kind == "duration" and (match := re.fullmatch(MEASURE, text)):
         number, unit = match[1].replace(",", "."), match[2]
         if unit in ("", "s", "ms"):

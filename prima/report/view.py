@@ -118,6 +118,7 @@ def _facts(run: Run) -> list[tuple[str, str]]:
         ("Policy", _short(head.get("policy"))),
         ("Bound (E4)", _short(head.get("bound"))),
         ("Patience (E6), in seconds", _short(head.get("patience"))),
+        ("Seed", _short(head.get("seed"))),
         ("Applications", _short(", ".join(apps))),
         ("Date of the run", _short(head.get("date"))),
         ("PRIMA", _short(head.get("version"))),

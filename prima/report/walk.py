@@ -106,6 +106,7 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
 
 def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     """Run the scenario again and record the paths; None if the records differ."""
+    from prima.loading import seeded
     from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished
@@ -117,9 +118,11 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     patience = head.get("patience", PATIENCE_MS / 1000)
     if not isinstance(patience, int | float) or patience < 0:
         return None
+    seed = head.get("seed")
     try:
         policy = policy_named(str(policy))
-        rehearsal = Rehearsal(loaded.cast, policy, bound, patience=round(patience * 1000))
+        cast = seeded(loaded, seed if isinstance(seed, int) else None).cast
+        rehearsal = Rehearsal(cast, policy, bound, patience=round(patience * 1000))
     except UsageError:
         return None
     watch = Watch(rehearsal.devices.world)

@@ -301,7 +301,7 @@ class Body:
 
     def _search_on(self, now: int, effort: Effort) -> bool:
         """Turn-and-Search: found, or look on, or turn the camera's angle and try again."""
-        if self.world.sees_person():
+        if self.world.find_somebody():
             self.locomotion.stand()
             return True
         if now - effort.plan.since >= int(effort.begin.command.args["patience"]):

@@ -12,7 +12,7 @@ from prima.messages import Inbound, Loaded, Order, Record
 from prima.session import AnyDocument
 from prima.sim.entrances import Entrances
 from prima.sim.map import Area, Map
-from prima.sim.person import Person
+from prima.sim.people import People
 from prima.sim.robot import Robot
 from prima.sim.routes import Routes
 from prima.sim.scenario import Scenario
@@ -42,16 +42,16 @@ class SimulatedDevices:
         self.cast = cast
         self.world = _world(cast)
         self.robot = Robot(cast.robot, self.world, Routes(cast.world), exclusive)
-        self.person = Person(scenario, self.world, self.robot)
-        self.services = Services(scenario.services, web)
-        self.telephone = Telephone(scenario.transfers)
+        self.people = People(scenario, self.world, self.robot)
+        self.services = Services(scenario.services, web, scenario.seed)
+        self.telephone = Telephone(scenario.transfers, scenario.seed)
         self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
         """Applications of PRIMA's own language."""
         self._watched = watches(cast.documents)
         if self._watched:
             self.robot.body.told_of = sensors_watched(cast.documents)
         self._loads = sorted(
-            (start, index, doc.id)
+            (start.ms(scenario.seed), index, doc.id)
             for index, ((_, start, _), doc) in enumerate(
                 zip(scenario.applications, cast.documents, strict=False)
             )
@@ -63,7 +63,7 @@ class SimulatedDevices:
     @property
     def awaits(self) -> bool:
         """Whether an application is still to be loaded."""
-        return bool(self._loads) or self.person.will_load
+        return bool(self._loads) or self.people.will_load
 
     def due(self) -> int | None:
         """The next instant at which something is to be collected (ms), if ever."""
@@ -73,7 +73,7 @@ class SimulatedDevices:
             0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
             self.robot.due(),
-            self.person.due(),
+            self.people.due(),
             self.services.due(),
             self.telephone.due(),
             self.world.time + STEP_MS if moves else None,
@@ -91,14 +91,14 @@ class SimulatedDevices:
         for one in self._entrances.cross(self.world.position):
             inbound.append(self._loaded(one.app, one.place) if isinstance(one, Loaded) else one)
         inbound += self.robot.collect(now)
-        said = self.person.collect(now)
+        said = self.people.collect(now)
         self._said = bool(said)
         for value in said:
             inbound.append(self._loaded(value.app) if isinstance(value, Loaded) else value)
         inbound += self.services.collect(now)
         inbound += self.telephone.collect(now)
         if self._watched:
-            inbound += self.robot.sense(self.person.sensors)
+            inbound += self.robot.sense(self.people.sensors)
         return inbound
 
     def order(self, now: int, order: Order) -> None:
@@ -115,7 +115,7 @@ class SimulatedDevices:
         self.robot.settle(now)
         if self._said:
             self.robot.ear.listen_on(now)
-        self.person.observe(now, records)
+        self.people.observe(now, records)
 
     def _loaded(self, name: str, place: str = "") -> Loaded:
         """An application starts; one of VoiceXML is told of the user's call."""
@@ -132,7 +132,8 @@ def _world(cast: Cast) -> World:
     if heading is None:
         heading = plan.headings.get(scenario.robot_at, 0.0)
     world = World(plan, cast.robot, at, heading)
-    world.person = scenario.person_point or plan.point(scenario.person_at)
+    for person in scenario.persons:
+        world.put(person.name, person.point or plan.point(person.at))
     return world
 
 

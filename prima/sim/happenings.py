@@ -10,7 +10,11 @@ from prima.errors import suggestion
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.sim.vocabulary import SCENARIO
+from prima.sim.chance import Amount, Chance, Draws
+
+SURE = Chance()
+AT_ONCE = Amount(1)
+"""A ms later."""
 
 
 @dataclass(slots=True)
@@ -28,10 +32,15 @@ class When:
 
     trigger: str
     what: Any
-    after: int
+    """What is waited for: words, a Command, an event; an :class:`Amount` (ms) for ``at``."""
+    after: Amount
     times: int
     count: int
     doings: list[Doing]
+    chance: Chance = SURE
+    person: str = ""
+    """Whose doing it is; empty for the first person's."""
+    node: Node | None = None
 
 
 @dataclass(slots=True)
@@ -41,8 +50,8 @@ class Reply:
     ``src`` names the file that a fetch is answered with, ``body`` is what it holds.
     """
 
-    after: int
     data: dict[str, Json] = field(default_factory=dict)
+    after: Amount = AT_ONCE
     error: str = ""
     status: int = 0
     src: str = ""
@@ -79,15 +88,16 @@ class Transfer:
 
     to: str
     outcome: str
-    after: int
-    lasts: int
+    after: Amount
+    lasts: Amount
 
 
 TRIGGERS = ("at", "said", "asked", "doing", "done", "on")
 
 
-def read_services(reader: Reader) -> list[Service]:
+def read_services(draws: Draws) -> list[Service]:
     """The services; what an application sends to a name goes to its own, or to that of all."""
+    reader = draws.reader
     seen: set[tuple[str, str]] = set()
     services = []
     for node in reader.root.all("service"):
@@ -98,20 +108,23 @@ def read_services(reader: Reader) -> list[Service]:
             remedy = "Rename one, or put the replies of both into one."
             reader.problem(node, "duplicate-name", message, "name", remedy)
         seen.add((name, owner))
-        replies = [read_reply(reader, child) for child in node.nodes if child.key]
+        replies = [read_reply(draws, child) for child in node.nodes if child.key]
         services.append(Service(name, node.get("uri"), replies, owner))
     return services
 
 
-def read_when(reader: Reader, node: Node) -> When:
+def read_when(draws: Draws, node: Node) -> When:
     """A trigger, with what happens then."""
+    reader = draws.reader
     given = [name for name in TRIGGERS if name in node.attributes]
     if len(given) != 1:
         message = "<when> needs exactly one of at, said, asked, doing, done, on."
         if given:
             reader.problem(node, "exclusive", message, given[1], "Write a <when> for each.")
         else:
-            if node.attributes.keys() <= SCENARIO.attributes["when"].keys():  # else told already
+            if (
+                node.attributes.keys() <= reader.vocabulary.attributes["when"].keys()
+            ):  # else told already
                 remedy = 'Write when it happens, such as at="3s" or said="Hello".'
                 reader.problem(node, "missing-attribute", message, "", remedy)
             given = ["at"]
@@ -121,18 +134,26 @@ def read_when(reader: Reader, node: Node) -> When:
             'Put into it what happens then, such as <say>Hello.</say> or <touch sensor="head"/>.'
         )
         reader.problem(node, "empty", message, "", remedy)
-    doings = [_doing(reader, child) for child in node.nodes if child.key]
+    trigger = given[0]
     return When(
-        given[0],
-        reader.get(node, given[0]),
-        reader.get(node, "after") or 0,
+        trigger,
+        draws.amount(node, "at") if trigger == "at" else reader.get(node, trigger),
+        draws.amount(node, "after"),
         reader.get(node, "times") or 1,
         reader.get(node, "count") or 1,
-        doings,
+        [_doing(draws, child) for child in node.nodes if child.key],
+        draws.chance(node),
+        node.get("person"),
+        node,
     )
 
 
-def _doing(reader: Reader, node: Node) -> Doing:
+def _doing(draws: Draws, node: Node) -> Doing:
+    reader = draws.reader
+    if node.tag == "one-of":
+        return _one_of(draws, node)
+    if node.tag == "wait":
+        return Doing("wait", "", {"for": draws.amount(node, "for")})
     element = reader.vocabulary.elements[node.key]
     values = {item.name: reader.get(node, item.name) for item in element.attributes}
     if node.tag == "walk":
@@ -142,6 +163,15 @@ def _doing(reader: Reader, node: Node) -> Doing:
     if node.tag == "say":
         values["told"] = _recognised(reader, node)
     return Doing(node.tag, node.text, values)
+
+
+def _one_of(draws: Draws, node: Node) -> Doing:
+    """One of several things that happens."""
+    several = [_doing(draws, child) for child in node.nodes if child.key]
+    if not several:
+        remedy = "Put into it what may happen, such as <say>Yes.</say><say>No.</say>."
+        draws.reader.problem(node, "empty", "<one-of> holds nothing.", "", remedy)
+    return Doing("one-of", "", {"several": several, "choice": draws.choice(node)})
 
 
 def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
@@ -174,27 +204,30 @@ def check_where(reader: Reader, node: Node, name: str, what: str, needed: bool =
         reader.problem(node, "missing-attribute", message, "", f'Write {lacks}="...".')
 
 
-def read_answer(reader: Reader, node: Node) -> When:
+def read_answer(draws: Draws, node: Node) -> When:
     """What the user says to a question."""
-    after = reader.get(node, "after")
-    times = reader.get(node, "times") or 1
+    reader = draws.reader
     return When(
         "asked",
         node.get("to"),
-        1000 if after is None else after,
-        times,
+        draws.amount(node, "after", 1000),
+        reader.get(node, "times") or 1,
         1,
         [Doing("say", node.text, {"told": _recognised(reader, node)})],
+        draws.chance(node),
+        node.get("person"),
+        node,
     )
 
 
-def read_reply(reader: Reader, node: Node) -> Reply:
+def read_reply(draws: Draws, node: Node) -> Reply:
     """What a service answers, or how it fails."""
-    after = max(reader.get(node, "after") or 0, 1)
+    reader, after = draws.reader, draws.amount(node, "after")
     if node.tag == "failure":
         status = reader.get(node, "status") or 0
-        return Reply(after, error=reader.get(node, "reason") or "no answer", status=status)
-    return Reply(after, _data(node), src=node.get("src"), node=node)
+        error = reader.get(node, "reason") or "no answer"
+        return Reply(after=after, error=error, status=status)
+    return Reply(_data(node), after, src=node.get("src"), node=node)
 
 
 def read_connection(node: Node) -> dict[str, Json]:
@@ -215,8 +248,9 @@ def read_connection(node: Node) -> dict[str, Json]:
     )
 
 
-def read_transfer(reader: Reader, node: Node) -> Transfer:
+def read_transfer(draws: Draws, node: Node) -> Transfer:
     """How a call to a destination goes."""
+    reader = draws.reader
     outcome = reader.get(node, "outcome") or ENDINGS[0]
     if outcome not in (*UNANSWERED, *ENDINGS) and not outcome.startswith("error."):
         message = f'A call does not end with "{outcome}".'
@@ -224,13 +258,8 @@ def read_transfer(reader: Reader, node: Node) -> Transfer:
         hint = suggestion(outcome, {*UNANSWERED, *ENDINGS}, *spans)
         remedy = hint or f"Write {', '.join((*UNANSWERED, *ENDINGS))}, or an error's event."
         reader.problem(node, "bad-value", message, "outcome", remedy)
-    lasts = reader.get(node, "lasts")
-    return Transfer(
-        node.get("to"),
-        outcome,
-        max(reader.get(node, "after") or 0, 1),
-        max(10_000 if lasts is None else lasts, 1),
-    )
+    after, lasts = draws.amount(node, "after"), draws.amount(node, "lasts", 10_000)
+    return Transfer(node.get("to"), outcome, after, lasts)
 
 
 def _data(node: Node) -> dict[str, Json]:

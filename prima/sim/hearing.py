@@ -202,7 +202,8 @@ def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
         if not at or at == "end":
             continue
         after = node.get("after") if node.tag == "when" else ""
-        if sum(int(read_value("duration", one)) for one in (at, after) if one) > until:
+        times = [read_value("delay", one) for one in (at, after) if one]
+        if sum(one for one in times if isinstance(one, int)) > until:  # others are drawn
             message = f"The run is over after {until / 1000:g} s (until): this never comes."
             remedy = "Write an earlier time, or a later until."
             place = node.attribute_place("at")
@@ -210,7 +211,7 @@ def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
 
 
 def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
-    """A user who begins outside (m) the walls of a world whose places are all inside."""
+    """Users who begin outside (m) the walls of a world whose places are all inside."""
     corners = [end for wall in world.walls for end in wall]
     if not corners:
         return

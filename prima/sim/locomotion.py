@@ -163,15 +163,22 @@ class Locomotion:
 
     def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
         """The direction and speed that pass a person who stands in the way, if one does."""
+        for person in self.world.in_the_way():
+            found = self._round(person, heading, goal)
+            if found is not None:
+                return found
+        return heading, self.profile.speed
+
+    def _round(self, person: Point, heading: float, goal: Point) -> tuple[float, float] | None:
+        """The direction and speed that pass a person, or None if they do not stand in the way."""
         world, profile = self.world, self.profile
-        person = world.person
-        if person is None or distance(person, goal) < 0.05:
-            return heading, profile.speed
+        if distance(person, goal) < 0.05:
+            return None
         gap = distance(world.position, person)
         toward = bearing(world.position, person)
         aside = difference(heading, toward)
         if gap > IN_THE_WAY or gap > distance(world.position, goal) or abs(aside) > PASSING:
-            return heading, profile.speed
+            return None
         if gap < profile.radius + TOO_NEAR and abs(difference(toward, world.heading)) < 60.0:
             return toward + (PASSING if aside >= 0 else -PASSING), 0.0
         return toward + (PASSING if aside >= 0 else -PASSING), profile.speed / 2
@@ -224,7 +231,7 @@ class Locomotion:
     def search(self, plan: Plan) -> bool:
         """Turn on while the user is not to be seen."""
         plan.turn_left -= self._turned(plan)
-        if abs(plan.turn_left) > ALIGNED and not self.world.sees_person():
+        if abs(plan.turn_left) > ALIGNED and not self.world.find_somebody():
             self._rotate(plan.turn_left)
         else:
             plan.turn_left = 0.0

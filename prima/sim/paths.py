@@ -12,6 +12,7 @@ import re
 from typing import NamedTuple
 
 from prima.errors import UsageError, did_you_mean, one_of
+from prima.language.values import DRAWABLE
 from prima.markup.edits import Edit, set_attribute, set_text
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
@@ -38,10 +39,13 @@ OWN = {
 
 Of a ``when`` it is ``after``, or ``at`` where that is its trigger.
 """
-LOADED = frozenset({"scenario", "application", "service", "reply"})
+LOADED = frozenset({"scenario", "person", "application", "service", "reply"})
 """Elements of which some attributes name files, or what runs."""
 LIGHT = frozenset(
-    {"until", "date", "policy", "patience", "id", "title", "after", "start", "reason", "status"}
+    {
+        *("until", "date", "policy", "patience", "seed", "id", "title"),
+        *("at", "x", "y", "speed", "after", "start", "reason", "status"),
+    }
 )
 """Attributes of these elements that do neither."""
 MOST_TOLD = 12
@@ -58,8 +62,9 @@ class Target(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of its values (see :mod:`prima.language.values`)."""
-        return self.attribute.kind if self.attribute else "text"
+        """The kind of its values (see :mod:`prima.language.values`): also of those that are drawn."""
+        kind = self.attribute.kind if self.attribute else "text"
+        return DRAWABLE.get(kind, kind)
 
     @property
     def written(self) -> str:

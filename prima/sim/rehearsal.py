@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.errors import DocumentError, Problem
@@ -48,7 +50,8 @@ def check_names(
         ids = {document.id for document in documents}
         for tag, name in NAMING_APPLICATIONS:
             known[tag, name] = ids, "application"
-    for node in scenario.node.walk():
+    nodes = (scenario.node, *(user.node for user in scenario.users.values()))
+    for node in chain.from_iterable(one.walk() for one in nodes):
         for name in node.attributes:
             words, what = known.get((node.tag, name), (None, ""))
             word = node.attributes[name]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from prima.devices.reading import RENAME, Reader
 from prima.errors import DocumentError, Problem
@@ -10,6 +10,7 @@ from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.prelude import START
+from prima.sim.chance import Amount, Draws
 from prima.sim.expectations import Expectation, read_expectations
 from prima.sim.happenings import (
     Service,
@@ -23,10 +24,28 @@ from prima.sim.happenings import (
     read_when,
 )
 from prima.sim.map import Point
+from prima.sim.user import User
 from prima.sim.vocabulary import SCENARIO
 
 UNTIL_MS = 600_000
 """When a run ends whose scenario does not say."""
+WALKING = Amount(1.0)
+"""How fast a person walks of whom nobody says so."""
+
+
+@dataclass(slots=True)
+class Person:
+    """A person of a scenario."""
+
+    name: str
+    at: str = ""
+    """The place or thing where they are at first."""
+    point: Point | None = None
+    speed: Amount = WALKING
+    """Metres a second."""
+    user: str = ""
+    """The document that says how they behave, as a path."""
+    node: Node | None = None
 
 
 @dataclass(slots=True)
@@ -44,12 +63,13 @@ class Scenario:
     patience: int
     """How long (ms) an application may keep others from the speaker (E6); 0 for ever."""
     entrances: bool
+    seed: int
+    """By which is drawn what the scenario, and its users, leave to chance."""
     robot_at: str
     robot_heading: float | None
-    person_at: str
-    person_point: Point | None
-    person_speed: float
-    applications: list[tuple[str, int, Node]]
+    persons: list[Person]
+    applications: list[tuple[str, Amount, Node]]
+    """Their documents, and when they are loaded (ms)."""
     whens: list[When]
     services: list[Service]
     connection: dict[str, Json]
@@ -57,7 +77,31 @@ class Scenario:
     transfers: list[Transfer]
     expectations: list[Expectation]
     """What ``prima test`` checks, in document order."""
+    draws: Draws
     node: Node
+    users: dict[str, User] = field(default_factory=dict)
+    """How persons behave by documents of their own, by their names."""
+
+    @property
+    def drawn(self) -> bool:
+        """Whether anything in it is drawn by its seed."""
+        return self.draws.any or any(user.draws.any for user in self.users.values())
+
+    def take(self, name: str, user: User) -> None:
+        """Let a person be a user of a kind: what the scenario says of them itself comes first."""
+        self.users[name] = user
+        for person in self.persons:
+            if person.name == name and person.node is not None:
+                person.speed = person.speed if "speed" in person.node.attributes else user.speed
+        first = self.persons[0].name
+        for when in self.whens:
+            if (
+                when.node is not None
+                and when.node.tag == "answer"
+                and (when.person or first) == name
+            ):
+                user.answer(when, self.draws.name(when.node))
+        self.whens += user.whens
 
 
 def read_scenario(file: str, data: bytes) -> Scenario:
@@ -80,19 +124,19 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
     """
     reader = Reader(SCENARIO, file, data)
     root = reader.root
-    robot, person = _only(reader, "robot"), _only(reader, "person")
-    connection = _only(reader, "connection")
+    draws = Draws(reader)
+    robot, connection = _only(reader, "robot"), _only(reader, "connection")
     applications = [
-        (node.get("src"), reader.get(node, "start") or 0, node) for node in root.all("application")
+        (node.get("src"), draws.amount(node, "start"), node) for node in root.all("application")
     ]
     if not applications and root.get("entrances") != "open":
         message = "The scenario runs no <application>."
         remedy = 'Name one, or write entrances="open" to take up what the world offers.'
         reader.problem(root, "missing-element", message, "", remedy)
-    if person is not None:
-        check_where(reader, person, "at", "a place to be at", needed=False)
+    persons = _persons(draws)
     _check_ids(reader)
     until, patience = reader.get(root, "until"), reader.get(root, "patience")
+    seed = reader.get(root, "seed")
     scenario = Scenario(
         id=root.get("id"),
         title=root.get("title"),
@@ -103,18 +147,18 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         policy=root.get("policy", "prima"),
         patience=PATIENCE_MS if patience is None else patience,
         entrances=root.get("entrances") == "open",
+        seed=1 if seed is None else seed,
         robot_at=robot.get("at") if robot is not None else "",
         robot_heading=reader.given(robot, "heading"),
-        person_at=person.get("at") if person is not None else "",
-        person_point=_point(reader, person),
-        person_speed=reader.given(person, "speed") or 1.0,
+        persons=persons,
         applications=applications,
-        whens=[read_when(reader, node) for node in root.all("when")]
-        + [read_answer(reader, node) for node in root.all("answer")],
-        services=read_services(reader),
+        whens=[read_when(draws, node) for node in root.all("when")]
+        + [read_answer(draws, node) for node in root.all("answer")],
+        services=read_services(draws),
         connection=read_connection(connection) if connection is not None else {},
-        transfers=[read_transfer(reader, node) for node in root.all("transfer")],
+        transfers=[read_transfer(draws, node) for node in root.all("transfer")],
         expectations=read_expectations(reader, root),
+        draws=draws,
         node=root,
     )
     return scenario, reader.problems
@@ -139,8 +183,38 @@ def _only(reader: Reader, tag: str) -> Node | None:
     return found[0] if found else None
 
 
-def _point(reader: Reader, person: Node | None) -> Point | None:
-    """Where the user begins, if that is given by coordinates (m)."""
-    if person is None or "x" not in person.attributes:
+def _persons(draws: Draws) -> list[Person]:
+    """Who is there; one whom nobody has placed if the scenario names none."""
+    reader = draws.reader
+    nodes, seen = reader.root.all("person"), set[str]()
+    for node in nodes:
+        check_where(reader, node, "at", "a place to be at", needed=False)
+        name = node.get("id")
+        if len(nodes) > 1 and not name:
+            message = "Of several persons each needs an id."
+            reader.problem(node, "missing-attribute", message, "", 'Write id="...".')
+        elif name in seen:
+            message = f'The id "{name}" is there twice.'
+            reader.problem(node, "duplicate-id", message, "id", RENAME)
+        seen.add(name)
+    for node in reader.root.all("when", "answer"):
+        reader.known(node, "person", {*seen, "user"} if len(nodes) < 2 else seen, "person")
+    persons = [
+        Person(
+            node.get("id") or "user",
+            node.get("at"),
+            _point(reader, node),
+            draws.amount(node, "speed", 1.0),
+            node.get("user"),
+            node,
+        )
+        for node in nodes
+    ]
+    return persons or [Person("user")]
+
+
+def _point(reader: Reader, person: Node) -> Point | None:
+    """Where a person begins, if that is given by coordinates (m)."""
+    if "x" not in person.attributes:
         return None
     return reader.get(person, "x") or 0.0, reader.get(person, "y") or 0.0

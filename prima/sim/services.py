@@ -28,7 +28,8 @@ and serial are open."""
 class Services:
     """Answers what applications send or fetch; one that the scenario does not name does not."""
 
-    def __init__(self, services: Iterable[Service], web: Web | None = None) -> None:
+    def __init__(self, services: Iterable[Service], web: Web | None = None, seed: int = 1) -> None:
+        self._seed = seed
         self._services = {(one.name, one.application): one for one in services}
         self._names = {name for name, _ in self._services}
         self._web = web
@@ -46,8 +47,9 @@ class Services:
         if service is None and fetches:
             self._outside(now, order)
             return
+        asked = 0
         if service is None:
-            reply = Reply(1, error=self._no_such(name))
+            reply = Reply(error=self._no_such(name))
         elif not service.replies:
             return  # it takes what it is sent and says nothing
         else:
@@ -55,9 +57,8 @@ class Services:
             asked = self._asked.get(which, 0)
             reply = service.replies[min(asked, len(service.replies) - 1)]
             self._asked[which] = asked + 1
-        self._later(
-            now, reply.after, fetched_of(order, reply) if fetches else event_of(order, reply)
-        )
+        after = max(reply.after.ms(self._seed, asked + 1), 1)
+        self._later(now, after, fetched_of(order, reply) if fetches else event_of(order, reply))
 
     def _named(self, name: str, app: str) -> Service | None:
         """The service of a name that an application may ask: its own, or that of all."""

@@ -6,19 +6,20 @@ from collections.abc import Iterable
 from heapq import heappop, heappush
 
 from prima.messages import Inbound, Order, Transferred
-from prima.sim.happenings import UNANSWERED, Transfer
+from prima.sim.happenings import AT_ONCE, UNANSWERED, Transfer
 
 ANSWERED = "answered"
-NOBODY = Transfer("", "noanswer", 1, 1)
+NOBODY = Transfer("", "noanswer", AT_ONCE, AT_ONCE)
 """How a bridged call goes where the scenario says nothing."""
-GIVEN_AWAY = Transfer("", "unknown", 1, 1)
+GIVEN_AWAY = Transfer("", "unknown", AT_ONCE, AT_ONCE)
 """How other calls go there: somebody answers, and the user is gone."""
 
 
 class Telephone:
     """Puts calls through as the scenario says, and tells what becomes of them."""
 
-    def __init__(self, transfers: Iterable[Transfer] = ()) -> None:
+    def __init__(self, transfers: Iterable[Transfer] = (), seed: int = 1) -> None:
+        self._seed = seed
         self._transfers = list(transfers)
         self._made: dict[str, int] = {}
         self._pending: list[tuple[int, int, Transferred]] = []
@@ -35,9 +36,11 @@ class Telephone:
         first, then = call.outcome, ""
         if call.outcome not in UNANSWERED and not call.outcome.startswith("error."):
             first, then = ANSWERED, call.outcome
-        self._later(now + call.after, Transferred(order.app, serial, uri, first))
+        made = self._made.get(call.to, 1)
+        begins = now + max(call.after.ms(self._seed, made), 1)
+        self._later(begins, Transferred(order.app, serial, uri, first))
         if then and kind == "bridge":
-            ends = now + call.after + call.lasts
+            ends = begins + max(call.lasts.ms(self._seed, made), 1)
             self._later(ends, Transferred(order.app, serial, uri, then))
 
     def _of(self, uri: str) -> Transfer | None:

@@ -13,7 +13,7 @@ _Y = attribute("y", "number", "metres north", "required", low=-1000, high=1000)
 _HEADING = attribute(
     "heading", "number", "degrees counter-clockwise from east", default="0", low=-360, high=360
 )
-_AFTER = attribute("after", "duration", "how long afterwards", default="0s")
+_AFTER = attribute("after", "delay", "how long afterwards", default="0s")
 
 WORLD = Vocabulary(
     "urn:prima:world:1",
@@ -106,8 +106,18 @@ _CONFIDENCE = attribute(
     "confidence", "number", "how sure the recogniser is of the words", default="1", low=0, high=1
 )
 _CALLED = attribute("id", "id", "its name, for experiments that vary it (prima sweep)")
+_CHANCE = attribute(
+    "chance",
+    "number",
+    "how likely it is, each time, from 0 to 1; drawn by the scenario's seed",
+    default="1",
+    low=0,
+    high=1,
+)
+_PERSON = attribute("person", "id", "whose doing it is, of several persons; by default the first's")
+_SPEED = attribute("speed", "quantity", "metres a second", default="1", low=0.05, high=5)
 _TRIGGERS = (
-    attribute("at", "duration", "a time of the run"),
+    attribute("at", "delay", "a time of the run"),
     attribute("said", "text", "the robot has said something with these words"),
     attribute("asked", "text", "the robot has asked something with these words and listens"),
     attribute("doing", "id", "the robot begins such a Command"),
@@ -170,6 +180,13 @@ SCENARIO = Vocabulary(
                     default="closed",
                     choices=("open", "closed"),
                 ),
+                attribute(
+                    "seed",
+                    "integer",
+                    "which of all possible runs it is: what is drawn in it depends on this alone",
+                    default="1",
+                    low=0,
+                ),
             ),
             (
                 "robot",
@@ -192,12 +209,14 @@ SCENARIO = Vocabulary(
         ),
         Element(
             "person",
-            "The user, and where at first.",
+            "The user, and where at first; of several the robot attends to one at a time.",
             (
+                attribute("id", "id", "their name; needed where there are several", default="user"),
                 attribute("at", "id", "a place or thing"),
                 attribute("x", "number", "metres east", low=-1000, high=1000),
                 attribute("y", "number", "metres north", low=-1000, high=1000),
-                attribute("speed", "number", "metres a second", default="1", low=0.05, high=5),
+                _SPEED,
+                attribute("user", "path", "the document that says how they behave; see <user>"),
             ),
         ),
         Element(
@@ -205,7 +224,7 @@ SCENARIO = Vocabulary(
             "An application that the robot runs, in the order in which they are declared.",
             (
                 attribute("src", "path", "its document", "required"),
-                attribute("start", "duration", "when it is loaded", default="0s"),
+                attribute("start", "delay", "when it is loaded", default="0s"),
                 attribute(
                     "id", "id", "its name, for a VoiceXML document; by default that of its file"
                 ),
@@ -225,11 +244,13 @@ SCENARIO = Vocabulary(
             "What the user answers whenever the robot asks something with these words.",
             (
                 _CALLED,
+                _PERSON,
                 attribute("to", "text", "words of the question", "required"),
-                attribute("after", "duration", "how long after it", default="1s"),
+                attribute("after", "delay", "how long after it", default="1s"),
                 attribute(
                     "times", "integer", "how often at most", default="1000", low=1, high=1000
                 ),
+                _CHANCE,
                 _CONFIDENCE,
             ),
             ("alternative",),
@@ -240,11 +261,19 @@ SCENARIO = Vocabulary(
             "What happens at a time, or when the robot has done something: in sequence.",
             (
                 _CALLED,
+                _PERSON,
                 *_TRIGGERS,
                 _AFTER,
                 attribute("times", "integer", "how often at most", default="1", low=1, high=1000),
                 attribute("count", "integer", "the first time that counts", default="1", low=1),
+                _CHANCE,
             ),
+            ("one-of", *_ACTIONS),
+        ),
+        Element(
+            "one-of",
+            "One of these happens, each as likely as the others; drawn by the scenario's seed.",
+            (),
             _ACTIONS,
         ),
         Element("say", "The user says something.", (_CONFIDENCE,), ("alternative",), text=True),
@@ -256,7 +285,7 @@ SCENARIO = Vocabulary(
         ),
         Element(
             "hang-up",
-            "The user hangs up, in the middle of what he says if he speaks: the event"
+            "The user hangs up, in the middle of what they say if they speak: the event"
             " connection.disconnect.hangup.",
         ),
         Element(
@@ -272,7 +301,7 @@ SCENARIO = Vocabulary(
             ),
         ),
         Element(
-            "wait", "Nothing, for a while.", (attribute("for", "duration", "how long", "required"),)
+            "wait", "Nothing, for a while.", (attribute("for", "delay", "how long", "required"),)
         ),
         Element(
             "look",
@@ -284,7 +313,7 @@ SCENARIO = Vocabulary(
             "The user goes behind the robot from now on.",
             (attribute("distance", "number", "metres", default="1.2", low=0.3, high=10),),
         ),
-        Element("stay", "The user stays where he is."),
+        Element("stay", "The user stays where they are."),
         Element("leave", "The user goes away and is seen no more."),
         Element("note", "A remark for the reader.", text=True),
         Element(
@@ -393,7 +422,7 @@ SCENARIO = Vocabulary(
             " it, or an attribute of it, that is undefined.",
             (
                 attribute("remote", "text", "the URI of the user's telephone"),
-                attribute("local", "text", "the URI that he has called"),
+                attribute("local", "text", "the URI that they have called"),
                 attribute("protocol", "text", "the protocol's name, as sip"),
                 attribute("version", "text", "the protocol's version"),
                 attribute("aai", "text", "what came along with the call"),
@@ -429,11 +458,9 @@ SCENARIO = Vocabulary(
                     default="far_end_disconnect",
                 ),
                 attribute(
-                    "after", "duration", "how long until it is answered, or fails", default="0s"
+                    "after", "delay", "how long until it is answered, or fails", default="0s"
                 ),
-                attribute(
-                    "lasts", "duration", "how long it lasts once it is answered", default="10s"
-                ),
+                attribute("lasts", "delay", "how long it lasts once it is answered", default="10s"),
             ),
         ),
         Element(
@@ -462,10 +489,53 @@ SCENARIO = Vocabulary(
         **dict.fromkeys(("go", "goto", "move", "topological-move"), Instead("walk", 'to="..."/')),
         **dict.fromkeys(("sleep", "pause", "delay", "after"), 'Write <wait for="3s"/>.'),
         **dict.fromkeys(("on", "at", "if", "then", "catch"), "Write <when>, with its trigger."),
+        **dict.fromkeys(("choice", "choose", "random", "any"), Instead("one-of")),
         **dict.fromkeys(("assert", "expected", "must"), Instead("expect")),
         **dict.fromkeys(("forbid", "must-not", "not"), Instead("never")),
         "world": 'Name it in the root element: <scenario world="..." robot="...">.',
         "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
         "comment": "Write <note>, or a comment of XML: <!-- ... -->.",
+    },
+)
+
+_ITS = ("say", "hang-up", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note")
+"""What a user does, without what happens in the surroundings."""
+
+
+def _without(element: Element, name: str, children: tuple[str, ...] = ()) -> Element:
+    """An element of scenarios as users have it."""
+    kept = tuple(one for one in element.attributes if one.name != name)
+    return replace(element, attributes=kept, children=children or element.children)
+
+
+USER = Vocabulary(
+    "urn:prima:user:1",
+    "user",
+    "user",
+    (
+        Element(
+            "user",
+            "A kind of users: how a person of a scenario behaves, whatever the scenario is about.",
+            (VERSION, ID, TITLE, _SPEED),
+            ("answers", "answer", "when"),
+        ),
+        Element(
+            "answers",
+            "How they give the scenario's answers, where these do not say so themselves.",
+            (attribute("after", "delay", "how long after the question", default="1s"), _CHANCE),
+        ),
+        _without(SCENARIO.elements["answer"], "person"),
+        _without(SCENARIO.elements["when"], "person", ("one-of", *_ITS)),
+        replace(SCENARIO.elements["one-of"], children=_ITS),
+        SCENARIO.elements["alternative"],
+        *(SCENARIO.elements[name] for name in _ITS),
+    ),
+    hints={
+        **{tag: hint for tag, hint in SCENARIO.hints.items() if tag != "user"},
+        **dict.fromkeys(
+            ("event", "message", "sensor", "fail", "repair", "service"),
+            "It is the scenario that says what happens around the user.",
+        ),
+        "person": "It is the scenario that says who is where.",
     },
 )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import pymunk
 
@@ -44,6 +45,16 @@ def room_beside(profile: Profile) -> float:
     return profile.radius * THICK + WALL
 
 
+@dataclass(slots=True)
+class Somebody:
+    """A person in the world: where they are (m; None where they have gone), and are going."""
+
+    at: Point | None
+    goal: Point | None = None
+    speed: float = 1.0
+    """Metres a second."""
+
+
 class World:
     """Bodies that move in virtual time, in milliseconds; steps only while something moves."""
 
@@ -69,9 +80,10 @@ class World:
         self.drive = (0.0, 0.0)
         """What the wheels are told: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
-        self.person: Point | None = None
-        self._goal: Point | None = None
-        self._walking = 1.0
+        self.people: dict[str, Somebody] = {}
+        """Who is there, by their names."""
+        self._attended = ""
+        """To whom the robot attends; nobody before it has seen one of several."""
         self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
         self._searched = self.position
         """Where the robot was when it was last looked for corners near to it."""
@@ -91,11 +103,38 @@ class World:
         x, y = self.position
         return {"x": round(x, 3), "y": round(y, 3), "heading": round(self.heading, 1) % 360.0}
 
-    # The person ----------------------------------------------------------------
+    # People --------------------------------------------------------------------
 
-    def walk(self, to: Point | None, speed: float) -> None:
-        """Send the person somewhere in a straight line; None lets him stay."""
-        self._goal, self._walking = to, speed
+    def put(self, name: str, at: Point | None) -> None:
+        """Let a person be there; the robot attends to an only one from the start."""
+        self.people[name] = Somebody(at)
+        self._attended = name if len(self.people) == 1 else ""
+
+    @property
+    def person(self) -> Point | None:
+        """Where the person is to whom the robot attends (m)."""
+        return self.people[self._attended].at if self._attended else None
+
+    def attend(self, name: str) -> None:
+        """Attend to a person who has spoken, or has touched the robot."""
+        if self.people[name].at is not None:
+            self._attended = name
+
+    def walk(self, name: str, to: Point | None, speed: float) -> None:
+        """Send a person somewhere in a straight line; None lets them stay."""
+        somebody = self.people[name]
+        somebody.goal, somebody.speed = to, speed
+
+    def leave(self, name: str) -> None:
+        """Let a person go away: the robot attends to whom of the others it sees next."""
+        self.people[name] = Somebody(None)
+        if name == self._attended and len(self.people) > 1:
+            self._attended = ""
+
+    def in_the_way(self) -> Iterator[Point]:
+        """Where people are, those nearest to the robot first."""
+        there = [one.at for one in self.people.values() if one.at is not None]
+        yield from sorted(there, key=lambda at: distance(self.position, at))
 
     # Seeing --------------------------------------------------------------------
 
@@ -135,17 +174,38 @@ class World:
         return wall + (away if aside >= 0 else -away)
 
     def sees_person(self) -> bool:
-        """Whether the person is in the camera's field of view, near enough and not hidden.
+        """Whether the person attended to is in the camera's view, near enough and not hidden.
 
-        It is computed anew only where one of them has moved or turned.
+        If it attends to nobody, it begins to attend to the nearest whom it sees. Seeing is
+        computed anew only where somebody has moved or turned.
         """
-        looks = (self.position, self.heading, self.pan, self.person)
+        looks = (self.position, self.heading, self.pan, self._attended, *self._watched())
         if looks != self._looked:
-            self._looked, self._visible = looks, self._look()
+            if not self._attended and len(self.people) > 1:
+                self.find_somebody()
+            self._looked = (*looks[:3], self._attended, *self._watched())
+            self._visible = self._look(self.person)
         return self._visible
 
-    def _look(self) -> bool:
-        person, position = self.person, self.position
+    def _watched(self) -> list[Point | None]:
+        """Where those are on whom it depends whether a person is seen."""
+        return [self.person] if self._attended else [one.at for one in self.people.values()]
+
+    def find_somebody(self) -> bool:
+        """Whether the robot sees anybody; it attends to the nearest, unless it sees its own."""
+        if self._attended and self._look(self.person):
+            return True
+        seen = [
+            (distance(self.position, one.at), name)
+            for name, one in self.people.items()
+            if one.at is not None and self._look(one.at)
+        ]
+        if seen:
+            self._attended = min(seen)[1]
+        return bool(seen)
+
+    def _look(self, person: Point | None) -> bool:
+        position = self.position
         if person is None or distance(position, person) > self.profile.camera_range:
             return False
         off = difference(bearing(position, person), self.heading + self.pan)
@@ -156,7 +216,9 @@ class World:
     @property
     def moving(self) -> bool:
         """Whether physics has to be stepped."""
-        return self.drive != (0.0, 0.0) or self._goal is not None
+        if self.drive != (0.0, 0.0):
+            return True
+        return any(one.goal is not None for one in self.people.values())
 
     def advance(self, to: int) -> None:
         """Let time pass until ``to`` (ms)."""
@@ -170,8 +232,9 @@ class World:
         forward, turning = self.drive
         if forward or turning:
             self._move(forward, math.radians(turning), seconds)
-        if self._goal is not None and self.person is not None:
-            self._step_person(self._goal, seconds)
+        for somebody in self.people.values():
+            if somebody.goal is not None and somebody.at is not None:
+                self._step_person(somebody, somebody.at, somebody.goal, seconds)
 
     def _move(self, forward: float, turning: float, seconds: float) -> None:
         """Move the body; only where it may touch a wall it takes more than its speed."""
@@ -210,15 +273,14 @@ class World:
         self._free = (self.position, free - EPSILON)
         return reach >= free - EPSILON
 
-    def _step_person(self, goal: Point, seconds: float) -> None:
-        assert self.person is not None
-        left, step = distance(self.person, goal), self._walking * seconds
+    @staticmethod
+    def _step_person(somebody: Somebody, at: Point, goal: Point, seconds: float) -> None:
+        left, step = distance(at, goal), somebody.speed * seconds
         if left <= step:
-            self.person, self._goal = goal, None
+            somebody.at, somebody.goal = goal, None
         else:
             share = step / left
-            x, y = self.person
-            self.person = (x + (goal[0] - x) * share, y + (goal[1] - y) * share)
+            somebody.at = (at[0] + (goal[0] - at[0]) * share, at[1] + (goal[1] - at[1]) * share)
 
     def corners(self) -> list[Corner]:
         """Corners that the robot has come near to since the last time."""

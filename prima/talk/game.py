@@ -93,6 +93,9 @@ class Game:
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
         scenario = self._read([])
         scenario.services = cast.scenario.services  # with their answers
+        if scripted:
+            for name, user in cast.scenario.users.items():
+                scenario.take(name, user)
         self.cast: Cast = replace(cast, scenario=scenario)
         self.names = _names(self.cast)
         self._web = web
@@ -113,7 +116,7 @@ class Game:
         """The question that the user does not answer."""
         self._busy: Callable[[], bool] | None = None
         for line in self.lines:
-            self.rehearsal.devices.person.play(line.at, line.doings)
+            self.rehearsal.devices.people.play(line.at, line.doings)
 
     # State ------------------------------------------------------------------------
 
@@ -225,7 +228,7 @@ class Game:
 
     def _is_answered(self, asks: Behavior) -> bool:
         """Whether the scenario's user acts before a question times out."""
-        due = self.rehearsal.devices.person.due()
+        due = self.rehearsal.devices.people.due()
         until = self._answer_until(asks)
         return due is not None and (until is None or due <= until)
 
@@ -270,7 +273,7 @@ class Game:
         if self.over:
             self.rehearsal.outcome = ""  # what is put in again goes on
         self.lines.append(Played(at, line.xml, doings, self._last_row()))
-        self._busy = self.rehearsal.devices.person.play(at, doings)
+        self._busy = self.rehearsal.devices.people.play(at, doings)
         return at
 
     def _thinking(self) -> int:
@@ -304,7 +307,7 @@ class Game:
                 "Every application has ended. Load one again"
                 f" (/load {one_of(self.names.applications)}), or type /quit."
             )
-        if self.rehearsal.devices.world.person is None:
+        if not self.rehearsal.devices.people.there:
             for doing in doings:
                 if doing.name in MOVES:
                     raise UsageError(f'Nobody is there to do "/{doing.name}".')

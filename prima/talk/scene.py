@@ -11,6 +11,7 @@ from pathlib import Path
 
 from prima.language.values import NAME
 from prima.markup.tree import Node
+from prima.sim.vocabulary import SCENARIO
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 MARK = "Played with prima talk."
@@ -19,7 +20,13 @@ USERS = frozenset(("say", "hang-up", "touch", "walk", "look", "follow", "stay", 
 """Elements of a ``when`` that are actions of the user."""
 KEPT = ("robot", "person", "connection", "application", "service", "transfer", "answer", "when")
 """Elements of a scenario that are played, in the order in which they are written."""
-PATHS = {("application", "src"), ("reply", "src"), ("scenario", "world"), ("scenario", "robot")}
+PATHS = {
+    (tag, item.name)
+    for tag, element in SCENARIO.elements.items()
+    for item in element.attributes
+    if item.kind == "path"
+}
+"""Attributes that name a file, with their elements."""
 
 
 class Scene:
@@ -78,6 +85,8 @@ class Scene:
     def _attributes(self, tag: str, given: dict[str, str], target: str | None) -> str:
         made = ""
         for name, value in given.items():
+            if (tag, name) == ("person", "user") and not self.scripted:
+                continue  # whoever plays behaves as they like
             if (tag, name) in PATHS and target is not None:
                 value = self._path(value, target)
             made += f' {name}="{_quoted(value)}"'
@@ -99,11 +108,16 @@ class Scene:
             self._element(item, target) if isinstance(item, Node) else _text(item)
             for item in node.content
         )
-        kept = {one.tag for one in node.nodes} - USERS - {"wait"}
-        if node.tag == "when" and not self.scripted and not kept:
+        if node.tag in ("when", "one-of") and not self.scripted and not _kept(node):
             return ""
         start = f"<{node.tag}{self._attributes(node.tag, node.attributes, target)}"
         return f"{start}>{content}</{node.tag}>" if content else f"{start}/>"
+
+
+def _kept(node: Node) -> bool:
+    """Whether something happens in an element that is not the user's doing."""
+    inside = {one.tag for one in node.nodes} - USERS - {"wait", "one-of"}
+    return bool(inside) or any(_kept(one) for one in node.all("one-of"))
 
 
 def _text(text: str) -> str:

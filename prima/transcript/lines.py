@@ -189,6 +189,7 @@ def head_model() -> type[BaseModel]:
         bound: int | None = Field(None, ge=1)
         patience: float = Field(0, ge=0, le=LONGEST)
         absence: float = Field(0, ge=0, le=LONGEST)
+        seed: int = Field(1, ge=0)
         date: Annotated[str, AfterValidator(_date)] = ""
         files: dict[str, str] = {}
         redacted: bool = False

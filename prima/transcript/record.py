@@ -175,7 +175,7 @@ PHASES = {
     "event": Phase(
         "an event, or what the user says (`speech`, with `text`; where the recogniser is not "
         "sure, `data` has `confidence`, and `alternatives` with `text` and `confidence` of "
-        "each)",
+        "each; where there are several persons, `person` for who speaks or touches)",
         "`event`, `serial`, `data`",
         ("event",),
     ),

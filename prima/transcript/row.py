@@ -189,8 +189,8 @@ def _call_row(record: Entry, uri: str, outcome: str) -> Row:
 
 
 def _heard(text: str, data: Record) -> str:
-    """What the user said, with the recognizer's confidence if known."""
-    said = f'"{text}"'
+    """What the user said: who of several, and the recognizer's confidence, if known."""
+    said = f'{data["person"]}: "{text}"' if "person" in data else f'"{text}"'
     if "confidence" not in data:
         return said
     others = "".join(
@@ -218,7 +218,8 @@ def _event_row(record: Entry, handled: set[int]) -> Row | None:
 
 def _event_text(name: str, data: Record, by_user: bool) -> str:
     if name.startswith("touch."):
-        return f"touches the robot's {data.get('sensor', name[6:])}"
+        who = f"{data['person']} " if "person" in data else ""
+        return f"{who}touches the robot's {data.get('sensor', name[6:])}"
     if name == "message":
         sender = f" from {data['from']}" if data.get("from") else ""
         return f"a message{sender} arrives"

@@ -12,14 +12,14 @@ from lxml import etree
 
 from prima.devices.vocabulary import ROBOT, SERVICES
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.sim.vocabulary import SCENARIO, WORLD
+from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from tests import ROOT
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 FENCE = re.compile(
     r"^```(?P<language>\w*)(?: (?P<name>\S+))?\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
-NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO, SERVICES)}
+NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)}
 MODULE = [sys.executable, "-m", "prima"]
 
 

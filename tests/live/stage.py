@@ -23,7 +23,7 @@ from prima.messages import Inbound, Order, Record, Sensed
 from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast, sensors_watched, watches
 from prima.sim.entrances import Entrances
-from prima.sim.person import Person
+from prima.sim.people import People
 from prima.sim.rehearsal import make_session
 from prima.sim.services import Services
 from prima.sim.telephone import Telephone
@@ -132,13 +132,15 @@ class ScenarioDriver(SimDriver):
         scenario = self.cast.scenario
         if scenario.robot_heading is not None:
             self.world._place(self.world.position, scenario.robot_heading * 3.141592653589793 / 180)
-        self.world.person = scenario.person_point or self.site.point(scenario.person_at)
+        self.world.people.clear()
+        for one in scenario.persons:
+            self.world.put(one.name, one.point or self.site.point(one.at))
         whens = [
             when
             for when in scenario.whens
-            if when.trigger != "at" or int(when.what) + when.after > self._since
+            if when.trigger != "at" or when.what.ms(1) + when.after.ms(1) > self._since
         ]
-        self.person = Person(
+        self.people = People(
             replace(scenario, whens=whens),
             self.world,
             Hearing(self, self.hearing()),  # type: ignore[arg-type]
@@ -152,7 +154,7 @@ class ScenarioDriver(SimDriver):
         self._report(reports)
 
     def due(self) -> int | None:
-        times = (super().due(), self.person.due())
+        times = (super().due(), self.people.due())
         return min((time for time in times if time is not None), default=None)
 
     def sample(self, now: int) -> None:
@@ -164,16 +166,16 @@ class ScenarioDriver(SimDriver):
 
         self._tell = later  # what sensors say comes last
         super().sample(now)
-        for value in self.person.collect(now):
+        for value in self.people.collect(now):
             tell(value)  # type: ignore[arg-type]
         self._tell = tell
         for value in held:
             tell(value)
-        if self.person.sensors:
-            tell(Sensed(dict(self.person.sensors)))
+        if self.people.sensors:
+            tell(Sensed(dict(self.people.sensors)))
 
     def observe(self, now: int, records: list[Record]) -> None:
-        self.person.observe(now, records)
+        self.people.observe(now, records)
 
 
 def live_loop(cast: Cast, policy: str = "prima", stopping: str = "0s", start: int = -1) -> Loop:

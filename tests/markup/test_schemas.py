@@ -21,7 +21,9 @@ from tests.helpers.pages import BEGIN, NAMESPACES, compiled_schema
 
 VALID = {
     "duration": ["2s", "500ms", ".5s", "+1.25s", " 3s "],
+    "delay": ["2s", "normal(5s,1s)", "0s..20s", "0s .. 1.5s"],
     "number": ["1", "-1.5", ".5", "2e3", " 7 "],
+    "quantity": ["1", "normal(1,0.2)", "-1..1", "0.5 .. 2"],
     "integer": ["1", "-2", "007"],
     "boolean": ["true", "false", " true"],
     "id": ["a", "a-1", "\u3042", "x.y_z"],
@@ -40,7 +42,9 @@ WRONG = ["", " ", "#", "1x", "x y", "-", "2", "2 s", "true false", "a..b", ".a",
 FAR = ["\u5b9f\u9a13", "#\ud55c", "e\u0301", "\uff11s", "\uff11", "\u00b2", "\u00a0", "a\u00a0", "100000s", "1e999", "$x"]  # fmt: skip
 DIFFERING: dict[str, list[str]] = {
     "duration": ["100000s"],
+    "delay": ["100000s"],
     "number": ["1e999"],
+    "quantity": ["1e999"],
     **{kind: ["\uff11s", "\uff11"] for kind in ("id", "variable", "variables", "event", "events")},
 }
 """Values of which the schema cannot say what the reader says, by kind: limits, and letters that

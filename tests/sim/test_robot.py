@@ -30,7 +30,7 @@ from tests.helpers.rehearsing import PROFILE, rehearse, told, when
 def test_the_camera_has_an_angle_a_range_and_walls(person: tuple[float, float], sees: bool) -> None:
     plan = Map("m", walls=[((3.0, -1.0), (3.0, 1.0))])
     world = World(plan, PROFILE, (0.0, 0.0), 0.0)
-    world.person = person
+    world.put("user", person)
     assert world.sees_person() is sees
 
 

@@ -10,7 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from prima import api
+from prima.loading import load_scenario
 from prima.talk import Conversation
+from prima.talk.game import Game
 from prima.talk.scene import comment
 from prima.transcript.lines import line as as_line
 from tests.helpers.talking import DOCUMENTS, start, type_in
@@ -132,3 +134,22 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
     talk.line(f"/save {tmp_path}/nowhere/new.xml")
     assert "there is no folder" in paper.told[-1]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["new.xml", "thesis.xml"]
+
+
+def test_who_plays_behaves_as_they_like(tmp_path: Path) -> None:
+    """A user's document says nothing of the author's play, unless the script is played on."""
+    users = DOCUMENTS / "users"
+    path = tmp_path / "visit.xml"
+    text = (DOCUMENTS / "scenarios" / "touched-on-the-way.xml").read_text("utf-8")
+    text = text.replace('"../', f'"{DOCUMENTS}/').replace(
+        "<person", f'<person user="{users}/chatty.xml"'
+    )
+    text = text.replace("<answer", '<when at="1s"><one-of><say>a</say></one-of></when><answer', 1)
+    path.write_text(text)
+    loaded = load_scenario(path)
+    played = Game(loaded, str(tmp_path))
+    assert played.cast.scenario.whens == []
+    assert "chatty" not in played.scene.text([]) and "one-of" not in played.scene.text([])
+    scripted = Game(loaded, str(tmp_path), scripted=True)
+    assert len(scripted.cast.scenario.whens) == len(loaded.cast.scenario.whens) > 3
+    assert "chatty" in scripted.scene.text([])

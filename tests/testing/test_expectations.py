@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.sim.chance import Amount
 from prima.sim.happenings import When
-from prima.sim.person import PHASES, Person
+from prima.sim.people import PHASES, People
 from prima.sim.scenario import read_scenario
 from prima.testing.checking import check
 from prima.testing.facts import make_run
@@ -216,7 +217,7 @@ def test_triggers_are_those_of_when(path: Path) -> None:
     words |= {("on", one["event"]) for one in records if one["phase"] == "event"}
     words |= {(name, one["text"]) for one in begun if one.get("text") for name in ("said", "asked")}
     for name, what in sorted(words):
-        person, when = Person.__new__(Person), When(name, what, 0, 1, 1, [])
+        person, when = People.__new__(People), When(name, what, Amount(0), 1, 1, [])
         person._texts = {}
         theirs = []
         for one in records:

@@ -64,11 +64,11 @@ class HeardDriver(SpeechDriver):
 
     def _do(self, when: When) -> None:
         """Let happen what the scenario says, later; each thing once."""
-        loop, after = asyncio.get_running_loop(), when.after / 1000
+        loop, after = asyncio.get_running_loop(), when.after.ms(1) / 1000
         for doing in when.doings:
             match doing.name:
                 case "wait":
-                    after += doing.values["for"] / 1000
+                    after += doing.values["for"].ms(1) / 1000
                 case "touch":
                     data = {"sensor": doing.values["sensor"]}
                     touch = Occurred(f"touch.{data['sensor']}", "user", data)

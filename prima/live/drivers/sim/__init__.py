@@ -64,7 +64,7 @@ class SimDriver(Driver):
         heading, (x, y) = self.world.heading, self.world.position
         if options.get("user", "true") == "true":
             angle = math.radians(heading)
-            self.world.person = x + math.cos(angle), y + math.sin(angle)
+            self.world.put("user", (x + math.cos(angle), y + math.sin(angle)))
         self._later, self._at, self._sees = [], None, Sees(False)
 
     def _stand_at(self, place: str) -> None:

@@ -1,4 +1,4 @@
-"""The scripted user, and the surroundings' events, of a scenario."""
+"""The scripted users, and the surroundings' events, of a scenario."""
 
 from __future__ import annotations
 
@@ -52,25 +52,33 @@ class Script:
     """Whether something that the robot did has begun it; what was planned comes first."""
     serial: int
     left: list[Doing] = field(compare=False)
+    who: str = field(default="", compare=False)
+    """Whose doing it is."""
+    number: int = field(default=1, compare=False)
+    """The how manieth time it is that this is done: what is drawn in it depends on that."""
     speaking: str = field(default="", compare=False)
     began: int = field(default=0, compare=False)
-    """When the user began to speak."""
+    """When they began to speak."""
     lasts: int = field(default=0, compare=False)
-    """How long (ms) he speaks."""
+    """How long (ms) they speak."""
     told: dict[str, Json] = field(default_factory=dict, compare=False)
     """What is told of it where it is recorded."""
 
 
-class Person:
-    """Plays the user: observes what the robot does, and does what the scenario says."""
+class People:
+    """Plays the users: observes what the robot does, and does what the scenario says."""
 
     def __init__(self, scenario: Scenario, world: World, robot: Robot) -> None:
         self.world = world
         self.robot = robot
         self.sensors: dict[str, Json] = {}
-        self._speed = scenario.person_speed
+        self.first = scenario.persons[0].name
+        """Who does what nobody is named for."""
+        self._several = len(scenario.persons) > 1
+        self._seed = scenario.seed
+        self._speeds = {one.name: one.speed.drawn(self._seed) for one in scenario.persons}
         self._awaited: dict[str, list[tuple[int, When]]] = {}
-        """What the user waits for in records of a phase, with its number in the scenario."""
+        """What is waited for in records of a phase, with its number in the scenario."""
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._scripts: list[Script] = []
@@ -79,31 +87,41 @@ class Person:
         """What is being done at this instant, and not in the heap meanwhile."""
         self._serial = 0
         self._listens = False
-        """Whether it matters to the user what is said."""
+        """Whether it matters to anybody what is said."""
         self._texts: dict[str, str] = {}
         """What the behaviours that go on have said."""
-        self._following: float | None = None
+        self._following: dict[str, float] = {}
+        """Who goes behind the robot, and how far (m)."""
         for index, when in enumerate(scenario.whens):
-            if when.trigger == "at":
-                self._begin(when.doings, int(when.what) + when.after, False)
+            if when.trigger == "at" and when.chance.happens(self._seed, 1):
+                time = when.what.ms(self._seed) + when.after.ms(self._seed)
+                self._begin(when.doings, time, False, when.person)
             for phase in PHASES.get(when.trigger, ()):
                 self._awaited.setdefault(phase, []).append((index, when))
             self._listens = self._listens or when.trigger in ("asked", "said")
 
-    def _begin(self, doings: list[Doing], time: int, triggered: bool) -> Script:
+    def _begin(
+        self, doings: list[Doing], time: int, triggered: bool, who: str = "", number: int = 1
+    ) -> Script:
         self._serial += 1
-        script = Script(time, triggered, self._serial, list(doings))
+        who = who or self.first
+        script = Script(time, triggered, self._serial, list(doings), who, number)
         heappush(self._scripts, script)
         return script
 
     def play(self, time: int, doings: list[Doing]) -> Callable[[], bool]:
-        """Do something at a time (ms) that is still to come, as a ``when`` at that time would.
+        """Let the first do something at a time (ms) still to come, as a ``when`` then would.
 
         Returns:
             what tells whether all of it has been done.
         """
         script = self._begin(doings, time, False)
         return lambda: not any(one is script for one in self._scripts)
+
+    @property
+    def there(self) -> bool:
+        """Whether the first is there."""
+        return self.world.people[self.first].at is not None
 
     @property
     def will_load(self) -> bool:
@@ -125,11 +143,14 @@ class Person:
                 self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
 
     def _trigger(self, index: int, when: When, now: int) -> None:
-        self._seen[index] = self._seen.get(index, 0) + 1
-        fired = self._fired.get(index, 0)
-        if self._seen[index] >= when.count and fired < when.times:
-            self._fired[index] = fired + 1
-            self._begin(when.doings, now + max(when.after, 1), True)
+        seen = self._seen[index] = self._seen.get(index, 0) + 1
+        fired = self._fired.get(index, 0) + 1
+        if seen < when.count or fired > when.times:
+            return
+        if when.chance.happens(self._seed, seen):
+            self._fired[index] = fired
+            after = max(when.after.ms(self._seed, fired), 1)
+            self._begin(when.doings, now + after, True, when.person, fired)
 
     def _is(self, when: When, phase: str, record: Record) -> bool:
         """Whether a record, of one of the trigger's phases, is what the user waits for."""
@@ -170,8 +191,8 @@ class Person:
             self._scripts += [one for one in self._playing if one.left or one.speaking]
             heapify(self._scripts)  # whoever hangs up changes when others go on
             self._playing.clear()
-        if self._following is not None:
-            self._follow(self._following)
+        for who, keep in self._following.items():
+            self._follow(who, keep)
         return made
 
     def _go_on(self, script: Script, now: int) -> list[Inbound]:
@@ -179,6 +200,7 @@ class Person:
         while script.time <= now:
             if script.speaking:
                 told = {**self.robot.conductor.marks_passed(script.began), **script.told}
+                told |= self._by(script.who)
                 made.append(Heard(script.speaking, told, now - script.began))
                 script.speaking = ""
                 self.robot.ear.speech_ends()
@@ -188,33 +210,47 @@ class Person:
             made += self._do(doing, script, now)
         return made
 
+    def _by(self, who: str) -> dict[str, Json]:
+        """Who has spoken or touched, where that is not clear."""
+        return {"person": who} if self._several else {}
+
+    def _does(self, who: str, what: str) -> list[Inbound]:
+        """What somebody does, for the reader."""
+        return [Narrated("user", f"{who} {what}" if self._several else what)]
+
     def _do(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
-        values = doing.values
+        values, who = doing.values, script.who
         match doing.name:
+            case "one-of":
+                chosen = values["choice"].of(values["several"], self._seed, script.number)
+                script.left.insert(0, chosen)
             case "say":
+                self.world.attend(who)
                 self._speak(doing.text, script, now)
                 script.told = {**values.get("told", {}), **script.told}
             case "hang-up":
                 return [self._hang_up(now)]
             case "touch":
+                self.world.attend(who)
                 sensor = values["sensor"]
-                return [Occurred(f"touch.{sensor}", "user", {"sensor": sensor})]
+                data = {"sensor": sensor, **self._by(who)}
+                return [Occurred(f"touch.{sensor}", "user", data)]
             case "walk":
                 return self._walk(doing, script, now)
             case "wait":
-                script.time = now + values["for"]
+                script.time = now + values["for"].ms(self._seed, script.number)
             case "look":
-                return [Narrated("user", f"looks at the {values['at']}")]
+                return self._does(who, f"looks at the {values['at']}")
             case "follow":
-                self._following = values["distance"] or 1.2
-                return [Narrated("user", "goes along with the robot")]
+                self._following[who] = values["distance"] or 1.2
+                return self._does(who, "goes along with the robot")
             case "stay":
-                self._following = None
-                self.world.walk(None, self._speed)
+                self._following.pop(who, None)
+                self.world.walk(who, None, self._speeds[who])
             case "leave":
-                self._following = self.world.person = None
-                self.world.walk(None, self._speed)
-                return [Narrated("user", "goes away")]
+                self._following.pop(who, None)
+                self.world.leave(who)
+                return self._does(who, "goes away")
             case "note":
                 return [Narrated("environment", doing.text)]
             case _:
@@ -288,19 +324,20 @@ class Person:
         return []
 
     def _walk(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
-        values = doing.values
+        values, who, speed = doing.values, script.who, self._speeds[script.who]
         goal = self.world.map.point(values["to"]) if values["to"] else (values["x"], values["y"])
-        self._following = None
-        if self.world.person is None or goal is None:
+        self._following.pop(who, None)
+        at = self.world.people[who].at
+        if at is None or goal is None:
             return []
-        self.world.walk(goal, self._speed)
-        script.time = now + round(distance(self.world.person, goal) / self._speed * 1000) + 1
+        self.world.walk(who, goal, speed)
+        script.time = now + round(distance(at, goal) / speed * 1000) + 1
         whither = f"to the {values['to']}" if values["to"] else f"to {goal[0]:g}, {goal[1]:g}"
-        return [Narrated("user", f"walks {whither}")]
+        return self._does(who, f"walks {whither}")
 
-    def _follow(self, keep: float) -> None:
+    def _follow(self, who: str, keep: float) -> None:
         """Stay behind the robot while it moves."""
-        world, person = self.world, self.world.person
+        world, person = self.world, self.world.people[who].at
         if person is None:
             return
         here = world.position
@@ -310,7 +347,7 @@ class Person:
                 here[0] + (person[0] - here[0]) * share,
                 here[1] + (person[1] - here[1]) * share,
             )
-            world.walk(goal, self._speed)
+            world.walk(who, goal, self._speeds[who])
 
 
 def _part(said: voice.Timeline, ms: int) -> str:

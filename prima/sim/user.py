@@ -1,0 +1,67 @@
+"""Users of a kind, as patient or hasty ones: how a person of a scenario behaves, by a document."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from prima.devices.reading import Reader
+from prima.errors import DocumentError
+from prima.markup.tree import Node
+from prima.sim.chance import Amount, Chance, Draws
+from prima.sim.happenings import When, read_answer, read_when
+from prima.sim.vocabulary import USER
+
+
+@dataclass(slots=True)
+class User:
+    """How a person walks and answers, and what they do of their own accord."""
+
+    speed: Amount
+    """Metres a second."""
+    after: Amount
+    """How long (ms) they take to answer where the scenario does not say."""
+    chance: Chance
+    """How likely they are to answer at all where it does not say."""
+    whens: list[When]
+    """What they do and answer, whatever the scenario says."""
+    draws: Draws
+    node: Node
+
+    def answer(self, when: When, name: str) -> None:
+        """Let an answer of the scenario, of a name, come as this user answers."""
+        assert when.node is not None
+        given = when.node.attributes
+        if "after" not in given:  # answers to other questions have streams of their own
+            when.after = replace(self.after, stream=f"{self.after.stream}:{name}")
+        if "chance" not in given:
+            when.chance = replace(self.chance, stream=f"{self.chance.stream}:{name}")
+
+
+def read_user(file: str, data: bytes, person: str = "") -> User:
+    """Read a user's document for a person of a scenario.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    reader = Reader(USER, file, data)
+    root = reader.root
+    draws = Draws(reader, f"{person}:user")  # no id has a colon
+    answers = root.all("answers")
+    for extra in answers[1:]:
+        message = "There is a second <answers>."
+        reader.problem(extra, "duplicate-element", message, "", "Keep one.")
+    manner = answers[0] if answers else None
+    user = User(
+        speed=draws.amount(root, "speed", 1.0),
+        after=draws.amount(manner, "after", 1000) if manner is not None else Amount(1000),
+        chance=draws.chance(manner) if manner is not None else Chance(),
+        whens=[read_when(draws, node) for node in root.all("when")]
+        + [read_answer(draws, node) for node in root.all("answer")],
+        draws=draws,
+        node=root,
+    )
+    for when in user.whens:
+        when.person = person
+    if any(problem.severity == "error" for problem in reader.problems):
+        raise DocumentError(reader.problems)
+    return user
