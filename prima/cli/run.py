@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from prima.experiments.plan import Options
     from prima.loading import Loaded
 
+MOST_SEED = 999_999_999
+"""The greatest seed that a scenario can have."""
 FOLDER_ENDINGS = ("/", os.sep)
 
 
@@ -66,7 +68,7 @@ FOLDER_ENDINGS = ("/", os.sep)
 @duration_option("--patience", PATIENCE)
 @click.option(
     "--seed",
-    type=click.IntRange(0),
+    type=click.IntRange(0, MOST_SEED),
     help="Draw what the scenario leaves to chance by this number, instead of its own.",
 )
 @why_option

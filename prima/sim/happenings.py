@@ -122,9 +122,8 @@ def read_when(draws: Draws, node: Node) -> When:
         if given:
             reader.problem(node, "exclusive", message, given[1], "Write a <when> for each.")
         else:
-            if (
-                node.attributes.keys() <= reader.vocabulary.attributes["when"].keys()
-            ):  # else told already
+            known = reader.vocabulary.attributes["when"].keys()
+            if node.attributes.keys() <= known:  # else told already
                 remedy = 'Write when it happens, such as at="3s" or said="Hello".'
                 reader.problem(node, "missing-attribute", message, "", remedy)
             given = ["at"]

@@ -38,7 +38,7 @@ PHASES = {
     "done": ("end",),
     "on": ("event",),
 }
-"""The records in which a user sees what he waits for, by their phase."""
+"""The records in which users see what they wait for, by their phase."""
 OVER = ("end", "cancel", "fail")
 """How a behaviour ends in the records."""
 
@@ -55,7 +55,7 @@ class Script:
     who: str = field(default="", compare=False)
     """Whose doing it is."""
     number: int = field(default=1, compare=False)
-    """The how manieth time it is that this is done: what is drawn in it depends on that."""
+    """Which time it is that this is done, from 1: what is drawn in it depends on that."""
     speaking: str = field(default="", compare=False)
     began: int = field(default=0, compare=False)
     """When they began to speak."""

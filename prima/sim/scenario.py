@@ -197,8 +197,6 @@ def _persons(draws: Draws) -> list[Person]:
             message = f'The id "{name}" is there twice.'
             reader.problem(node, "duplicate-id", message, "id", RENAME)
         seen.add(name)
-    for node in reader.root.all("when", "answer"):
-        reader.known(node, "person", {*seen, "user"} if len(nodes) < 2 else seen, "person")
     persons = [
         Person(
             node.get("id") or "user",
@@ -210,7 +208,11 @@ def _persons(draws: Draws) -> list[Person]:
         )
         for node in nodes
     ]
-    return persons or [Person("user")]
+    persons = persons or [Person("user")]
+    names = {one.name for one in persons}
+    for node in reader.root.all("when", "answer"):
+        reader.known(node, "person", names, "person")
+    return persons
 
 
 def _point(reader: Reader, person: Node) -> Point | None:

@@ -194,4 +194,5 @@ def test_the_command_line_takes_a_seed(tmp_path: Path) -> None:
     assert [one.returncode for one in made] == [0, 0, 0]
     assert made[0].stdout == made[1].stdout != made[2].stdout
     assert json.loads(made[2].stdout.splitlines()[0])["data"]["seed"] == 2
-    assert prima("run", str(path), "--seed", "-1").returncode == 2
+    for wrong in ("-1", "1" * 400, "x"):
+        assert prima("run", str(path), "--seed", wrong).returncode == 2

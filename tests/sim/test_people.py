@@ -128,6 +128,8 @@ WRONG = {
     '<person id="b" x="1" y="0"/><person id="b" x="0" y="1"/>': 'The id "b" is there twice.',
     f'{TWO}<when at="1s" person="bn"><leave/></when>': 'There is no person "bn".',
     '<person x="1" y="0"/><answer to="a" person="ann">b</answer>': 'There is no person "ann".',
+    '<person id="ann"/><when at="1s" person="user"><leave/></when>': 'There is no person "user".',
+    '<when at="1s" person="ann"><leave/></when>': 'There is no person "ann".',
 }
 
 
