@@ -15,7 +15,7 @@ from tests import ROOT
 PACKAGE = ROOT / "prima"
 
 LAYERS = [
-    {"errors"},
+    {"errors", "version"},
     {"messages", "language"},
     {"markup", "transcript"},
     {"script"},

@@ -103,9 +103,9 @@ def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Pa
     journal, talk = tmp_path / "visit.jsonl", tmp_path / "talk.xml"
     speak = "<speak>Hello there.</speak>"
     talk.write_text(HELLO.replace(speak, speak * 20))  # an instant is due in any two seconds of it
+    words = ["--ea", str(talk), "--speed", "2", "-o", str(journal)]
     running = subprocess.Popen(
-        [sys.executable, "-m", "prima", "live", "--robot", ROBOT, "--ea", str(talk)]
-        + ["--speed", "2", "-o", str(journal)],
+        [sys.executable, "-m", "prima", "live", "--robot", ROBOT, *words],
         cwd=ROOT,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
