@@ -309,7 +309,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x8", "whatever keeps it", reworded(freshness, "_give_up", "not kept or ", "")),
     ("x8", "what follows stays", put(freshness, "followers", lambda root: [root])),
     ("x8", "the last instant", reworded(freshness, "x8", "if ab in may_start", "if False")),
-    ("x8", "what has begun is abandoned", reworded(freshness, "_tell", " and not run.begun", "")),
+    ("x8", "what has begun is abandoned", reworded(freshness, "_notices", " or run.begun", "")),
     ("x8", "nothing is offered", put(freshness, "offered", nothing)),
     ("x8", "what comes before is lost", reworded(endings, "answered", "in ab.waits_for", "in ()")),
     ("x10", "dropped", put(Hearing, "_late_for", nothing)),
