@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import signal
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -23,6 +22,7 @@ from prima.live.journal import Journal, redacted
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
+from prima.live.signals import heeding_signals
 from prima.loading import Loaded, load_scenario, load_services, stage
 from prima.loading.files import Contents, in_place_of_files, read_file
 from prima.loading.heads import check_files, chosen_policy, run_record
@@ -224,6 +224,9 @@ class Visit:
         self.loop.journal = keep
         try:
             asyncio.run(self._run(warn))
+        except KeyboardInterrupt as error:  # a driver blocked the run
+            self.stopped = True
+            warn(str(error) or "The run was broken off.")
         finally:
             self.loop.session.close()
             if self.journal is not None:
@@ -259,19 +262,17 @@ class Visit:
                 running.call_soon_threadsafe(shell.stop)
 
         self._stop = stop
-        for name in (signal.SIGINT, signal.SIGTERM):
-            with suppress(NotImplementedError, ValueError, RuntimeError):
-                running.add_signal_handler(name, self.stop)
-        if self.stopped:
-            return
-        # Not before: once there is a journal, a signal has to end the run as it should.
-        self.loop.journal(self.missed if self.resumed else [self.head])
-        try:
-            await shell.run()
-        finally:
-            self.latest = shell.latest
-            if not (shell.opened or self.resumed) and self.journal is not None:
-                self.journal.discard()  # nothing has happened: the same command may be given again
+        with heeding_signals(self.stop):
+            if self.stopped:
+                return
+            # Not before: once there is a journal, a signal has to end the run as it should.
+            self.loop.journal(self.missed if self.resumed else [self.head])
+            try:
+                await shell.run()
+            finally:
+                self.latest = shell.latest
+                if not (shell.opened or self.resumed) and self.journal is not None:
+                    self.journal.discard()  # nothing has happened: the command may be given again
 
 
 def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:

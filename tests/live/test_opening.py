@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from pathlib import Path
+from subprocess import PIPE
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +14,11 @@ import pytest
 
 from prima.live.driver import Unreachable
 from prima.live.drivers.speech.sound import SoundCard
+from prima.live.signals import BLOCKED_S
 from tests.live.test_live import HELLO, ROOT, prima
 
 DRIVERS = """
-import asyncio, sys
+import asyncio, sys, time
 from prima.live.driver import Driver, TaskDriver, Unreachable, Unusable
 
 class Well(TaskDriver):
@@ -56,6 +61,12 @@ class Made(Well):
 class Samples(Well):
     kind = "samples"
     def sample(self, now): raise ValueError("no such joint")
+
+class Blocks(Well):
+    kind = "blocks"
+    async def open(self):
+        print("blocks", file=sys.stderr, flush=True)
+        time.sleep(1000)
 
 class Due(Well):
     kind = "due"
@@ -115,6 +126,27 @@ def test_a_driver_that_cannot_be_opened_ends_the_run(
         assert "well is safe" in ran.stderr
     again = live(stage, '<driver kind="well"/>', "-o", str(journal))
     assert again.returncode == 0, again.stderr
+
+
+@pytest.mark.parametrize("check", [[], ["--check"]])
+def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage: Path) -> None:
+    words = ["--robot", robot(stage, TWO.format("blocks", "")), "--driver", "drivers.py", *check]
+    journal = [] if check else ["--ea", "hello.xml", "-o", "visit.jsonl"]
+    command = [sys.executable, "-m", "prima", "live", *words, *journal]
+    with subprocess.Popen(command, cwd=stage, stdout=PIPE, stderr=PIPE, text=True) as run:
+        assert run.stderr is not None
+        assert any(line == "blocks\n" for line in run.stderr)
+        run.send_signal(signal.SIGINT)
+        with pytest.raises(subprocess.TimeoutExpired):
+            run.wait(2 * BLOCKED_S)
+        run.send_signal(signal.SIGINT)
+        told = "".join(run.communicate(timeout=60))
+    line = 1 + DRIVERS.splitlines().index("        time.sleep(1000)")
+    assert run.returncode == 130, told
+    assert f"drivers.py:{line}. Drivers must wait with await." in told
+    assert "well is safe" in told
+    assert "Go on with" not in told
+    assert not (stage / "visit.jsonl").exists()
 
 
 def test_no_driver_stays_half_open(stage: Path) -> None:
