@@ -18,7 +18,7 @@ from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
-from prima.live.journal import Journal, redacted
+from prima.live.journal import Journal, Redactor
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
@@ -214,9 +214,11 @@ class Visit:
             RunError: the journal cannot be written.
         """
 
+        redactor = Redactor(self.loop.session.listening) if self.settings.redact else None
+
         def keep(records: list[Record]) -> None:
-            if self.settings.redact:
-                records = [redacted(record) for record in records]
+            if redactor is not None:
+                records = redactor(records)
             if self.journal is not None:
                 self.journal.write(records)
             sink(records)
