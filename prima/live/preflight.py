@@ -23,6 +23,7 @@ from prima.devices.profile import Profile, read_robot
 from prima.devices.settings import Limits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
+from prima.live.carried import SPOKEN, lacking, route
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
 from prima.live.shell import open_driver
@@ -222,7 +223,7 @@ class Preflight:
         """What is tried: the goal's kind, the Command, and its devices."""
         tried: list[tuple[str, Command, frozenset[str]]] = []
         for row in self._robot.commands.values():
-            if row.substitute or row.name in ("pause", "speak", "q-and-a"):
+            if row.substitute or row.name in SPOKEN:
                 continue
             for args in self._arguments(row):
                 tried.append((row.name, Command(row.name, args), row.devices))
@@ -274,10 +275,9 @@ class Preflight:
         row = self._robot.commands.get(kind)
         tick = now + self._robot.loop if row is not None and row.feedback else None
         begin = Begin(key, kind, command, devices, 0, tick, self._robot.loop)
-        driver = self._devices.route(begin)
+        driver = route(self._drivers, begin)
         if driver is None:
-            hint = f'no driver carries it out; name it in a <does command="{kind}">'
-            self._tell(False, what, hint)
+            self._tell(False, what, lacking(self._drivers, begin))
         elif driver not in self._opened:
             self._tell(None, what, "not tried: its driver is not there", driver.kind)
         else:

@@ -14,6 +14,7 @@ from pathlib import Path
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.errors import UsageError
+from prima.live.carried import uncarried
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
@@ -297,6 +298,8 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
         loop = in_simulation(loaded, policy, settings)
     else:
         loop = on_robot(loaded, policy, settings, chosen.answering(settings.web))
+        assert isinstance(loop.devices, LiveDevices)
+        loaded.problems += uncarried(cast.robot, loop.devices.drivers, cast.documents)
     if settings.until is not None:
         loop.until = settings.until
     told = chosen.told(os.path.dirname(output or ""))
@@ -354,7 +357,7 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
     """
     if not robot.drivers:
         hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'
-        raise UsageError(f"The robot {robot.id} has no driver. {hint}")
+        raise UsageError(f"{robot.place}: The robot {robot.id} has no driver. {hint}")
     made = []
     for settings in robot.drivers:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -215,6 +216,38 @@ def test_a_missing_microphone_is_named_with_its_remedy(
     which = f'the {name} "USB" cannot be opened' if chosen else f"there is no {name}"
     with pytest.raises(Unreachable, match=rf'{which} .*<option name="{name}" value="..."/>'):
         SoundCard(chosen, chosen).open(lambda _: None, lambda _: None)
+
+
+@pytest.mark.parametrize(
+    ("drivers", "told"),
+    [
+        ('<driver kind="well" devices="speaker"/>', 'write devices="locomotion" into a <driver>'),
+        ('<driver kind="mapped" devices="locomotion"/>', 'write <does command="turn" ...> in a'),
+    ],
+)
+def test_a_command_that_no_driver_carries_out_is_told_before_it_fails(
+    drivers: str, told: str, stage: Path
+) -> None:
+    mapped = "\nclass Mapped(Well):\n    kind = 'mapped'\n    mapped = True\n"
+    (stage / "drivers.py").write_text(DRIVERS + mapped)
+    (stage / "hello.xml").write_text(HELLO.replace("<speak>Hello there.</speak>", ""))
+    ran = live(stage, drivers)
+    before = re.search(
+        r"hello\.xml:2:\d+: warning: turn: no driver carries it out: (.+)", ran.stderr
+    )
+    assert before is not None, ran.stderr
+    assert told in before[1]
+    assert (ran.returncode, told in ran.stderr.partition(before[0])[2]) == (3, True)
+    checked = live(stage, drivers, "--check")
+    assert re.search(rf"FAILS +turn +no driver carries it out: {re.escape(told)}", checked.stdout)
+
+
+def test_a_robot_without_a_driver_is_told_with_its_place(stage: Path) -> None:
+    ran = live(stage, "")
+    assert (ran.returncode, "robot.xml:3:1: The robot simulated has no driver." in ran.stderr) == (
+        2,
+        True,
+    )
 
 
 def test_extras_that_are_missing_are_wrong_settings() -> None:

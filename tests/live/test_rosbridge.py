@@ -46,7 +46,9 @@ def test_an_address_may_be_short(address: str, url: str) -> None:
     assert asyncio.run(made()) == url
 
 
-@pytest.mark.parametrize("address", ["http://robot.local", "ws://", "ws://robot:port"])
+@pytest.mark.parametrize(
+    "address", ["http://robot.local", "ws://", "ws://robot:port", "not an address"]
+)
 def test_a_wrong_address_is_told(address: str) -> None:
     with pytest.raises(UsageError, match='Write for example address="ws://'):
         asyncio.run(driver(address).open())
