@@ -194,6 +194,7 @@ class Rows:
         from prima.transcript.table import format_head, layout
 
         self._table = GrowingTable()
+        self._table.add(visit.before)  # what goes on is shown with its arguments and numbers
         self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
         click.echo(format_head(self._shape))
 

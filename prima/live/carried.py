@@ -11,7 +11,7 @@ from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.interpreter.checks.facts import document_commands
 from prima.interpreter.elements import CommandTemplate, Document
 from prima.live.driver import Driver
-from prima.messages import Command
+from prima.messages import Command, Json
 from prima.session import AnyDocument
 
 UNCARRIED = UNSUPPORTED_COMMAND.says("{what}: {lacking}.")
@@ -62,5 +62,7 @@ def _goal(robot: Profile, command: CommandTemplate) -> Begin | None:
     if row is None or row.substitute or row.name in SPOKEN:
         return None
     name = command.args.get("name") if row.name == "gesture" else None
-    args = {"name": name} if isinstance(name, str) else {}
+    args: dict[str, Json] = {"name": name} if isinstance(name, str) else {}
+    if args and name not in robot.gestures:
+        return None  # that is told already
     return Begin("", row.name, Command(row.name, args), row.devices)

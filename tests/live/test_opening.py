@@ -169,6 +169,7 @@ def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
     (stage / "drivers.py").write_text(DRIVERS)
     on = prima("live", *words)
     assert on.returncode == 0, on.stderr
+    assert "Turn (angle 30)" in on.stdout, "although it was asked for before the cut"
 
 
 @pytest.mark.parametrize(
